@@ -1,0 +1,113 @@
+#include "base/arena.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ALIGNMENT = 16, DEFAULT_BLOCK = 1 << 16, LARGEST_DOUBLED_BLOCK = 1 << 20 };
+
+struct ArenaBlock {
+    ArenaBlock *older;
+    size_t size; /* bytes of data[] */
+    _Alignas(ALIGNMENT) unsigned char data[];
+};
+
+bool memory_budget_take(MemoryBudget *budget, size_t size) {
+    if (!budget) return true;
+    size_t before = atomic_fetch_add(&budget->used, size);
+    if (budget->limit == 0 || (before + size >= before && before + size <= budget->limit)) return true;
+    atomic_fetch_sub(&budget->used, size);
+    return false;
+}
+
+void memory_budget_give_back(MemoryBudget *budget, size_t size) {
+    if (budget) atomic_fetch_sub(&budget->used, size);
+}
+
+void memory_budget_fail(MemoryBudget *budget) {
+    if (budget && budget->on_exhausted) budget->on_exhausted(budget->context);
+    abort(); /* no owner took the failure: nothing sensible can go on */
+}
+
+void arena_init(Arena *arena, MemoryBudget *budget, size_t block_size) {
+    *arena = (Arena){.budget = budget, .block_size = block_size ? block_size : DEFAULT_BLOCK};
+}
+
+void arena_destroy(Arena *arena) { arena_reset_to(arena, (ArenaMark){NULL, 0}); }
+
+static void add_block(Arena *arena, size_t at_least) {
+    size_t size = size_max(at_least, arena->block_size);
+    if (size > SIZE_MAX - sizeof(ArenaBlock)) memory_budget_fail(arena->budget);
+    size_t bytes = sizeof(ArenaBlock) + size;
+    if (!memory_budget_take(arena->budget, bytes)) memory_budget_fail(arena->budget);
+    ArenaBlock *block = malloc(bytes);
+    if (!block) {
+        memory_budget_give_back(arena->budget, bytes);
+        memory_budget_fail(arena->budget);
+    }
+    block->older = arena->block;
+    block->size = size;
+    arena->block = block;
+    arena->used = 0;
+    arena->total += bytes;
+    if (arena->block_size < LARGEST_DOUBLED_BLOCK) arena->block_size *= 2;
+}
+
+void *arena_push(Arena *arena, size_t size) {
+    if (size > SIZE_MAX - ALIGNMENT) memory_budget_fail(arena->budget);
+    size_t rounded = size == 0 ? ALIGNMENT : (size + ALIGNMENT - 1) & ~(size_t)(ALIGNMENT - 1);
+    if (!arena->block || arena->block->size - arena->used < rounded) add_block(arena, rounded);
+    void *result = arena->block->data + arena->used;
+    arena->used += rounded;
+    return memset(result, 0, size);
+}
+
+void *arena_push_array_(Arena *arena, size_t count, size_t size) {
+    if (size != 0 && count > SIZE_MAX / size) memory_budget_fail(arena->budget);
+    return arena_push(arena, count * size);
+}
+
+void *arena_copy(Arena *arena, const void *data, size_t size) {
+    void *copy = arena_push(arena, size);
+    if (size) memcpy(copy, data, size);
+    return copy;
+}
+
+char *arena_strdup(Arena *arena, const char *text) { return arena_copy(arena, text, strlen(text) + 1); }
+
+char *arena_printf(Arena *arena, const char *format, ...) {
+    va_list args, again;
+    va_start(args, format);
+    va_copy(again, args);
+    int length = vsnprintf(NULL, 0, format, args);
+    va_end(args);
+    size_t size = length < 0 ? 1 : (size_t)length + 1;
+    char *text = arena_push(arena, size);
+    if (length >= 0) vsnprintf(text, size, format, again);
+    va_end(again);
+    return text;
+}
+
+ArenaMark arena_mark(const Arena *arena) { return (ArenaMark){arena->block, arena->used}; }
+
+void arena_reset_to(Arena *arena, ArenaMark mark) {
+    while (arena->block != mark.block) {
+        ArenaBlock *block = arena->block;
+        size_t bytes = sizeof(ArenaBlock) + block->size;
+        arena->block = block->older;
+        arena->total -= bytes;
+        memory_budget_give_back(arena->budget, bytes);
+        free(block);
+    }
+    arena->used = mark.used;
+}
+
+void arena_list_grow_(Arena *arena, void **items, size_t *capacity, size_t count, size_t item_size) {
+    size_t grown = *capacity ? *capacity * 2 : 8;
+    if (grown < *capacity) memory_budget_fail(arena->budget);
+    void *copy = arena_push_array_(arena, grown, item_size);
+    if (count) memcpy(copy, *items, count * item_size);
+    *items = copy;
+    *capacity = grown;
+}

@@ -1,0 +1,147 @@
+#include "base/diag.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { DEFAULT_ERROR_LIMIT = 20, LONGEST_SHOWN_LINE = 160 };
+
+void diag_init(DiagList *list, Arena *arena, SourceSet *sources) {
+    *list = (DiagList){.arena = arena, .sources = sources};
+}
+
+bool diag_full(const DiagList *list) {
+    return list->error_count >= (list->error_limit ? list->error_limit : DEFAULT_ERROR_LIMIT);
+}
+
+static const char *format_text(Arena *arena, const char *format, va_list args) {
+    va_list again;
+    va_copy(again, args);
+    int length = vsnprintf(NULL, 0, format, args);
+    size_t size = length < 0 ? 1 : (size_t)length + 1;
+    char *text = arena_push(arena, size);
+    vsnprintf(text, size, format, again);
+    va_end(again);
+    return text;
+}
+
+static bool error_exists_at(const DiagList *list, Span span) {
+    if (span.file == 0) return false;
+    for (const Diagnostic *d = list->first; d; d = d->next)
+        if (d->severity == SEVERITY_ERROR && d->span.file == span.file && d->span.begin == span.begin) return true;
+    return false;
+}
+
+static Diagnostic *add(DiagList *list, Severity severity, Span span, const char *format, va_list args) {
+    if (severity == SEVERITY_ERROR) {
+        if (error_exists_at(list, span)) return NULL;
+        bool full = diag_full(list);
+        list->error_count++;
+        if (full) return NULL;
+    } else {
+        list->warning_count++;
+    }
+    Diagnostic *d = arena_new(list->arena, Diagnostic);
+    d->severity = severity;
+    d->span = span;
+    d->message = format_text(list->arena, format, args);
+    if (list->last) list->last->next = d;
+    else list->first = d;
+    list->last = d;
+    if (list->add_context_notes) list->add_context_notes(list->context, list, d);
+    return d;
+}
+
+Diagnostic *diag_error(DiagList *list, Span span, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    Diagnostic *d = add(list, SEVERITY_ERROR, span, format, args);
+    va_end(args);
+    return d;
+}
+
+Diagnostic *diag_warning(DiagList *list, Span span, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    Diagnostic *d = add(list, SEVERITY_WARNING, span, format, args);
+    va_end(args);
+    return d;
+}
+
+void diag_note(DiagList *list, Diagnostic *to, Span span, const char *format, ...) {
+    if (!to) return;
+    Diagnostic *note = arena_new(list->arena, Diagnostic);
+    note->severity = SEVERITY_NOTE;
+    note->span = span;
+    va_list args;
+    va_start(args, format);
+    note->message = format_text(list->arena, format, args);
+    va_end(args);
+    Diagnostic **end = &to->notes;
+    while (*end) end = &(*end)->next;
+    *end = note;
+}
+
+void diag_hint(DiagList *list, Diagnostic *to, const char *format, ...) {
+    if (!to) return;
+    va_list args;
+    va_start(args, format);
+    to->hint = format_text(list->arena, format, args);
+    va_end(args);
+}
+
+static size_t count_characters(const char *text, size_t size) {
+    size_t count = 0;
+    for (size_t i = 0; i < size; i++) count += ((unsigned char)text[i] & 0xC0u) != 0x80u;
+    return count;
+}
+
+/* The source line, and under it a caret at the span's first character, extended over the rest of it on this line.
+ * A long line is shown in part, around the span. */
+static void add_excerpt(StrBuf *out, SourceSet *sources, Span span, SourcePlace place, bool colour) {
+    size_t size;
+    const char *line = source_line(sources, place.file, place.line, &size);
+    size_t start = span.begin - (size_t)(line - place.file->text);
+    if (start > size) start = size;
+    size_t length = span.end > span.begin ? span.end - span.begin : 1;
+    if (start + length > size) length = size > start ? size - start : 1;
+    size_t from = 0, shown = size;
+    if (size > LONGEST_SHOWN_LINE) {
+        from = start > LONGEST_SHOWN_LINE / 2 ? start - LONGEST_SHOWN_LINE / 2 : 0;
+        shown = size_min(size - from, LONGEST_SHOWN_LINE);
+        if (length > from + shown - start) length = from + shown - start;
+    }
+    char number[24];
+    int width = snprintf(number, sizeof number, "%5u", place.line);
+    strbuf_addf(out, "%s | %s", number, from ? "…" : "");
+    for (size_t i = 0; i < shown; i++) {
+        unsigned char c = (unsigned char)line[from + i];
+        strbuf_addc(out, c < 0x20 || c == 0x7F ? ' ' : (char)c); /* control characters would move the caret */
+    }
+    strbuf_addf(out, "%s\n", from + shown < size ? "…" : "");
+    strbuf_repeat(out, ' ', (size_t)width);
+    strbuf_adds(out, " | ");
+    strbuf_repeat(out, ' ', count_characters(line + from, start - from) + (from ? 1 : 0));
+    if (colour) strbuf_adds(out, "\033[1;32m");
+    size_t marks = start < size ? count_characters(line + start, length) : 1;
+    strbuf_addc(out, '^');
+    if (marks > 1) strbuf_repeat(out, '~', marks - 1);
+    if (colour) strbuf_adds(out, "\033[0m");
+    strbuf_addc(out, '\n');
+}
+
+static void add_one(StrBuf *out, SourceSet *sources, const Diagnostic *d, bool colour) {
+    static const char *const words[] = {"note", "warning", "error"};
+    static const char *const colours[] = {"\033[1;36m", "\033[1;35m", "\033[1;31m"};
+    SourcePlace place = source_locate(sources, d->span);
+    if (place.file) strbuf_addf(out, "%s:%u:%u: ", place.file->name, place.line, place.column);
+    else strbuf_adds(out, "vts: ");
+    if (colour) strbuf_addf(out, "%s%s:\033[0m %s\n", colours[d->severity], words[d->severity], d->message);
+    else strbuf_addf(out, "%s: %s\n", words[d->severity], d->message);
+    if (place.file) add_excerpt(out, sources, d->span, place, colour);
+}
+
+void diag_format(StrBuf *out, SourceSet *sources, const Diagnostic *diagnostic, bool colour) {
+    add_one(out, sources, diagnostic, colour);
+    if (diagnostic->hint) strbuf_addf(out, "      = help: %s\n", diagnostic->hint);
+    for (const Diagnostic *note = diagnostic->notes; note; note = note->next) add_one(out, sources, note, colour);
+}

@@ -1,0 +1,48 @@
+/* Diagnostics as data: severity, span, message, notes. Whoever finds an error adds one here and returns failure;
+ * printing happens in one place (diag_format, called by the program). */
+#ifndef VTS_BASE_DIAG_H
+#define VTS_BASE_DIAG_H
+
+#include "base/source.h"
+#include "base/strbuf.h"
+
+typedef enum Severity { SEVERITY_NOTE, SEVERITY_WARNING, SEVERITY_ERROR } Severity;
+
+typedef struct Diagnostic Diagnostic;
+struct Diagnostic {
+    Severity severity;
+    Span span;
+    const char *message; /* one line, no full stop */
+    const char *hint;    /* NULL, or what likely helps: "did you mean 'pigment'?" */
+    Diagnostic *notes;   /* first note, linked through `next` */
+    Diagnostic *next;
+};
+
+typedef struct DiagList {
+    Arena *arena;
+    SourceSet *sources;
+    Diagnostic *first, *last;
+    size_t error_count, warning_count;
+    size_t error_limit; /* 0 = 20; errors past it are counted, not kept */
+    /* Added as notes to every new diagnostic: the include and macro stack; maintained by the evaluator. NULL: none. */
+    void (*add_context_notes)(void *context, struct DiagList *list, Diagnostic *diagnostic);
+    void *context;
+} DiagList;
+
+void diag_init(DiagList *list, Arena *arena, SourceSet *sources);
+
+/* Add a diagnostic. An error at a span that already has one is dropped (a cascade). Returns it, so that a hint can be
+ * set, or NULL when it was dropped. */
+Diagnostic *diag_error(DiagList *list, Span span, const char *format, ...) VTS_PRINTF(3, 4);
+Diagnostic *diag_warning(DiagList *list, Span span, const char *format, ...) VTS_PRINTF(3, 4);
+/* Adds a note to `to` (no effect if NULL). */
+void diag_note(DiagList *list, Diagnostic *to, Span span, const char *format, ...) VTS_PRINTF(4, 5);
+void diag_hint(DiagList *list, Diagnostic *to, const char *format, ...) VTS_PRINTF(3, 4);
+/* Whether the error limit is reached: time to give up. */
+bool diag_full(const DiagList *list);
+
+/* The text that users see: "file:line:col: error: message", the source line, a caret under the span, hint and notes.
+ * `colour`: with ANSI colours. */
+void diag_format(StrBuf *out, SourceSet *sources, const Diagnostic *diagnostic, bool colour);
+
+#endif

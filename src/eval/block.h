@@ -1,0 +1,75 @@
+/* Evaluated blocks: `keyword { … }` after its directives have run, its macros have been expanded and its expressions
+ * have been evaluated, in the order of the text. What is left is a flat list of items, plain data, from which a builder
+ * makes a node of the scene graph. Builders never see directives, macros or syntax.
+ *
+ * The evaluator calls a block's builder when its closing brace is reached, so nested blocks arrive as finished values:
+ *     sphere { <0,1,0>, R  pigment { rgb 1 }  scale 2 }
+ * is [VALUE <0,1,0>] [VALUE R] [VALUE a pigment] [WORD scale (2)].
+ *     mapping { repeat <37,37> height 0.9 }
+ * has no builder: the skin around it gets [VALUE of kind BLOCK: mapping] and reads its items itself. */
+#ifndef VTS_EVAL_BLOCK_H
+#define VTS_EVAL_BLOCK_H
+
+#include "base/diag.h"
+#include "eval/value.h"
+
+typedef enum BlockItemKind {
+    ITEM_VALUE, /* an expression or a nested block: `value` */
+    ITEM_WORD,  /* a word with the expressions that follow it: `word`, `arguments`; `body` if a { … } of its own follows */
+    ITEM_ENTRY, /* [ … ] of a map: `entry` */
+} BlockItemKind;
+
+typedef struct Argument {
+    Value value;
+    Span span;
+} Argument;
+
+typedef struct BlockItem {
+    BlockItemKind kind;
+    Span span;                 /* of the whole item */
+    Span word_span;            /* of the word */
+    Name word;                 /* ITEM_WORD */
+    Value value;               /* ITEM_VALUE */
+    const Argument *arguments; /* ITEM_WORD */
+    size_t argument_count;
+    const EvalBlock *body;     /* ITEM_WORD: count 16 { … }; word is the block's keyword too. Else NULL. */
+    const EvalBlock *entry;    /* ITEM_ENTRY: the items between the brackets */
+} BlockItem;
+
+struct EvalBlock {
+    Name word;       /* the keyword before the brace */
+    Span word_span;
+    Span span;       /* from the keyword to the closing brace */
+    const BlockItem *items;
+    size_t count;
+    Name declared_as; /* the name of `#declare Name = texel { … }` when the block is its whole right side; else NULL */
+};
+
+/* What a builder may use besides its block. */
+typedef struct BuildContext {
+    Arena *arena;       /* the scene's */
+    Interner *names;
+    DiagList *diags;
+    double image_aspect; /* width / height */
+    const Texture *default_texture;
+    void *eval;          /* for the evaluator itself */
+} BuildContext;
+
+/* Makes the value of a block; false after a diagnostic (out is then VALUE_ERROR). */
+typedef bool BlockBuilder(BuildContext *context, const EvalBlock *block, Value *out);
+
+/* The builder of `word { … }`, or NULL when such blocks stay VALUE_BLOCK. `known` is set to false when no block of this name
+ * exists anywhere in the language. */
+BlockBuilder *block_builder_find(const BuildContext *context, Name word, bool *known);
+
+/* The builders' other entry: a value that stands at top level of the file goes into the scene. False after a diagnostic
+ * ("a float has no meaning here"). `declared texels` and the like that stand alone are errors too. */
+typedef struct SceneDraft SceneDraft;
+SceneDraft *scene_draft_create(BuildContext *context, const char *scene_name);
+bool scene_draft_add(SceneDraft *draft, BuildContext *context, const Value *value, Span span);
+/* Fills in defaults (camera …), warns of an empty scene. */
+const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context, double clock);
+/* #default { texture / pigment / finish … } */
+bool scene_draft_default(SceneDraft *draft, BuildContext *context, const EvalBlock *block);
+
+#endif

@@ -1,0 +1,47 @@
+/* From syntax tree to scene graph: runs a program of the language. */
+#ifndef VTS_EVAL_EVAL_H
+#define VTS_EVAL_EVAL_H
+
+#include "base/diag.h"
+#include "scene/scene.h"
+
+typedef enum EvalStream { EVAL_STREAM_DEBUG, EVAL_STREAM_WARNING, EVAL_STREAM_RENDER, EVAL_STREAM_STATISTICS } EvalStream;
+
+typedef struct EvalLimits {
+    uint64_t loops;          /* passes of one loop: 100 million */
+    uint32_t recursion;      /* nested macro calls: 200 */
+    uint32_t include_depth;  /* 32 */
+    uint64_t array_elements; /* 64 million */
+    uint64_t string_bytes;   /* 64 MiB */
+} EvalLimits;
+
+typedef struct EvalOptions {
+    const char *const *include_dirs;  /* after the including file's folder and the scene's folder */
+    size_t include_dir_count;
+    const char *stdlib_dir;           /* last; may be NULL */
+    const struct EvalDeclare { const char *name, *value; } *declares; /* numbers become floats, the rest strings */
+    size_t declare_count;
+    double clock;
+    bool clock_on;
+    int image_width, image_height;
+    EvalLimits limits;
+    const char *const *allow_read;
+    size_t allow_read_count;
+    const char *const *allow_write;
+    size_t allow_write_count;
+    bool keep_writes_in_memory;       /* check: #write goes to memory, where #read finds it */
+    void (*on_text)(void *context, EvalStream stream, const char *text);
+    void *context;
+    const volatile bool *interrupted; /* polled in loops; may be NULL */
+    bool print_tokens, print_ast;     /* dump to on_text(STATISTICS) instead of evaluating */
+} EvalOptions;
+
+typedef enum EvalStatus { EVAL_OK, EVAL_FAILED /* see diags */, EVAL_NO_FILE /* the scene file itself */, EVAL_INTERRUPTED } EvalStatus;
+
+/* Evaluates the file. `scene_arena` owns the graph; `parse_arena` may be destroyed after the call except that spans refer
+ * to `sources`. *scene is set when EVAL_OK. */
+EvalStatus eval_file(const char *path, const EvalOptions *options, SourceSet *sources, DiagList *diags, Interner *names,
+                     Arena *parse_arena, Arena *scene_arena, const Scene **scene);
+EvalLimits eval_limits_default(void);
+
+#endif

@@ -1,0 +1,321 @@
+/* The scene graph: what evaluation leaves behind. Plain, immutable data with spans back into the text; the renderer reads it
+ * and never changes it. Everything lives in the scene's arena. Transforms are already applied to what they follow in the
+ * text: each node has one transform from its own space to that of its parent (objects in a union: the union's space).
+ *
+ * Lengths in scene units (metres), angles in degrees, colours linear. Left-handed, y up. */
+#ifndef VTS_SCENE_SCENE_H
+#define VTS_SCENE_SCENE_H
+
+#include "base/hash.h"
+#include "base/intern.h"
+#include "base/source.h"
+#include "base/strbuf.h"
+#include "base/vec.h"
+#include "tape/tape.h"
+
+typedef struct Color {
+    double red, green, blue, filter, transmit;
+} Color;
+
+/* ---- looks ---- */
+
+typedef enum PatternKind {
+    PATTERN_SOLID,    /* no pattern: `color` */
+    PATTERN_GRADIENT, /* frac of p · direction */
+    PATTERN_CHECKER, PATTERN_BRICK, PATTERN_HEXAGON, /* block patterns: entry by index, not by value */
+    PATTERN_BOZO, PATTERN_GRANITE, PATTERN_WRINKLES, PATTERN_AGATE, PATTERN_MARBLE, PATTERN_WOOD, PATTERN_CRACKLE,
+    PATTERN_LEOPARD, PATTERN_ONION, PATTERN_RADIAL, PATTERN_SPOTTED, PATTERN_CELLS, PATTERN_BOXED, PATTERN_CYLINDRICAL,
+    PATTERN_SPHERICAL, PATTERN_PLANAR, PATTERN_SLOPE,
+    PATTERN_FUNCTION, /* value = tape(x, y, z) */
+} PatternKind;
+
+typedef struct Pigment Pigment;
+
+typedef struct ColorMapEntry {
+    double position;
+    Color color;
+    const Pigment *pigment; /* of a pigment_map (or block pattern with pigments); else NULL and `color` counts */
+} ColorMapEntry;
+
+struct Pigment {
+    Span span;
+    Hash128 hash;
+    PatternKind kind;
+    Color color;                     /* PATTERN_SOLID */
+    Vec3 direction;                  /* gradient, slope */
+    const Tape *function;            /* PATTERN_FUNCTION */
+    const ColorMapEntry *entries;    /* sorted by position; for block patterns the colours in order; NULL: the pattern's own */
+    size_t entry_count;
+    double frequency, phase;         /* 1, 0 */
+    Vec3 turbulence;                 /* 0: none */
+    int octaves;                     /* 6 */
+    double lambda, omega;            /* 2, 0.5 */
+    Color quick_color;
+    Transform transform;             /* pattern space → space of the textured object */
+};
+
+typedef struct Finish {
+    Hash128 hash;
+    Color ambient, emission;
+    double diffuse, transmission;    /* second number of `diffuse a, b`: light from behind (leaves) */
+    double brilliance;               /* 1 */
+    double specular, roughness;      /* roughness 0.05 */
+    double phong, phong_size;        /* 40 */
+    double metallic;                 /* 0 */
+    Color reflection_min, reflection_max;
+    bool fresnel;
+} Finish;
+
+typedef struct Texture {
+    Span span;
+    Hash128 hash;
+    const Pigment *pigment; /* never NULL */
+    const Finish *finish;   /* never NULL */
+    Transform transform;    /* texture space → object space */
+    const struct Texture *under; /* the layer below, seen through this one's filter and transmit; or NULL */
+} Texture;
+
+/* ---- objects ---- */
+
+typedef enum ObjectKind {
+    OBJECT_SPHERE, OBJECT_BOX, OBJECT_CYLINDER, OBJECT_CONE, OBJECT_PLANE, OBJECT_DISC, OBJECT_TORUS,
+    OBJECT_TRIANGLES, /* triangle, smooth_triangle, mesh, mesh2 */
+    OBJECT_UNION,     /* children; also merge until CSG is complete */
+    OBJECT_INTERSECTION, OBJECT_DIFFERENCE, OBJECT_MERGE,
+    OBJECT_PARTICLES, /* blades, hairs: swept trajectories */
+    OBJECT_SURFACE,   /* the surface of a skin drawn itself */
+    OBJECT_TEXEL,     /* a texel placed once, without a surface */
+    OBJECT_UNMODELLED /* parses, is inert: `word` names it */
+} ObjectKind;
+
+typedef struct MeshData {
+    Hash128 hash;
+    const Vec3 *vertices;
+    size_t vertex_count;
+    const Vec3 *normals;                    /* per index of normal_triangles; NULL: flat */
+    size_t normal_count;
+    const Vec3 *uvs;                        /* z unused; NULL: none */
+    size_t uv_count;
+    const uint32_t (*triangles)[3];
+    size_t triangle_count;
+    const uint32_t (*normal_triangles)[3];  /* NULL: same as triangles */
+    const uint32_t (*uv_triangles)[3];      /* NULL: same as triangles */
+    const struct Texture *const *textures;  /* texture_list */
+    size_t texture_count;
+    const uint32_t *triangle_textures;      /* index into textures for each triangle; NULL: the object's texture */
+    const Vec3 *height_vectors;             /* per vertex; NULL: unit normals */
+    const Vec3 *w_vectors;                  /* per vertex <w0, w1, 0>; NULL: the mapping's */
+} MeshData;
+
+typedef enum BladeProfile { BLADE_V, BLADE_ROUND, BLADE_FLAT } BladeProfile;
+
+/* One trajectory: p(t) = position + velocity·t + acceleration·t²/2 for t in [0, life]. */
+typedef struct Particle {
+    Vec3 position, velocity, acceleration;
+    double life;
+    double width_foot, width_tip;
+    BladeProfile profile;
+    double twist; /* degrees from foot to tip */
+} Particle;
+
+typedef struct Object Object;
+typedef struct Surface Surface;
+typedef struct TexelDef TexelDef;
+
+struct Object {
+    Span span;
+    Hash128 hash;             /* shape, transform and textures of it and its children */
+    ObjectKind kind;
+    const char *word;         /* the keyword that made it */
+    Transform transform;      /* object space → parent's space */
+    const Texture *texture;   /* NULL: the parent's, at last the default */
+    bool no_shadow, no_image, inverse, hollow;
+    union {
+        struct { Vec3 center; double radius; } sphere;
+        struct { Vec3 corner1, corner2; } box;
+        struct { Vec3 base, cap; double base_radius, cap_radius; bool open; } cone; /* OBJECT_CYLINDER too */
+        struct { Vec3 normal; double distance; } plane;                            /* p · normal = distance, unit normal */
+        struct { Vec3 center, normal; double radius, hole_radius; } disc;
+        struct { double major_radius, minor_radius; } torus;
+        const MeshData *mesh;
+        struct { const Object *const *items; size_t count; } children;
+        struct { const Particle *items; size_t count; } particles;
+        const Surface *surface;
+        const TexelDef *texel;
+    } as;
+};
+
+/* ---- volumetric textures ---- */
+
+typedef struct TexelLayer {
+    Span span;
+    Hash128 hash;                 /* of the contents' geometry alone, without colours */
+    const Object *const *contents;
+    size_t content_count;
+    const Texture *texture;       /* NULL: the default texture */
+} TexelLayer;
+
+struct TexelDef {
+    Span span;
+    Hash128 hash;
+    const char *name;             /* as declared, else "texel" */
+    Box3 bounds;                  /* box of scene space that becomes the reference volume */
+    int resolution;               /* along the longest axis; 0 = auto */
+    unsigned cyclic;              /* bit 0 x, 1 y, 2 z */
+    const TexelLayer *layers;
+    size_t layer_count;
+    const TexelDef *const *choices; /* texel { choose A, B } : then no layers of its own */
+    size_t choice_count;
+};
+
+typedef enum SurfaceKind { SURFACE_PATCHES, SURFACE_OBJECT } SurfaceKind;
+typedef enum SurfaceUv { SURFACE_UV_MESH, SURFACE_UV_PLANAR, SURFACE_UV_CYLINDRICAL, SURFACE_UV_SPHERICAL } SurfaceUv;
+
+struct Surface {
+    Span span;
+    Hash128 hash;
+    SurfaceKind kind;
+    /* SURFACE_PATCHES: (nu + 1) × (nv + 1) vertices of bilinear patches, index i·(nv + 1) + j, u = i/nu, v = j/nv */
+    int nu, nv;
+    const Vec3 *points;
+    const Vec3 *height_vectors;    /* NULL: unit normals */
+    /* SURFACE_OBJECT */
+    const Object *object;
+    SurfaceUv uv;
+    Vec3 uv_axis;                  /* planar: the axis looked along; cylindrical: the cylinder's */
+    int subdivide;                 /* 0 = auto */
+    const Tape *deform;            /* (x, y, z) → 3 outputs; NULL: none */
+    const Vec3 *object_height_vectors; /* one for each vertex of an OBJECT_TRIANGLES mesh; NULL */
+    const Texture *texture;        /* NULL: default */
+    Transform transform;           /* surface space → scene; an object { SURFACE transform } folds into the object's own */
+};
+
+typedef struct SkinTexel {
+    Span span;
+    const TexelDef *texel;
+    const Texture *texture;        /* over the layers' own; NULL: theirs */
+    double density;                /* share of the tiles that hold a copy; 1 */
+} SkinTexel;
+
+typedef struct SkinMapping {
+    bool by_tile_size;             /* `tile s`: tile_size counts; else `repeat` */
+    double repeat_u, repeat_v;     /* texels along u and v of the surface; 1 */
+    double tile_size;              /* scene units */
+    double height;                 /* length of the height vectors, multiplies their own length for explicit ones; 1 */
+    const Tape *height_function;   /* (x, y, z) → 1; NULL */
+    const Pigment *height_pigment; /* its grey multiplies; NULL */
+    Vec3 comb;                     /* added to the unit normal before the length is applied */
+    const Tape *comb_function;     /* (x, y, z) → 3; NULL */
+    double w_foot, w_tip;          /* 0, 1 */
+    const Tape *w_function;        /* (x, y, z) → 3 outputs <w0, w1, 0>; NULL */
+} SkinMapping;
+
+typedef struct NoiseJitter {
+    double amplitude; /* 0: none */
+    double scale;     /* wavelength in scene units; 1 */
+} NoiseJitter;
+
+typedef struct InstanceJitter {
+    bool present;
+    double displace;      /* tiles, ± half */
+    double rotate;        /* degrees about the height vector, ± half */
+    double scale;         /* relative, ± half */
+    bool mirror;
+    double density;       /* share of the tiles that keep their copy; 1 */
+    bool tinted;
+    Color tint_a, tint_b; /* filters; each copy gets one between */
+} InstanceJitter;
+
+typedef struct SkinJitter {
+    NoiseJitter coordinates; /* shift of (u, v) in tiles */
+    NoiseJitter height;      /* relative change of length */
+    NoiseJitter direction;   /* sideways, relative to the length */
+    InstanceJitter instance;
+    uint32_t seed;
+} SkinJitter;
+
+typedef struct Skin {
+    Span span;
+    const Surface *surface;
+    const SkinTexel *texels;
+    size_t texel_count;
+    SkinMapping mapping;
+    SkinJitter jitter;
+    const Texture *texture; /* over the layers' own; NULL */
+} Skin;
+
+/* ---- the scene ---- */
+
+typedef enum CameraKind { CAMERA_PERSPECTIVE, CAMERA_ORTHOGRAPHIC } CameraKind;
+
+/* As POV-Ray's after `look_at`, `angle` and transforms are applied: a ray of image position (s, t), both in [-1/2, 1/2] from
+ * left to right and from bottom to top, starts at `location` (orthographic: + s·right + t·up) along
+ * direction + s·right + t·up (orthographic: direction). */
+typedef struct Camera {
+    Span span;
+    CameraKind kind;
+    Vec3 location, direction, right, up;
+} Camera;
+
+typedef enum LightKind { LIGHT_POINT, LIGHT_PARALLEL, LIGHT_SPOT } LightKind;
+
+typedef struct Light {
+    Span span;
+    LightKind kind;
+    Vec3 location;
+    Vec3 to_light;        /* LIGHT_PARALLEL: unit vector towards the light */
+    Color color;
+    bool shadowless;
+    double fade_distance, fade_power; /* 0: no fading */
+    Vec3 point_at;
+    double radius, falloff, tightness; /* spot, degrees */
+} Light;
+
+typedef struct Fog {
+    Span span;
+    double distance;
+    Color color;
+} Fog;
+
+typedef struct GlobalSettings {
+    double max_error;      /* 0: not given */
+    Color ambient_light;   /* 1 */
+    double assumed_gamma;  /* 1 */
+    int max_trace_level;   /* 5 */
+    int samples;           /* 0: by max_error */
+    double shadow_aperture;/* 2: shadow cones are this much wider (Neyret 1998 sec. IV-B) */
+    const char *opacity_model; /* NULL: correlated */
+    const char *quadrature;    /* NULL: ring8 */
+    const char *ray_path;      /* NULL: chosen by curvature */
+    const char *detail;        /* NULL: auto */
+} GlobalSettings;
+
+typedef struct Scene {
+    const char *name;
+    Camera camera;
+    bool has_camera;
+    const Light *lights;
+    size_t light_count;
+    const Object *const *objects;
+    size_t object_count;
+    const Skin *const *skins;
+    size_t skin_count;
+    const Pigment *const *sky_layers; /* of sky_sphere, first below; pattern space: unit direction */
+    size_t sky_layer_count;
+    Color background;
+    bool has_fog;
+    Fog fog;
+    const Texture *default_texture;
+    GlobalSettings settings;
+    double clock;
+} Scene;
+
+/* The graph as indented text, one node a line: for --dump=scene and tests. */
+void scene_print(const Scene *scene, StrBuf *out);
+/* Defaults of POV-Ray 3.7 where it has them. */
+Finish finish_default(void);
+Pigment pigment_default(void);
+GlobalSettings global_settings_default(void);
+Camera camera_default(double aspect);
+
+#endif

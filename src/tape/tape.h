@@ -1,0 +1,63 @@
+/* Tapes: every function of the language as one small register program, to be run in several arithmetics.
+ *
+ * A tape is a list of instructions in topological order (no jumps); instruction i computes value i from earlier values.
+ * tape_ops.def is the single truth about operations. Tapes are immutable once finished and may be shared by threads. */
+#ifndef VTS_TAPE_TAPE_H
+#define VTS_TAPE_TAPE_H
+
+#include "base/arena.h"
+#include "base/hash.h"
+#include "base/source.h"
+#include "base/strbuf.h"
+
+typedef enum TapeOp {
+#define TAPE_OP(name, arity, text) TAPE_##name,
+#include "tape/tape_ops.def"
+#undef TAPE_OP
+    TAPE_OP_COUNT
+} TapeOp;
+
+typedef uint32_t TapeRef; /* a value of the tape under construction */
+typedef struct Tape Tape;
+typedef struct TapeBuilder TapeBuilder;
+
+/* A function that is not made of tape operations: a pigment, a spline, a picture. `eval` must be pure and thread-safe. */
+typedef struct TapeExternal {
+    const char *name;
+    int input_count, output_count; /* at most 8 each */
+    void (*eval)(const void *data, const double *in, double *out);
+    const void *data; /* outlives the tape */
+    Hash128 hash;     /* of the content */
+} TapeExternal;
+
+/* The builder and the tape live in `arena`. */
+TapeBuilder *tape_builder_create(Arena *arena, int input_count);
+TapeRef tape_input(TapeBuilder *builder, int index);
+TapeRef tape_constant(TapeBuilder *builder, double value);
+/* `span` is the text that asked for the operation, for messages. Constants are folded; equal instructions are shared. */
+TapeRef tape_unary(TapeBuilder *builder, TapeOp op, TapeRef a, Span span);
+TapeRef tape_binary(TapeBuilder *builder, TapeOp op, TapeRef a, TapeRef b, Span span);
+TapeRef tape_ternary(TapeBuilder *builder, TapeOp op, TapeRef a, TapeRef b, TapeRef c, Span span);
+/* Inserts a copy of `callee` with its inputs replaced; outputs[0 .. tape_output_count(callee)). */
+void tape_inline(TapeBuilder *builder, const Tape *callee, const TapeRef *inputs, TapeRef *outputs);
+void tape_call(TapeBuilder *builder, const TapeExternal *external, const TapeRef *inputs, TapeRef *outputs, Span span);
+/* The language's sum() and prod(): body has the inputs of this tape's `captured` values and, last, the running index; the
+ * loop runs i = from, from + 1, … to. */
+TapeRef tape_loop(TapeBuilder *builder, bool product, TapeRef from, TapeRef to, const Tape *body, const TapeRef *captured,
+                  int captured_count, Span span);
+const Tape *tape_finish(TapeBuilder *builder, const TapeRef *outputs, int output_count);
+
+int tape_input_count(const Tape *tape);
+int tape_output_count(const Tape *tape);
+Hash128 tape_hash(const Tape *tape);
+/* Doubles that tape_eval() needs as scratch. */
+size_t tape_scratch_size(const Tape *tape);
+/* The reference arithmetic: IEEE doubles. Domain errors give NaN or infinity, as C's functions do. */
+void tape_eval(const Tape *tape, const double *in, double *out, double *scratch);
+/* Convenience for few evaluations: allocates scratch on the stack or heap itself. */
+void tape_eval_once(const Tape *tape, const double *in, double *out);
+/* n evaluations; in[i] and out[i] are arrays of n. Equal to tape_eval bit for bit. */
+void tape_eval_batch(const Tape *tape, size_t n, const double *const *in, double *const *out);
+void tape_print(const Tape *tape, StrBuf *out);
+
+#endif

@@ -1,0 +1,117 @@
+/* vts: scenes of grass, forest, fur and cloud, from a script. The public C API.
+ *
+ *   #include <vts.h>
+ *   int main(void) {
+ *       VtsOptions options = vts_options_default();
+ *       options.width = 320;
+ *       options.height = 240;
+ *       VtsSession *session = vts_session_create(&options);
+ *       VtsStatus status = vts_render(session, "lawn.vts", "lawn.png");
+ *       if (status != VTS_OK) fputs(vts_diagnostics(session), stderr);
+ *       vts_session_destroy(session);
+ *       return status;
+ *   }
+ *
+ * No global state: sessions are independent; one session is used by one thread at a time (it starts its own workers).
+ * Nothing here prints or exits: text goes to the callbacks of VtsOptions, errors into vts_diagnostics() and the status. */
+#ifndef VTS_H
+#define VTS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#if defined(__GNUC__)
+#define VTS_API __attribute__((visibility("default")))
+#else
+#define VTS_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The exit statuses of the program. */
+typedef enum VtsStatus {
+    VTS_OK = 0,
+    VTS_ERROR_SCENE = 1,        /* the scene is wrong: anything located in its text */
+    VTS_ERROR_USAGE = 2,        /* an option has no meaning or no valid value */
+    VTS_ERROR_FILE = 3,         /* the named file, or the output, could not be read or written */
+    VTS_ERROR_MEMORY = 4,       /* the memory limit was hit */
+    VTS_INTERRUPTED = 130       /* vts_interrupt() */
+} VtsStatus;
+
+typedef enum VtsStream { VTS_STREAM_DEBUG, VTS_STREAM_WARNING, VTS_STREAM_RENDER, VTS_STREAM_STATISTICS } VtsStream;
+
+typedef struct VtsPair {
+    const char *name, *value;
+} VtsPair;
+
+/* All strings are borrowed: they must live as long as the session. */
+typedef struct VtsOptions {
+    int width, height;               /* of the picture; default 768 × 576 */
+    int threads;                     /* 0: all processors */
+    double clock;                    /* the language's `clock`; default 0 */
+    bool clock_set;                  /* clock was given (clock_on) */
+    unsigned long long seed;         /* for sampling */
+    double max_error;                /* RMSE a user accepts; 0: what the scene says, else 1/255 */
+    int samples;                     /* sub-pixels per pixel side² where the picture needs several; 0: by max_error */
+    double exposure;                 /* EV, the picture is multiplied by 2^exposure */
+    bool alpha;                      /* transparent background */
+    int region[4];                   /* x0, y0, x1, y1 (x1, y1 exclusive) in pixels; all 0: the whole picture */
+    size_t memory_limit;             /* bytes; 0: none */
+    const char *const *include_dirs; /* searched in order after the including file's folder */
+    size_t include_dir_count;
+    const char *stdlib_dir;          /* NULL: found beside the program or as installed */
+    const char *program_dir;         /* folder of the running program, for finding stdlib and the picture module; may be NULL */
+    const VtsPair *declares;         /* NAME=VALUE; a value that is a number is a float, else a string */
+    size_t declare_count;
+    const VtsPair *limits;           /* --limit NAME=N */
+    size_t limit_count;
+    const VtsPair *settings;         /* --set KNOB=VALUE */
+    size_t setting_count;
+    const char *const *allow_read;   /* folders that scenes may read besides their own and the include path */
+    size_t allow_read_count;
+    const char *const *allow_write;  /* folders that scenes may write */
+    size_t allow_write_count;
+    const char *float_type;          /* "half" or "float" for EXR output; NULL: half */
+    /* Called with the text of #debug, #render, #statistics and #warning as it is printed. NULL: dropped. */
+    void (*on_text)(void *context, VtsStream stream, const char *text);
+    /* Called with the complete text of each diagnostic (with excerpt and notes) at the end of the stage that found it. */
+    void (*on_diagnostic)(void *context, const char *text, bool is_error);
+    /* Called often during long work, from one thread at a time. */
+    void (*on_progress)(void *context, const char *stage, size_t done, size_t total);
+    void *context;
+    bool colour;                     /* ANSI colours in diagnostics */
+} VtsOptions;
+
+typedef enum VtsDump { VTS_DUMP_TOKENS, VTS_DUMP_AST, VTS_DUMP_SCENE, VTS_DUMP_TAPE, VTS_DUMP_COMPILED } VtsDump;
+
+typedef struct VtsSession VtsSession;
+
+VTS_API VtsOptions vts_options_default(void);
+VTS_API const char *vts_version(void);
+
+/* NULL when an option's value is out of range or memory is short; *error (if not NULL) then says why (static text). */
+VTS_API VtsSession *vts_session_create(const VtsOptions *options, const char **error);
+VTS_API void vts_session_destroy(VtsSession *session);
+
+/* Reads and evaluates; what a scene writes stays in memory. */
+VTS_API VtsStatus vts_check(VtsSession *session, const char *scene_path);
+/* Evaluates as a program: #debug and file writes happen. */
+VTS_API VtsStatus vts_run(VtsSession *session, const char *scene_path);
+/* Renders to `output_path`, whose suffix names the format. The file appears whole or not at all. */
+VTS_API VtsStatus vts_render(VtsSession *session, const char *scene_path, const char *output_path);
+/* Evaluates (as vts_check) and passes the printed form of one stage to on_text(VTS_STREAM_STATISTICS). */
+VTS_API VtsStatus vts_dump(VtsSession *session, const char *scene_path, VtsDump stage);
+
+/* All diagnostics so far as text; "" when none. Valid until the next call with this session. */
+VTS_API const char *vts_diagnostics(const VtsSession *session);
+/* The report of the last vts_render() as JSON (cli.md, --report); "" before. Valid until the next call. */
+VTS_API const char *vts_report(const VtsSession *session);
+/* From any thread or a signal handler: the running call stops soon and returns VTS_INTERRUPTED. */
+VTS_API void vts_interrupt(VtsSession *session);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -6,7 +6,21 @@
  *     sphere { <0,1,0>, R  pigment { rgb 1 }  scale 2 }
  * is [VALUE <0,1,0>] [VALUE R] [VALUE a pigment] [WORD scale (2)].
  *     mapping { repeat <37,37> height 0.9 }
- * has no builder: the skin around it gets [VALUE of kind BLOCK: mapping] and reads its items itself. */
+ * has no builder: the skin around it gets [VALUE of kind BLOCK: mapping] and reads its items itself.
+ *
+ * Words and their arguments. At the place of an item, a word that is neither a declared name nor the start of an
+ * expression (x, rgb, color, function, a number …) is an ITEM_WORD; its arguments are the expressions that follow, with
+ * commas or (`height 0.6 function(x,y,z) {…}`) without. Whether the word makes sense there is for the builder to say, so
+ * that an unknown one gets a "did you mean" from the right list. `tiling wang` and `uv planar y` are therefore two words:
+ * [WORD tiling] [WORD wang], [WORD uv] [WORD planar (y)]. `matrix <12 numbers>` has one vector of size 12 as argument.
+ * `color X` and `colour X` are colour expressions, never words.
+ *
+ * `count` in a particles block is evaluated once per particle:
+ *     particles { count 16 { position <rand(S), 0, rand(S)> life 1 } }
+ * evaluates 16 once and then the body 16 times, with the local name `index` declared as 0, 1 … 15. Each pass gives one
+ * ITEM_WORD `count` of its own: arguments[0] is the index (a float), arguments[1] the number of particles, `body` the items
+ * of that pass. A count of zero gives no item. A count that is negative, no whole number or past the limit of loops is the
+ * evaluator's error. Everywhere else `word N { … }` is one ITEM_WORD with one body (phases 8 { … }). */
 #ifndef VTS_EVAL_BLOCK_H
 #define VTS_EVAL_BLOCK_H
 
@@ -61,6 +75,8 @@ typedef bool BlockBuilder(BuildContext *context, const EvalBlock *block, Value *
 /* The builder of `word { … }`, or NULL when such blocks stay VALUE_BLOCK. `known` is set to false when no block of this name
  * exists anywhere in the language. */
 BlockBuilder *block_builder_find(const BuildContext *context, Name word, bool *known);
+/* The word of a block that an unknown `word { … }` was likely meant to be, or NULL: for a hint. */
+const char *block_word_suggest(const char *word);
 
 /* The builders' other entry: a value that stands at top level of the file goes into the scene. False after a diagnostic
  * ("a float has no meaning here"). `declared texels` and the like that stand alone are errors too. */

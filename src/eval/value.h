@@ -80,6 +80,12 @@ struct UserFunction {
     const Name *parameters;
 };
 
+/* Arrays as seen by builders: rank 1 is a list; of a jagged array the extents of the first rows count. The element at `count`
+ * indices, or NULL when it is out of range or was never set. */
+int array_rank(const Array *array);
+size_t array_extent(const Array *array, int dimension);
+const Value *array_element(const Array *array, const size_t *indices, int count);
+
 /* What a value is called in messages: "a float", "a vector", "a texel" … */
 const char *value_kind_text(ValueKind kind);
 

@@ -17,6 +17,14 @@ typedef struct Color {
     double red, green, blue, filter, transmit;
 } Color;
 
+/* Something that the text asks for and this version does not draw (an interior, a normal, wind): it is inert, and named in one
+ * warning when what holds it is used. */
+typedef struct InertNote {
+    const char *word;
+    Span span;
+    const struct InertNote *next;
+} InertNote;
+
 /* ---- looks ---- */
 
 typedef enum PatternKind {
@@ -51,6 +59,9 @@ struct Pigment {
     int octaves;                     /* 6 */
     double lambda, omega;            /* 2, 0.5 */
     Color quick_color;
+    Vec3 brick_size;                 /* <8, 3, 4.5> */
+    double mortar;                   /* 0.5 */
+    const InertNote *inert;
     Transform transform;             /* pattern space → space of the textured object */
 };
 
@@ -73,6 +84,7 @@ typedef struct Texture {
     const Finish *finish;   /* never NULL */
     Transform transform;    /* texture space → object space */
     const struct Texture *under; /* the layer below, seen through this one's filter and transmit; or NULL */
+    const InertNote *inert;
 } Texture;
 
 /* ---- objects ---- */
@@ -121,15 +133,18 @@ typedef struct Particle {
 typedef struct Object Object;
 typedef struct Surface Surface;
 typedef struct TexelDef TexelDef;
+typedef struct Light Light;
 
 struct Object {
     Span span;
     Hash128 hash;             /* shape, transform and textures of it and its children */
+    Hash128 shape_hash;       /* of `as` alone: geometry before the transform, without looks */
     ObjectKind kind;
     const char *word;         /* the keyword that made it */
     Transform transform;      /* object space → parent's space */
     const Texture *texture;   /* NULL: the parent's, at last the default */
     bool no_shadow, no_image, inverse, hollow;
+    const InertNote *inert;
     union {
         struct { Vec3 center; double radius; } sphere;
         struct { Vec3 corner1, corner2; } box;
@@ -138,7 +153,8 @@ struct Object {
         struct { Vec3 center, normal; double radius, hole_radius; } disc;
         struct { double major_radius, minor_radius; } torus;
         const MeshData *mesh;
-        struct { const Object *const *items; size_t count; } children;
+        /* Lights of a union are copied to Scene.lights, transformed; here they only remember where they came from. */
+        struct { const Object *const *items; size_t count; const Light *const *lights; size_t light_count; } children;
         struct { const Particle *items; size_t count; } particles;
         const Surface *surface;
         const TexelDef *texel;
@@ -166,6 +182,7 @@ struct TexelDef {
     size_t layer_count;
     const TexelDef *const *choices; /* texel { choose A, B } : then no layers of its own */
     size_t choice_count;
+    const InertNote *inert;       /* phases, a file: no layers then either */
 };
 
 typedef enum SurfaceKind { SURFACE_PATCHES, SURFACE_OBJECT } SurfaceKind;
@@ -187,6 +204,7 @@ struct Surface {
     const Tape *deform;            /* (x, y, z) → 3 outputs; NULL: none */
     const Vec3 *object_height_vectors; /* one for each vertex of an OBJECT_TRIANGLES mesh; NULL */
     const Texture *texture;        /* NULL: default */
+    const InertNote *inert;
     Transform transform;           /* surface space → scene; an object { SURFACE transform } folds into the object's own */
 };
 
@@ -236,12 +254,14 @@ typedef struct SkinJitter {
 
 typedef struct Skin {
     Span span;
+    Hash128 hash;
     const Surface *surface;
     const SkinTexel *texels;
     size_t texel_count;
     SkinMapping mapping;
     SkinJitter jitter;
     const Texture *texture; /* over the layers' own; NULL */
+    const InertNote *inert;
 } Skin;
 
 /* ---- the scene ---- */
@@ -259,7 +279,7 @@ typedef struct Camera {
 
 typedef enum LightKind { LIGHT_POINT, LIGHT_PARALLEL, LIGHT_SPOT } LightKind;
 
-typedef struct Light {
+struct Light {
     Span span;
     LightKind kind;
     Vec3 location;
@@ -268,8 +288,9 @@ typedef struct Light {
     bool shadowless;
     double fade_distance, fade_power; /* 0: no fading */
     Vec3 point_at;
-    double radius, falloff, tightness; /* spot, degrees */
-} Light;
+    double radius, falloff, tightness; /* spot, degrees; 30, 45, 0 */
+    const InertNote *inert;
+};
 
 typedef struct Fog {
     Span span;

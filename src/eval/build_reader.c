@@ -1,0 +1,347 @@
+#include "eval/build_reader.h"
+
+#include <string.h>
+
+Reader reader_begin(BuildContext *context, const EvalBlock *block) {
+    return (Reader){.context = context, .block = block};
+}
+
+void reader_add_table(Reader *reader, const WordRule *rules, size_t count, void *target) {
+    reader->tables[reader->table_count++] = (WordTable){rules, count, target};
+}
+
+Reader reader_nested(Reader *parent, const EvalBlock *body) { return reader_begin(parent->context, body); }
+
+bool reader_end_nested(Reader *parent, Reader *nested) {
+    parent->failed |= nested->failed;
+    return !nested->failed;
+}
+
+Diagnostic *reader_error(Reader *reader, Span span, const char *format, ...) {
+    StrBuf text = {0};
+    va_list args;
+    va_start(args, format);
+    strbuf_vaddf(&text, format, args);
+    va_end(args);
+    reader->failed = true;
+    Diagnostic *diagnostic = diag_error(reader->context->diags, span, "%s", text.data);
+    strbuf_free(&text);
+    return diagnostic;
+}
+
+void reader_mismatch(Reader *reader, Span span, const char *what, const char *wanted, ValueKind found) {
+    if (found == VALUE_ERROR)
+        reader->failed = true; /* reported where it arose */
+    else
+        reader_error(reader, span, "%s takes %s, found %s", what, wanted, value_kind_text(found));
+}
+
+void inert_add(const BuildContext *context, const InertNote **list, const char *word, Span span) {
+    InertNote *note = arena_new(context->arena, InertNote);
+    *note = (InertNote){word, span, *list};
+    *list = note;
+}
+
+/* ---- items ---- */
+
+bool item_as_word(const BlockItem *item, Word *out) {
+    if (item->kind == ITEM_WORD) {
+        *out = (Word){item->word->text, item->word_span, item->span, item->arguments, item->argument_count, item->body};
+        return true;
+    }
+    if (item->kind != ITEM_VALUE || item->value.kind != VALUE_BLOCK) return false;
+    const EvalBlock *body = item->value.as.block;
+    *out = (Word){body->word->text, body->word_span, item->span, NULL, 0, body};
+    return true;
+}
+
+const BlockItem *reader_peek(const Reader *reader) {
+    return reader->next < reader->block->count ? &reader->block->items[reader->next] : NULL;
+}
+
+bool reader_take_word(Reader *reader, const char *text, Word *out) {
+    const BlockItem *item = reader_peek(reader);
+    if (!item || !item_as_word(item, out) || strcmp(out->text, text) != 0) return false;
+    reader->next++;
+    return true;
+}
+
+bool reader_take_value(Reader *reader, ValueKind kind, Argument *out) {
+    const BlockItem *item = reader_peek(reader);
+    if (!item || item->kind != ITEM_VALUE || item->value.kind != kind) return false;
+    *out = (Argument){item->value, item->span};
+    reader->next++;
+    return true;
+}
+
+/* The closing brace: where something was still expected. */
+static Span block_end(const EvalBlock *block) {
+    Span end = block->span;
+    if (end.end > end.begin) end.begin = end.end - 1;
+    return end;
+}
+
+static bool next_value(Reader *reader, const char *what, const char *wanted, Argument *out) {
+    const BlockItem *item = reader_peek(reader);
+    if (item && item->kind == ITEM_VALUE && item->value.kind != VALUE_BLOCK) {
+        *out = (Argument){item->value, item->span};
+        reader->next++;
+        return true;
+    }
+    reader_error(reader, item ? item->span : block_end(reader->block), "'%s' wants %s here (%s)", reader->block->word->text,
+                 what, wanted);
+    return false;
+}
+
+bool reader_float(Reader *reader, const char *what, double *out, Span *span) {
+    Argument argument;
+    if (!next_value(reader, what, "a float", &argument)) return false;
+    if (span) *span = argument.span;
+    return argument_float(reader, &argument, what, out);
+}
+
+bool reader_vector(Reader *reader, const char *what, Vec3 *out, Span *span) {
+    Argument argument;
+    if (!next_value(reader, what, "a vector", &argument)) return false;
+    if (span) *span = argument.span;
+    return argument_vector(reader, &argument, what, out);
+}
+
+/* ---- promotions ---- */
+
+bool argument_float(Reader *reader, const Argument *argument, const char *what, double *out) {
+    if (argument->value.kind != VALUE_FLOAT) {
+        reader_mismatch(reader, argument->span, what, "a float", argument->value.kind);
+        return false;
+    }
+    if (!isfinite(argument->value.as.number)) {
+        reader_error(reader, argument->span, "%s is not a finite number", what);
+        return false;
+    }
+    *out = argument->value.as.number;
+    return true;
+}
+
+static double component(const Value *value, size_t index) {
+    return index < value->size ? value->as.components[index] : 0;
+}
+
+bool argument_vector(Reader *reader, const Argument *argument, const char *what, Vec3 *out) {
+    const Value *value = &argument->value;
+    if (value->kind == VALUE_FLOAT)
+        *out = vec3_splat(value->as.number);
+    else if (value->kind == VALUE_VECTOR || value->kind == VALUE_COLOR)
+        *out = vec3(component(value, 0), component(value, 1), component(value, 2));
+    else {
+        reader_mismatch(reader, argument->span, what, "a vector", value->kind);
+        return false;
+    }
+    if (!vec3_is_finite(*out)) {
+        reader_error(reader, argument->span, "%s has a component that is not a finite number", what);
+        return false;
+    }
+    return true;
+}
+
+bool argument_color(Reader *reader, const Argument *argument, const char *what, Color *out) {
+    const Value *value = &argument->value;
+    if (value->kind == VALUE_FLOAT)
+        *out = (Color){value->as.number, value->as.number, value->as.number, 0, 0};
+    else if (value->kind == VALUE_VECTOR || value->kind == VALUE_COLOR)
+        *out = (Color){component(value, 0), component(value, 1), component(value, 2), component(value, 3), component(value, 4)};
+    else {
+        reader_mismatch(reader, argument->span, what, "a colour", value->kind);
+        return false;
+    }
+    if (!isfinite(out->red + out->green + out->blue + out->filter + out->transmit)) {
+        reader_error(reader, argument->span, "%s has a component that is not a finite number", what);
+        return false;
+    }
+    return true;
+}
+
+static const char *components_text(int components) { return components == 1 ? "a float" : "a vector <…, …, …>"; }
+
+bool argument_function(Reader *reader, const Argument *argument, const char *what, int parameters, int components,
+                       const Tape **out) {
+    if (argument->value.kind != VALUE_FUNCTION) {
+        reader_mismatch(reader, argument->span, what, "a function", argument->value.kind);
+        return false;
+    }
+    const UserFunction *function = argument->value.as.function;
+    if (function->parameter_count != parameters) {
+        reader_error(reader, argument->span, "the function of %s takes %d parameters here, this one has %d", what, parameters,
+                     function->parameter_count);
+        return false;
+    }
+    if (tape_output_count(function->tape) != components) {
+        reader_error(reader, argument->span, "the function of %s gives %s here", what, components_text(components));
+        return false;
+    }
+    *out = function->tape;
+    return true;
+}
+
+/* ---- words ---- */
+
+bool word_arguments(Reader *reader, const Word *word, size_t low, size_t high) {
+    if (word->count < low) {
+        reader_error(reader, word->span, "'%s' needs %zu value%s, found %zu", word->text, low, low == 1 ? "" : "s", word->count);
+        return false;
+    }
+    if (word->count > high) {
+        reader_error(reader, word->arguments[high].span, "'%s' takes at most %zu value%s, found %zu", word->text, high,
+                     high == 1 ? "" : "s", word->count);
+        return false;
+    }
+    return true;
+}
+
+static const Argument *word_argument(Reader *reader, const Word *word, size_t index, const char *wanted) {
+    if (index < word->count) return &word->arguments[index];
+    reader_error(reader, word->span, "'%s' needs %s%s", word->text, wanted, index ? " more" : "");
+    return NULL;
+}
+
+static const char *quoted(Reader *reader, const Word *word) { return arena_printf(reader->context->arena, "'%s'", word->text); }
+
+bool word_float(Reader *reader, const Word *word, size_t index, double *out) {
+    const Argument *argument = word_argument(reader, word, index, "a float");
+    if (!argument) return false;
+    if (argument->value.kind == VALUE_FLOAT && isfinite(argument->value.as.number)) {
+        *out = argument->value.as.number;
+        return true;
+    }
+    return argument_float(reader, argument, quoted(reader, word), out);
+}
+
+bool word_int(Reader *reader, const Word *word, size_t index, int *out) {
+    double value;
+    if (!word_float(reader, word, index, &value)) return false;
+    if (value != floor(value) || fabs(value) > 2e9) {
+        reader_error(reader, word->arguments[index].span, "'%s' takes a whole number, found %g", word->text, value);
+        return false;
+    }
+    *out = (int)value;
+    return true;
+}
+
+bool word_vector(Reader *reader, const Word *word, size_t index, Vec3 *out) {
+    const Argument *argument = word_argument(reader, word, index, "a vector");
+    return argument && argument_vector(reader, argument, quoted(reader, word), out);
+}
+
+bool word_color(Reader *reader, const Word *word, size_t index, Color *out) {
+    const Argument *argument = word_argument(reader, word, index, "a colour");
+    return argument && argument_color(reader, argument, quoted(reader, word), out);
+}
+
+bool word_string(Reader *reader, const Word *word, size_t index, const char **out) {
+    const Argument *argument = word_argument(reader, word, index, "a string");
+    if (!argument) return false;
+    if (argument->value.kind != VALUE_STRING) {
+        reader_mismatch(reader, argument->span, quoted(reader, word), "a string", argument->value.kind);
+        return false;
+    }
+    *out = arena_printf(reader->context->arena, "%.*s", (int)argument->value.as.string.length, argument->value.as.string.text);
+    return true;
+}
+
+static void read_flag(Reader *reader, const Word *word, bool *out) {
+    double value = 1;
+    if (word_arguments(reader, word, 0, 1) && (word->count == 0 || word_float(reader, word, 0, &value))) *out = value != 0;
+}
+
+static void read_positive(Reader *reader, const Word *word, double *out) {
+    double value;
+    if (!word_float(reader, word, 0, &value)) return;
+    if (value > 0)
+        *out = value;
+    else
+        reader_error(reader, word->arguments[0].span, "'%s' must be greater than 0, found %g", word->text, value);
+}
+
+static void apply_rule(Reader *reader, const Word *word, const WordRule *rule, void *target) {
+    void *field = (char *)target + rule->offset;
+    bool scalar = rule->shape >= WORD_FLOAT && rule->shape <= WORD_COLOR;
+    if (scalar && !word_arguments(reader, word, 1, 1)) return;
+    switch (rule->shape) {
+    case WORD_FLAG: read_flag(reader, word, field); break;
+    case WORD_FLOAT: word_float(reader, word, 0, field); break;
+    case WORD_POSITIVE: read_positive(reader, word, field); break;
+    case WORD_INT: word_int(reader, word, 0, field); break;
+    case WORD_VECTOR: word_vector(reader, word, 0, field); break;
+    case WORD_COLOR: word_color(reader, word, 0, field); break;
+    case WORD_IGNORED: break;
+    case WORD_INERT: inert_add(reader->context, field, rule->text, word->span); break;
+    case WORD_CUSTOM: rule->handler(reader, word, target); break;
+    }
+}
+
+static const WordRule *find_rule(const WordTable *table, const char *text) {
+    for (size_t i = 0; i < table->count; i++)
+        if (strcmp(table->rules[i].text, text) == 0) return &table->rules[i];
+    return NULL;
+}
+
+/* False after an error: the word stood there before. */
+static bool check_once(Reader *reader, const Word *word, const WordRule *rule) {
+    for (size_t i = 0; i < reader->seen_count; i++)
+        if (reader->seen[i].rule == rule) {
+            Diagnostic *d = reader_error(reader, word->span, "'%s' stands twice in '%s'", word->text, reader->block->word->text);
+            diag_note(reader->context->diags, d, reader->seen[i].span, "first here");
+            return false;
+        }
+    if (reader->seen_count == reader->seen_capacity)
+        arena_list_grow_(reader->context->arena, (void **)&reader->seen, &reader->seen_capacity, reader->seen_count,
+                         sizeof *reader->seen);
+    reader->seen[reader->seen_count].rule = rule;
+    reader->seen[reader->seen_count++].span = word->span;
+    return true;
+}
+
+void reader_unknown_word(Reader *reader, const Word *word) {
+    const char *words[256];
+    size_t count = 0;
+    for (size_t t = 0; t < reader->table_count; t++)
+        for (size_t i = 0; i < reader->tables[t].count && count < VTS_ARRAY_COUNT(words); i++)
+            words[count++] = reader->tables[t].rules[i].text;
+    Diagnostic *d = reader_error(reader, word->span, "'%s' has no meaning in '%s'", word->text, reader->block->word->text);
+    const char *closest = closest_word(word->text, words, count);
+    if (closest) diag_hint(reader->context->diags, d, "did you mean '%s'?", closest);
+}
+
+void reader_word(Reader *reader, const Word *word) {
+    for (size_t t = 0; t < reader->table_count; t++) {
+        const WordRule *rule = find_rule(&reader->tables[t], word->text);
+        if (!rule) continue;
+        if (!rule->once || check_once(reader, word, rule)) apply_rule(reader, word, rule, reader->tables[t].target);
+        return;
+    }
+    reader_unknown_word(reader, word);
+}
+
+static void read_value(Reader *reader, const BlockItem *item) {
+    Argument argument = {item->value, item->span};
+    if (item->value.kind == VALUE_ERROR)
+        reader->failed = true;
+    else if (!reader->on_value || !reader->on_value(reader, &argument, reader->value_target))
+        reader_error(reader, item->span, "%s has no meaning here in '%s'", value_kind_text(item->value.kind),
+                     reader->block->word->text);
+}
+
+bool reader_run(Reader *reader) {
+    const BlockItem *item;
+    while ((item = reader_peek(reader))) {
+        reader->next++;
+        Word word;
+        if (item->kind == ITEM_ENTRY)
+            reader_error(reader, item->span, "an entry [ … ] has no meaning in '%s'", reader->block->word->text);
+        else if (item_as_word(item, &word))
+            reader_word(reader, &word);
+        else
+            read_value(reader, item);
+        if (diag_full(reader->context->diags)) break;
+    }
+    return !reader->failed;
+}

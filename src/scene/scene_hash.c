@@ -1,0 +1,270 @@
+#include "scene/scene_hash.h"
+
+#include <string.h>
+
+/* One number for each type of node, so that nodes of different types with equal bytes differ. */
+enum { KIND_PIGMENT = 1, KIND_FINISH, KIND_TEXTURE, KIND_MESH, KIND_SHAPE, KIND_GEOMETRY, KIND_OBJECT, KIND_LAYER, KIND_TEXEL,
+       KIND_SURFACE, KIND_SKIN };
+
+void hash_add_vec3(Hash128 *hash, Vec3 v) {
+    double components[3] = {v.x + 0.0, v.y + 0.0, v.z + 0.0}; /* -0 becomes 0 */
+    hash_add(hash, components, sizeof components);
+}
+
+void hash_add_color(Hash128 *hash, Color c) {
+    double components[5] = {c.red + 0.0, c.green + 0.0, c.blue + 0.0, c.filter + 0.0, c.transmit + 0.0};
+    hash_add(hash, components, sizeof components);
+}
+
+void hash_add_transform(Hash128 *hash, const Transform *t) {
+    for (int i = 0; i < 3; i++) hash_add_vec3(hash, t->linear.c[i]);
+    hash_add_vec3(hash, t->offset);
+}
+
+static void add_text(Hash128 *hash, const char *text) {
+    hash_add_u64(hash, text ? strlen(text) + 1 : 0);
+    if (text) hash_add(hash, text, strlen(text));
+}
+
+static void add_tape(Hash128 *hash, const Tape *tape) {
+    hash_add_u64(hash, tape != NULL);
+    if (tape) hash_add_hash(hash, tape_hash(tape));
+}
+
+static void add_texture(Hash128 *hash, const Texture *texture) {
+    hash_add_u64(hash, texture != NULL);
+    if (texture) hash_add_hash(hash, texture->hash);
+}
+
+/* A hash of many vectors at once; presence counts. */
+static void add_vectors(Hash128 *hash, const Vec3 *vectors, size_t count) {
+    hash_add_u64(hash, vectors ? count + 1 : 0);
+    if (!vectors) return;
+    for (size_t i = 0; i < count; i++) hash_add_vec3(hash, vectors[i]);
+}
+
+static void add_indices(Hash128 *hash, const uint32_t (*triangles)[3], size_t count) {
+    hash_add_u64(hash, triangles ? count + 1 : 0);
+    if (triangles) hash_add(hash, triangles, count * sizeof *triangles);
+}
+
+void pigment_rehash(Pigment *p) {
+    Hash128 h = hash_begin(KIND_PIGMENT);
+    hash_add_u64(&h, p->kind);
+    hash_add_color(&h, p->color);
+    hash_add_vec3(&h, p->direction);
+    add_tape(&h, p->function);
+    hash_add_u64(&h, p->entry_count);
+    for (size_t i = 0; i < p->entry_count; i++) {
+        hash_add_double(&h, p->entries[i].position);
+        hash_add_color(&h, p->entries[i].color);
+        hash_add_u64(&h, p->entries[i].pigment != NULL);
+        if (p->entries[i].pigment) hash_add_hash(&h, p->entries[i].pigment->hash);
+    }
+    hash_add_vec3(&h, vec3(p->frequency, p->phase, p->mortar));
+    hash_add_vec3(&h, p->turbulence);
+    hash_add_vec3(&h, vec3(p->octaves, p->lambda, p->omega));
+    hash_add_vec3(&h, p->brick_size);
+    hash_add_transform(&h, &p->transform);
+    p->hash = h;
+}
+
+void finish_rehash(Finish *f) {
+    Hash128 h = hash_begin(KIND_FINISH);
+    const double numbers[] = {f->diffuse, f->transmission, f->brilliance, f->specular,       f->roughness,
+                              f->phong,   f->phong_size,   f->metallic,   f->fresnel ? 1 : 0};
+    hash_add_color(&h, f->ambient);
+    hash_add_color(&h, f->emission);
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(numbers); i++) hash_add_double(&h, numbers[i]);
+    hash_add_color(&h, f->reflection_min);
+    hash_add_color(&h, f->reflection_max);
+    f->hash = h;
+}
+
+void texture_rehash(Texture *t) {
+    Hash128 h = hash_begin(KIND_TEXTURE);
+    hash_add_hash(&h, t->pigment->hash);
+    hash_add_hash(&h, t->finish->hash);
+    hash_add_transform(&h, &t->transform);
+    add_texture(&h, t->under);
+    t->hash = h;
+}
+
+void mesh_rehash(MeshData *m) {
+    Hash128 h = hash_begin(KIND_MESH);
+    add_vectors(&h, m->vertices, m->vertex_count);
+    add_vectors(&h, m->normals, m->normal_count);
+    add_vectors(&h, m->uvs, m->uv_count);
+    add_indices(&h, m->triangles, m->triangle_count);
+    add_indices(&h, m->normal_triangles, m->triangle_count);
+    add_indices(&h, m->uv_triangles, m->triangle_count);
+    add_vectors(&h, m->height_vectors, m->vertex_count);
+    add_vectors(&h, m->w_vectors, m->vertex_count);
+    m->hash = h;
+}
+
+static void add_particles(Hash128 *h, const Particle *items, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        const Particle *p = &items[i];
+        hash_add_vec3(h, p->position);
+        hash_add_vec3(h, p->velocity);
+        hash_add_vec3(h, p->acceleration);
+        hash_add_vec3(h, vec3(p->life, p->width_foot, p->width_tip));
+        hash_add_vec3(h, vec3((double)p->profile, p->twist, 0));
+    }
+}
+
+static Hash128 shape_hash(const Object *o) {
+    Hash128 h = hash_begin(KIND_SHAPE);
+    hash_add_u64(&h, o->kind);
+    hash_add_u64(&h, o->inverse);
+    switch (o->kind) {
+    case OBJECT_SPHERE:
+        hash_add_vec3(&h, o->as.sphere.center);
+        hash_add_double(&h, o->as.sphere.radius);
+        break;
+    case OBJECT_BOX:
+        hash_add_vec3(&h, o->as.box.corner1);
+        hash_add_vec3(&h, o->as.box.corner2);
+        break;
+    case OBJECT_CYLINDER:
+    case OBJECT_CONE:
+        hash_add_vec3(&h, o->as.cone.base);
+        hash_add_vec3(&h, o->as.cone.cap);
+        hash_add_vec3(&h, vec3(o->as.cone.base_radius, o->as.cone.cap_radius, o->as.cone.open));
+        break;
+    case OBJECT_PLANE:
+        hash_add_vec3(&h, o->as.plane.normal);
+        hash_add_double(&h, o->as.plane.distance);
+        break;
+    case OBJECT_DISC:
+        hash_add_vec3(&h, o->as.disc.center);
+        hash_add_vec3(&h, o->as.disc.normal);
+        hash_add_vec3(&h, vec3(o->as.disc.radius, o->as.disc.hole_radius, 0));
+        break;
+    case OBJECT_TORUS: hash_add_vec3(&h, vec3(o->as.torus.major_radius, o->as.torus.minor_radius, 0)); break;
+    case OBJECT_TRIANGLES: hash_add_hash(&h, o->as.mesh->hash); break;
+    case OBJECT_UNION:
+    case OBJECT_INTERSECTION:
+    case OBJECT_DIFFERENCE:
+    case OBJECT_MERGE:
+        for (size_t i = 0; i < o->as.children.count; i++)
+            hash_add_hash(&h, object_geometry_hash(o->as.children.items[i]));
+        break;
+    case OBJECT_PARTICLES: add_particles(&h, o->as.particles.items, o->as.particles.count); break;
+    case OBJECT_SURFACE: hash_add_hash(&h, o->as.surface->hash); break;
+    case OBJECT_TEXEL: hash_add_hash(&h, o->as.texel->hash); break;
+    case OBJECT_UNMODELLED: add_text(&h, o->word); break;
+    }
+    return h;
+}
+
+Hash128 object_geometry_hash(const Object *o) {
+    Hash128 h = hash_begin(KIND_GEOMETRY);
+    hash_add_hash(&h, o->shape_hash);
+    hash_add_transform(&h, &o->transform);
+    return h;
+}
+
+static bool has_children(const Object *o) {
+    return o->kind == OBJECT_UNION || o->kind == OBJECT_INTERSECTION || o->kind == OBJECT_DIFFERENCE || o->kind == OBJECT_MERGE;
+}
+
+void object_rehash(Object *o) {
+    o->shape_hash = shape_hash(o);
+    Hash128 h = hash_begin(KIND_OBJECT);
+    hash_add_hash(&h, object_geometry_hash(o));
+    add_texture(&h, o->texture);
+    hash_add_u64(&h, (uint64_t)o->no_shadow | (uint64_t)o->no_image << 1 | (uint64_t)o->hollow << 2);
+    if (has_children(o))
+        for (size_t i = 0; i < o->as.children.count; i++) hash_add_hash(&h, o->as.children.items[i]->hash);
+    if (o->kind == OBJECT_TRIANGLES && o->as.mesh->triangle_textures) {
+        hash_add(&h, o->as.mesh->triangle_textures, o->as.mesh->triangle_count * sizeof(uint32_t));
+        for (size_t i = 0; i < o->as.mesh->texture_count; i++) add_texture(&h, o->as.mesh->textures[i]);
+    }
+    o->hash = h;
+}
+
+void layer_rehash(TexelLayer *layer) {
+    Hash128 h = hash_begin(KIND_LAYER);
+    for (size_t i = 0; i < layer->content_count; i++) hash_add_hash(&h, object_geometry_hash(layer->contents[i]));
+    layer->hash = h;
+}
+
+void texel_rehash(TexelDef *texel) {
+    Hash128 h = hash_begin(KIND_TEXEL);
+    hash_add_vec3(&h, texel->bounds.min);
+    hash_add_vec3(&h, texel->bounds.max);
+    hash_add_u64(&h, (uint64_t)texel->resolution);
+    hash_add_u64(&h, texel->cyclic);
+    hash_add_u64(&h, texel->layer_count);
+    for (size_t i = 0; i < texel->layer_count; i++) {
+        const TexelLayer *layer = &texel->layers[i];
+        hash_add_hash(&h, layer->hash);
+        add_texture(&h, layer->texture);
+        for (size_t k = 0; k < layer->content_count; k++) hash_add_hash(&h, layer->contents[k]->hash);
+    }
+    for (size_t i = 0; i < texel->choice_count; i++) hash_add_hash(&h, texel->choices[i]->hash);
+    texel->hash = h;
+}
+
+void surface_rehash(Surface *s) {
+    Hash128 h = hash_begin(KIND_SURFACE);
+    hash_add_u64(&h, s->kind);
+    if (s->kind == SURFACE_PATCHES) {
+        size_t count = ((size_t)s->nu + 1) * ((size_t)s->nv + 1);
+        hash_add_u64(&h, (uint64_t)s->nu << 32 | (uint64_t)s->nv);
+        add_vectors(&h, s->points, count);
+        add_vectors(&h, s->height_vectors, count);
+    } else {
+        hash_add_hash(&h, object_geometry_hash(s->object));
+        hash_add_u64(&h, s->uv);
+        hash_add_vec3(&h, s->uv_axis);
+        hash_add_u64(&h, (uint64_t)s->subdivide);
+        add_tape(&h, s->deform);
+        add_vectors(&h, s->object_height_vectors,
+                    s->object->kind == OBJECT_TRIANGLES ? s->object->as.mesh->vertex_count : 0);
+    }
+    hash_add_transform(&h, &s->transform);
+    add_texture(&h, s->texture);
+    s->hash = h;
+}
+
+static void add_mapping(Hash128 *h, const SkinMapping *m) {
+    const double numbers[] = {m->by_tile_size, m->repeat_u, m->repeat_v, m->tile_size, m->height, m->w_foot, m->w_tip};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(numbers); i++) hash_add_double(h, numbers[i]);
+    add_tape(h, m->height_function);
+    hash_add_u64(h, m->height_pigment != NULL);
+    if (m->height_pigment) hash_add_hash(h, m->height_pigment->hash);
+    hash_add_vec3(h, m->comb);
+    add_tape(h, m->comb_function);
+    add_tape(h, m->w_function);
+}
+
+static void add_jitter(Hash128 *h, const SkinJitter *j) {
+    const NoiseJitter *noise[] = {&j->coordinates, &j->height, &j->direction};
+    const InstanceJitter *c = &j->instance;
+    for (int i = 0; i < 3; i++) {
+        hash_add_double(h, noise[i]->amplitude);
+        hash_add_double(h, noise[i]->scale);
+    }
+    const double numbers[] = {c->displace, c->rotate, c->scale, c->density};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(numbers); i++) hash_add_double(h, numbers[i]);
+    hash_add_u64(h, (uint64_t)c->present | (uint64_t)c->mirror << 1 | (uint64_t)c->tinted << 2 | (uint64_t)j->seed << 8);
+    hash_add_color(h, c->tint_a);
+    hash_add_color(h, c->tint_b);
+}
+
+void skin_rehash(Skin *skin) {
+    Hash128 h = hash_begin(KIND_SKIN);
+    hash_add_hash(&h, skin->surface->hash);
+    for (size_t i = 0; i < skin->texel_count; i++) {
+        hash_add_hash(&h, skin->texels[i].texel->hash);
+        add_texture(&h, skin->texels[i].texture);
+        hash_add_double(&h, skin->texels[i].density);
+    }
+    add_mapping(&h, &skin->mapping);
+    add_jitter(&h, &skin->jitter);
+    add_texture(&h, skin->texture);
+    skin->hash = h;
+}

@@ -1,4 +1,4 @@
-# What vts stands on. Debian 12 needs three corrections, each explained where it is made.
+# What vts stands on. Debian 12 needs two corrections, each explained where it is made.
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
 find_package(embree 3 REQUIRED)
@@ -11,14 +11,6 @@ if(NOT TARGET GeographicLib::GeographicLib)
   add_library(GeographicLib::GeographicLib ALIAS PkgConfig::GEOGRAPHICLIB)
 endif()
 
-# OpenImageIO: Debian's exported target names an include folder of OpenCV that its package does not depend on, and CMake
-# refuses folders that do not exist; keep those that do.
-find_package(OpenImageIO REQUIRED)
-get_target_property(_oiio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
-set(_oiio_existing "")
-foreach(_folder IN LISTS _oiio_includes)
-  if(_folder MATCHES "^\\$<" OR IS_DIRECTORY "${_folder}")
-    list(APPEND _oiio_existing "${_folder}")
-  endif()
-endforeach()
-set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${_oiio_existing}")
+# OpenImageIO through its .pc file: Debian's exported CMake target names an include folder and a program of packages that
+# the library's own does not depend on, and CMake refuses both.
+pkg_check_modules(OPENIMAGEIO REQUIRED IMPORTED_TARGET OpenImageIO)

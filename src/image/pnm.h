@@ -1,0 +1,22 @@
+/* PFM (Debevec's portable float map) and PNM (P2, P3, P5, P6) in memory: formats so plain that tests and pipes need no
+ * library for them. */
+#ifndef VTS_IMAGE_PNM_H
+#define VTS_IMAGE_PNM_H
+
+#include "image/image.h"
+
+/* Whether a file that begins so is one of ours. */
+bool pnm_recognizes(const unsigned char *data, size_t size);
+
+/* Decodes a whole file as image_load() does; nothing in the data is trusted. `path` is for the errors. */
+bool pnm_decode(Image *image, const unsigned char *data, size_t size, const char *path, ImageReading reading,
+                MemoryBudget *budget, StrBuf *error);
+
+/* The header of a file of `channels` (1 or 3): PFM with little-endian floats, or PGM/PPM with that largest value. */
+void pnm_add_pfm_header(StrBuf *out, int width, int height, int channels);
+void pnm_add_header(StrBuf *out, int width, int height, int channels, int largest);
+/* A row of `count` samples: floats; codes of one byte, or of two with the high byte first. */
+void pnm_add_floats(StrBuf *out, const float *samples, size_t count);
+void pnm_add_codes(StrBuf *out, const uint16_t *codes, size_t count, bool wide);
+
+#endif

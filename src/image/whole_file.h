@@ -1,0 +1,18 @@
+/* Files read and written whole. */
+#ifndef VTS_IMAGE_WHOLE_FILE_H
+#define VTS_IMAGE_WHOLE_FILE_H
+
+#include "base/strbuf.h"
+
+/* Puts a file with this content in the place of `path`: written under a temporary name in the same folder, renamed when
+ * whole. On failure nothing is left, an older file stays, and `error` (may be NULL) gets a line of text. A symbolic
+ * link is followed. */
+bool whole_file_replace(const char *path, const void *data, size_t size, StrBuf *error);
+
+/* Whether whole_file_replace() may succeed: the folder is there and can be written, the name is no folder's. */
+bool whole_file_can_replace(const char *path, StrBuf *error);
+
+/* The content of a file in memory that the caller frees; NULL on failure. */
+unsigned char *whole_file_read(const char *path, size_t *size, StrBuf *error);
+
+#endif

@@ -1,0 +1,197 @@
+#include "texel/voxel_pyramid.h"
+
+#include "base/stopwatch.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { JOB_BRICKS_PER_AXIS = 8 };
+
+typedef struct Build {
+    Pyramid pyramid;
+    VoxelLayer *layer;
+    const TexelBuildOptions *options;
+    TriangleBins bins;
+    PyramidOutput *outputs; /* per job, and one more for the levels above */
+    size_t jobs;
+    VoxelCell **scratch; /* per worker */
+    atomic_flag telling;
+    atomic_size_t done;
+} Build;
+
+/* Marks a level's bricks of which any child brick is marked. */
+static void mark_parents(const VoxelLayer *layer, int level, const uint8_t *below, uint8_t *marks) {
+    const VoxelLevel *child = &layer->level[level - 1], *parent = &layer->level[level];
+    for (int z = 0; z < child->brick_size[2]; z++)
+        for (int y = 0; y < child->brick_size[1]; y++)
+            for (int x = 0; x < child->brick_size[0]; x++) {
+                if (!below[voxel_level_brick_at(child, x, y, z)]) continue;
+                int at[3] = {x, y, z};
+                for (int k = 0; k < 3; k++)
+                    if (voxel_layer_halves(layer, level - 1, k)) at[k] >>= 1;
+                marks[voxel_level_brick_at(parent, at[0], at[1], at[2])] = 1;
+            }
+}
+
+static bool mark_present(Build *b) {
+    for (int i = 0; i < b->layer->levels; i++) {
+        /* The layer's own flags, needed for something else only at the end. */
+        b->pyramid.present[i] = b->layer->level[i].reached =
+            voxel_layer_allocate(b->layer, voxel_level_bricks(&b->layer->level[i]), 1);
+        if (!b->layer->level[i].reached) return false;
+    }
+    for (size_t i = 0; i < b->bins.bricks; i++) b->pyramid.present[0][i] = b->bins.start[i + 1] > b->bins.start[i];
+    for (int i = 1; i < b->layer->levels; i++) mark_parents(b->layer, i, b->pyramid.present[i - 1], b->pyramid.present[i]);
+    return true;
+}
+
+static int choose_job_level(const VoxelLayer *layer) {
+    int level = 0;
+    while (level + 1 < layer->levels &&
+           int_max(layer->level[level].brick_size[0],
+                   int_max(layer->level[level].brick_size[1], layer->level[level].brick_size[2])) > JOB_BRICKS_PER_AXIS)
+        level++;
+    return level;
+}
+
+static bool take_scratch(Build *b) {
+    size_t workers = (size_t)pool_threads(b->options->pool), bytes = TEXEL_MAX_LEVELS * BRICK_VOXELS * sizeof(VoxelCell);
+    b->jobs = voxel_level_bricks(&b->layer->level[b->pyramid.job_level]);
+    b->scratch = calloc(workers, sizeof *b->scratch);
+    b->outputs = calloc(b->jobs + 1, sizeof *b->outputs);
+    b->pyramid.job_cells = calloc(b->jobs, sizeof *b->pyramid.job_cells);
+    if (!b->scratch || !b->outputs || !b->pyramid.job_cells) return false;
+    for (size_t i = 0; i <= b->jobs; i++)
+        b->outputs[i].bricks.memory = b->outputs[i].codes.memory = b->options->memory;
+    for (size_t i = 0; i < workers; i++)
+        if (!(b->scratch[i] = malloc(bytes))) return false;
+    return true;
+}
+
+static void release(Build *b) {
+    for (size_t i = 0; b->outputs && i <= b->jobs; i++) {
+        grow_buffer_free(&b->outputs[i].bricks);
+        grow_buffer_free(&b->outputs[i].codes);
+    }
+    for (size_t i = 0; b->pyramid.job_cells && i < b->jobs; i++) free(b->pyramid.job_cells[i]);
+    for (int i = 0; b->scratch && i < pool_threads(b->options->pool); i++) free(b->scratch[i]);
+    free(b->scratch);
+    free(b->outputs);
+    free(b->pyramid.job_cells);
+    triangle_bins_free(&b->bins, b->options->memory);
+}
+
+static void tell_progress(Build *b) {
+    size_t done = atomic_fetch_add(&b->done, 1) + 1;
+    if (atomic_flag_test_and_set(&b->telling)) return; /* another worker is telling; this step is told with the next */
+    progress_update(b->options->progress, b->options->name ? b->options->name : "texel", done, b->jobs);
+    atomic_flag_clear(&b->telling);
+}
+
+static void run_job(void *context, size_t job, int worker) {
+    Build *b = context;
+    Pyramid *p = &b->pyramid;
+    const VoxelLevel *level = &b->layer->level[p->job_level];
+    if (p->present[p->job_level][job]) {
+        size_t x = (size_t)level->brick_size[0], y = (size_t)level->brick_size[1];
+        const int at[3] = {(int)(job % x), (int)(job / x % y), (int)(job / x / y)};
+        VoxelCell *cells = p->job_cells[job] = calloc(BRICK_VOXELS, sizeof *cells);
+        if (cells) pyramid_build_brick(p, p->job_level, at, false, cells, b->scratch[worker], &b->outputs[job]);
+        else b->outputs[job].bricks.failed = true;
+    }
+    tell_progress(b);
+}
+
+/* The levels above the jobs', if any. */
+static void build_top(Build *b) {
+    const int origin[3] = {0, 0, 0};
+    int top = b->layer->levels - 1;
+    if (top == b->pyramid.job_level || !b->pyramid.present[top][0]) return;
+    VoxelCell *cells = b->scratch[0];
+    memset(cells, 0, BRICK_VOXELS * sizeof *cells);
+    pyramid_build_brick(&b->pyramid, top, origin, true, cells, cells + BRICK_VOXELS, &b->outputs[b->jobs]);
+}
+
+static bool allocate_level(VoxelLayer *layer, VoxelLevel *level) {
+    size_t bricks = voxel_level_bricks(level);
+    level->index = voxel_layer_allocate(layer, bricks, sizeof *level->index);
+    level->bricks = voxel_layer_allocate(layer, level->brick_count, sizeof *level->bricks);
+    level->codes = voxel_layer_allocate(layer, level->code_count, sizeof *level->codes);
+    level->brick_count = level->code_count = 0;
+    if (!level->index || !level->bricks || !level->codes) return false;
+    for (size_t i = 0; i < bricks; i++) level->index[i] = -1;
+    return true;
+}
+
+static uint16_t row_count(uint8_t mask) {
+    int count = 0;
+    for (; mask; mask = (uint8_t)(mask & (mask - 1))) count++;
+    return (uint16_t)count;
+}
+
+static void place_brick(VoxelLevel *level, const BuiltBrick *built, const VoxelCode *codes) {
+    VoxelBrick *brick = &level->bricks[level->brick_count];
+    level->index[built->place] = (int32_t)level->brick_count++;
+    brick->first = (uint32_t)level->code_count;
+    uint16_t before = 0;
+    for (int row = 0; row < BRICK_ROWS; row++) {
+        brick->mask[row] = built->mask[row];
+        brick->before[row] = before;
+        before = (uint16_t)(before + row_count(built->mask[row]));
+    }
+    memcpy(level->codes + level->code_count, codes + built->first, built->count * sizeof *codes);
+    level->code_count += built->count;
+}
+
+/* Puts the jobs' bricks into the layer, in the order of the jobs, whoever ran them. */
+static bool assemble(Build *b) {
+    VoxelLayer *layer = b->layer;
+    for (size_t j = 0; j <= b->jobs; j++) {
+        const BuiltBrick *built = b->outputs[j].bricks.data;
+        if (b->outputs[j].bricks.failed || b->outputs[j].codes.failed) return false;
+        for (size_t i = 0; i < b->outputs[j].bricks.count; i++) {
+            layer->level[built[i].level].brick_count++;
+            layer->level[built[i].level].code_count += built[i].count;
+        }
+    }
+    for (int i = 0; i < layer->levels; i++)
+        if (layer->level[i].code_count >= UINT32_MAX || !allocate_level(layer, &layer->level[i])) return false;
+    for (size_t j = 0; j <= b->jobs; j++) {
+        const BuiltBrick *built = b->outputs[j].bricks.data;
+        for (size_t i = 0; i < b->outputs[j].bricks.count; i++)
+            place_brick(&layer->level[built[i].level], &built[i], b->outputs[j].codes.data);
+        grow_buffer_free(&b->outputs[j].codes);
+    }
+    for (int i = 0; i < layer->levels; i++) voxel_level_mark_reached(&layer->level[i], layer->cyclic);
+    return true;
+}
+
+static bool build(Build *b, const TexelMesh *mesh) {
+    if (!triangle_bins_build(&b->bins, mesh, b->layer, b->options)) return false;
+    b->pyramid = (Pyramid){.mesh = mesh, .layer = b->layer, .bins = &b->bins, .job_level = choose_job_level(b->layer)};
+    if (!mark_present(b) || !take_scratch(b)) return false;
+    if (!pool_run(b->options->pool, b->jobs, run_job, b)) return false;
+    build_top(b);
+    return assemble(b);
+}
+
+static void fill_stats(const VoxelLayer *layer, double seconds, TexelBuildStats *stats) {
+    *stats = (TexelBuildStats){.levels = layer->levels, .bytes = layer->bytes, .seconds = seconds};
+    voxel_layer_size(layer, 0, stats->size);
+    for (int i = 0; i < layer->levels; i++) stats->voxels[i] = layer->level[i].code_count;
+}
+
+VoxelLayer *voxel_layer_build(const TexelMesh *mesh, const TexelBuildOptions *options, TexelBuildStats *stats) {
+    double start = stopwatch_wall();
+    Build b = {.options = options, .layer = voxel_layer_create(options), .telling = ATOMIC_FLAG_INIT};
+    if (!b.layer) return NULL;
+    bool ok = build(&b, mesh);
+    release(&b);
+    if (!ok) {
+        voxel_layer_destroy(b.layer);
+        return NULL;
+    }
+    if (stats) fill_stats(b.layer, stopwatch_wall() - start, stats);
+    return b.layer;
+}

@@ -1,0 +1,134 @@
+#include "texel/voxel_cell.h"
+
+#include <math.h>
+
+static int count_bits(uint64_t x) {
+    x -= x >> 1 & 0x5555555555555555u;
+    x = (x & 0x3333333333333333u) + (x >> 2 & 0x3333333333333333u);
+    x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+    return (int)(x * 0x0101010101010101u >> 56);
+}
+
+float voxel_cell_area(const VoxelCell *cell) {
+    /* Where no ray met a wall the solid is much thinner than the cell: both walls are here. */
+    float once = cell->walls > 0 ? cell->bodies / cell->walls : 0.5f;
+    return cell->sheet + cell->solid * once;
+}
+
+/* One of each two columns, by a pattern of one bit per pair; the result is the low nibble of each row. */
+static uint64_t keep_columns(uint64_t rays, uint64_t pick) {
+    rays &= pick;
+    rays = (rays | rays >> 1) & 0x5555555555555555u;
+    rays = (rays | rays >> 1) & 0x3333333333333333u;
+    return (rays | rays >> 2) & 0x0f0f0f0f0f0f0f0fu;
+}
+
+/* One of each two rows, by a pattern of one byte per pair; the result is the four lowest rows. */
+static uint64_t keep_rows(uint64_t rays, uint64_t pick) {
+    rays &= pick;
+    rays = (rays | rays >> 8) & 0x00ff00ff00ff00ffu;
+    rays = (rays | rays >> 8) & 0x0000ffff0000ffffu;
+    return (rays | rays >> 16) & 0x00000000ffffffffu;
+}
+
+static uint64_t place_rays(uint64_t rays, bool halve_columns, bool halve_rows, int column, int row, int level) {
+    static const uint64_t columns[4] = {0x9a65a95a6a9556a9u, 0x59a6956a96a9a655u, 0xa6596a9559966a9au, 0x65a9569a5a6699a5u};
+    static const uint64_t rows[4] = {0xff0000ff00ffff00u, 0x00ff00ffff00ff00u, 0x00ffff0000ff00ffu, 0xff00ff00ff0000ffu};
+    if (halve_columns) rays = keep_columns(rays, columns[level & 3]) << (4 * column);
+    if (halve_rows) rays = keep_rows(rays, rows[level >> 1 & 3]) << (32 * row);
+    return rays;
+}
+
+static void merge_rays(VoxelCell *parent, const VoxelCell *child, const VoxelMerge *step, const int corner[3], int axis) {
+    int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    bool hu = step->halved[u], hv = step->halved[v];
+    uint64_t cover = place_rays(child->cover[axis], hu, hv, corner[u], corner[v], step->level);
+    uint64_t inside = place_rays(child->inside[axis], hu, hv, corner[u], corner[v], step->level);
+    /* A ray inside a solid in both halves: two walls that were alone are now a pair, one solid fewer. */
+    parent->bodies -= (float)count_bits(parent->inside[axis] & inside) * step->rays[axis];
+    parent->cover[axis] |= cover;
+    parent->inside[axis] ^= inside;
+}
+
+void voxel_cell_merge(VoxelCell *parent, const VoxelCell *child, const VoxelMerge *step, const int corner[3]) {
+    parent->sheet += child->sheet;
+    parent->solid += child->solid;
+    for (int i = 0; i < 6; i++) parent->normals[i] += child->normals[i];
+    parent->walls += child->walls;
+    parent->bodies += child->bodies;
+    for (int axis = 0; axis < 3; axis++) merge_rays(parent, child, step, corner, axis);
+    parent->bodies = float_max(parent->bodies, parent->walls * 0.5f); /* the rays dropped may have had fewer pairs */
+}
+
+/* Eigenvalues of a symmetric matrix by the trigonometric solution of the cubic. */
+static void eigenvalues(const double m[6], double out[3]) {
+    double q = (m[0] + m[1] + m[2]) / 3;
+    double a = m[0] - q, b = m[1] - q, c = m[2] - q;
+    double p2 = (a * a + b * b + c * c + 2 * (m[3] * m[3] + m[4] * m[4] + m[5] * m[5])) / 6, p = sqrt(p2);
+    double det = a * (b * c - m[5] * m[5]) - m[3] * (m[3] * c - m[5] * m[4]) + m[4] * (m[3] * m[5] - b * m[4]);
+    double r = p > 0 ? double_clamp(det / (2 * p2 * p), -1, 1) : 1;
+    double phi = acos(r) / 3;
+    out[0] = q + 2 * p * cos(phi);
+    out[2] = q + 2 * p * cos(phi + 2 * VTS_PI / 3);
+    out[1] = 3 * q - out[0] - out[2];
+}
+
+/* Mean over directions of sqrt(dᵗ S d), from the axis projections (Thomsen's formula; erratum of Neyret 1998 sec. IV-B). */
+static double mean_projection(const double s[3]) {
+    const double p = 1.6075;
+    return pow((pow(s[0], p) + pow(s[1], p) + pow(s[2], p)) / 3, 1 / p);
+}
+
+/* The square root of m, whose eigenvalues' roots are s: by Cayley and Hamilton, (I₁I₂ − I₃)·√m = I₁I₃·1 + (I₁² − I₂)·m − m². */
+static Sym3f square_root(const double m[6], const double s[3], double scale) {
+    double i1 = s[0] + s[1] + s[2], i2 = s[0] * s[1] + s[1] * s[2] + s[2] * s[0], i3 = s[0] * s[1] * s[2];
+    double k = scale / (i1 * i2 - i3), a = k * i1 * i3, b = k * (i1 * i1 - i2);
+    double xx = m[0], yy = m[1], zz = m[2], xy = m[3], xz = m[4], yz = m[5];
+    return (Sym3f){
+        .xx = (float)(a + b * xx - k * (xx * xx + xy * xy + xz * xz)),
+        .yy = (float)(a + b * yy - k * (xy * xy + yy * yy + yz * yz)),
+        .zz = (float)(a + b * zz - k * (xz * xz + yz * yz + zz * zz)),
+        .xy = (float)(b * xy - k * (xx * xy + xy * yy + xz * yz)),
+        .xz = (float)(b * xz - k * (xx * xz + xy * yz + xz * zz)),
+        .yz = (float)(b * yz - k * (xy * xz + yy * yz + yz * zz)),
+    };
+}
+
+static Sym3f unit_root(const VoxelCell *cell) {
+    double m[6], s[3], trace = (double)cell->normals[0] + (double)cell->normals[1] + (double)cell->normals[2];
+    for (int i = 0; i < 6; i++) m[i] = (double)cell->normals[i] / trace;
+    eigenvalues(m, s);
+    double floor = (double)(VOXEL_ROUGHNESS * VOXEL_ROUGHNESS) * s[0];
+    for (int i = 0; i < 3; i++) {
+        m[i] += floor;
+        s[i] = sqrt(double_max(s[i], 0) + floor);
+    }
+    return square_root(m, s, 1 / mean_projection(s));
+}
+
+/* Least squares of T = gamma·max(0, 1 − τ) + (1 − gamma)·exp(−τ) to the rays' coverage along the three axes, for a
+ * crossing of length `side` as rays are marched. */
+static float fit_gamma(const VoxelCell *cell, const Sym3f *root, float density, const float sides[3], float side) {
+    const float projected[3] = {
+        density * sqrtf(root->xx * root->xx + root->xy * root->xy + root->xz * root->xz),
+        density * sqrtf(root->xy * root->xy + root->yy * root->yy + root->yz * root->yz),
+        density * sqrtf(root->xz * root->xz + root->yz * root->yz + root->zz * root->zz),
+    };
+    float above = 0, below = 1e-9f;
+    for (int axis = 0; axis < 3; axis++) {
+        float through = 1 - (float)count_bits(cell->cover[axis]) / 64;
+        if (sides[axis] != side) through = powf(through, side / sides[axis]);
+        float tau = projected[axis], random = 1 - expf(-tau), sheet = float_min(1, tau);
+        above += (1 - through - random) * (sheet - random);
+        below += (sheet - random) * (sheet - random);
+    }
+    return float_clamp(above / below, 0, 1);
+}
+
+VoxelMatter voxel_cell_matter(const VoxelCell *cell, const float sides[3], float side) {
+    VoxelMatter matter = {.root = unit_root(cell)};
+    /* Cauchy: an area is seen as half of itself, on the mean over directions. */
+    matter.density = voxel_cell_area(cell) / (2 * sides[0] * sides[1] * sides[2]) * side;
+    matter.gamma = fit_gamma(cell, &matter.root, matter.density, sides, side);
+    return matter;
+}

@@ -1,0 +1,35 @@
+#include "texel/voxel_code.h"
+
+static uint32_t whole(float x, float lo, float hi) { return (uint32_t)(float_clamp(x, lo, hi) + 0.5f); }
+static uint32_t diagonal(float b) { return whole(b * 127.5f, 0, 255); }
+static uint32_t mixed(float b) { return whole(b * 127.5f + 128, 0, 255); }
+
+static uint32_t density_code(float density) {
+    union {
+        float value;
+        uint32_t bits;
+    } u = {float_clamp(density, 0x1.04p-24f, 0x1.fcp7f)};
+    uint32_t code = (u.bits + (1u << 16) - (103u << 23)) >> 17;
+    return code > VOXEL_DENSITY_LARGEST ? VOXEL_DENSITY_LARGEST : code;
+}
+
+VoxelCode voxel_code_pack(float density, float gamma, const Sym3f *root) {
+    return (VoxelCode){
+        .diagonal = diagonal(root->xx) | diagonal(root->yy) << 8 | diagonal(root->zz) << 16 | mixed(root->xy) << 24,
+        .rest = mixed(root->xz) | mixed(root->yz) << 8 | density_code(density) << VOXEL_DENSITY_SHIFT |
+                whole(gamma * VOXEL_GAMMA_LARGEST, 0, VOXEL_GAMMA_LARGEST) << VOXEL_GAMMA_SHIFT,
+    };
+}
+
+void voxel_code_unpack(VoxelCode code, VoxelSample *out) {
+    float xx = voxel_code_diagonal(code.diagonal, 0), yy = voxel_code_diagonal(code.diagonal, 1);
+    float zz = voxel_code_diagonal(code.diagonal, 2), xy = voxel_code_mixed(code.diagonal, 3);
+    float xz = voxel_code_mixed(code.rest, 0), yz = voxel_code_mixed(code.rest, 1);
+    const float k = VOXEL_CODE_SQUARE;
+    *out = (VoxelSample){
+        .density = voxel_code_density(code.rest),
+        .gamma = voxel_code_gamma(code.rest),
+        .s = {k * (xx * xx + xy * xy + xz * xz), k * (xy * xy + yy * yy + yz * yz), k * (xz * xz + yz * yz + zz * zz),
+              k * (xx * xy + xy * yy + xz * yz), k * (xx * xz + xy * yz + xz * zz), k * (xy * xz + yy * yz + yz * zz)},
+    };
+}

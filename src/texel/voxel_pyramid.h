@@ -1,0 +1,39 @@
+/* The cells of all levels from binned triangles, coded brick by brick. */
+#ifndef VTS_TEXEL_VOXEL_PYRAMID_H
+#define VTS_TEXEL_VOXEL_PYRAMID_H
+
+#include "texel/grow_buffer.h"
+#include "texel/voxel_bin.h"
+#include "texel/voxel_cell.h"
+
+/* A coded brick on its way into the layer; its codes are in the same output, from `first` on. */
+typedef struct BuiltBrick {
+    int level;
+    uint32_t place; /* in the level's index */
+    size_t first, count;
+    uint8_t mask[BRICK_ROWS];
+} BuiltBrick;
+
+typedef struct PyramidOutput {
+    GrowBuffer bricks; /* BuiltBrick */
+    GrowBuffer codes;  /* VoxelCode */
+} PyramidOutput;
+
+/* A part of the pyramid is the tree under one brick: bricks are built from the finest up, and only one brick per level is
+ * in memory as cells. */
+typedef struct Pyramid {
+    const TexelMesh *mesh;
+    const VoxelLayer *layer;
+    const TriangleBins *bins;
+    uint8_t *present[TEXEL_MAX_LEVELS]; /* per brick: some triangle meets it */
+    /* Level whose bricks are built as parallel jobs; their cells are kept for the levels above. */
+    int job_level;
+    VoxelCell **job_cells; /* per brick of job_level: BRICK_VOXELS cells, or NULL */
+} Pyramid;
+
+/* Builds brick `at` of `level` into cells (cleared by the caller) and codes it and all below it. scratch: BRICK_VOXELS
+ * cells for each level below. At the job level of a run from the top, takes the kept cells instead. */
+void pyramid_build_brick(const Pyramid *pyramid, int level, const int at[3], bool from_top, VoxelCell *cells,
+                         VoxelCell *scratch, PyramidOutput *out);
+
+#endif

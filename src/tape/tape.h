@@ -17,6 +17,9 @@ typedef enum TapeOp {
     TAPE_OP_COUNT
 } TapeOp;
 
+#define TAPE_CALL_MAX   8         /* inputs and outputs of an external */
+#define TAPE_LOOP_LIMIT 16777216. /* passes of one sum() or prod(); a longer loop gives NaN */
+
 typedef uint32_t TapeRef; /* a value of the tape under construction */
 typedef struct Tape Tape;
 typedef struct TapeBuilder TapeBuilder;
@@ -24,17 +27,24 @@ typedef struct TapeBuilder TapeBuilder;
 /* A function that is not made of tape operations: a pigment, a spline, a picture. `eval` must be pure and thread-safe. */
 typedef struct TapeExternal {
     const char *name;
-    int input_count, output_count; /* at most 8 each */
+    int input_count, output_count; /* at most TAPE_CALL_MAX each */
     void (*eval)(const void *data, const double *in, double *out);
     const void *data; /* outlives the tape */
     Hash128 hash;     /* of the content */
 } TapeExternal;
 
+/* The printed form of an operation, and how many operands it takes (0: structure, not for tape_unary() and its like). */
+const char *tape_op_text(TapeOp op);
+int tape_op_arity(TapeOp op);
+
 /* The builder and the tape live in `arena`. */
 TapeBuilder *tape_builder_create(Arena *arena, int input_count);
 TapeRef tape_input(TapeBuilder *builder, int index);
 TapeRef tape_constant(TapeBuilder *builder, double value);
-/* `span` is the text that asked for the operation, for messages. Constants are folded; equal instructions are shared. */
+/* Whether the value is known already; *value gets it (may be NaN). */
+bool tape_is_constant(const TapeBuilder *builder, TapeRef ref, double *value);
+/* `span` is the text that asked for the operation, for messages. Constants are folded, with the arithmetic of run time;
+ * equal instructions are shared. `op` must have that arity. */
 TapeRef tape_unary(TapeBuilder *builder, TapeOp op, TapeRef a, Span span);
 TapeRef tape_binary(TapeBuilder *builder, TapeOp op, TapeRef a, TapeRef b, Span span);
 TapeRef tape_ternary(TapeBuilder *builder, TapeOp op, TapeRef a, TapeRef b, TapeRef c, Span span);
@@ -42,22 +52,33 @@ TapeRef tape_ternary(TapeBuilder *builder, TapeOp op, TapeRef a, TapeRef b, Tape
 void tape_inline(TapeBuilder *builder, const Tape *callee, const TapeRef *inputs, TapeRef *outputs);
 void tape_call(TapeBuilder *builder, const TapeExternal *external, const TapeRef *inputs, TapeRef *outputs, Span span);
 /* The language's sum() and prod(): body has the inputs of this tape's `captured` values and, last, the running index; the
- * loop runs i = from, from + 1, … to. */
+ * loop runs i = from, from + 1, … while i ≤ to. No pass gives 0 or 1; more than TAPE_LOOP_LIMIT passes give NaN. */
 TapeRef tape_loop(TapeBuilder *builder, bool product, TapeRef from, TapeRef to, const Tape *body, const TapeRef *captured,
                   int captured_count, Span span);
+/* fbm(perlin, x, y, z, octaves, lacunarity, gain): noise_fbm() as operations. Constant octave counts (at most 64 are used)
+ * unroll; others become a loop. place[3] = x, y, z. */
+TapeRef tape_fbm(TapeBuilder *builder, const TapeRef place[3], TapeRef octaves, TapeRef lacunarity, TapeRef gain,
+                 Span span);
+/* Drops what no output needs. The builder must not be used afterwards. */
 const Tape *tape_finish(TapeBuilder *builder, const TapeRef *outputs, int output_count);
 
 int tape_input_count(const Tape *tape);
 int tape_output_count(const Tape *tape);
+/* Instructions that remain, constants and inputs among them. */
+size_t tape_instruction_count(const Tape *tape);
+/* The text that asked for instruction i. */
+Span tape_instruction_span(const Tape *tape, size_t i);
 Hash128 tape_hash(const Tape *tape);
 /* Doubles that tape_eval() needs as scratch. */
 size_t tape_scratch_size(const Tape *tape);
-/* The reference arithmetic: IEEE doubles. Domain errors give NaN or infinity, as C's functions do. */
+/* The reference arithmetic: IEEE doubles. Domain errors give NaN or infinity, as C's functions do. `out` may be `in`. */
 void tape_eval(const Tape *tape, const double *in, double *out, double *scratch);
-/* Convenience for few evaluations: allocates scratch on the stack or heap itself. */
+/* Convenience for few evaluations: allocates scratch on the stack or heap itself (no memory: NaN). */
 void tape_eval_once(const Tape *tape, const double *in, double *out);
-/* n evaluations; in[i] and out[i] are arrays of n. Equal to tape_eval bit for bit. */
+/* n evaluations; in[i] and out[i] are arrays of n, which must not overlap. Equal to tape_eval bit for bit (which NaN it is
+ * may differ). */
 void tape_eval_batch(const Tape *tape, size_t n, const double *const *in, double *const *out);
+/* One instruction a line: "%3 = mul %1 %2"; at last "return %3". */
 void tape_print(const Tape *tape, StrBuf *out);
 
 #endif

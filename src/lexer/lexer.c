@@ -1,0 +1,250 @@
+#include "lexer/lexer.h"
+
+#include "lexer/match.h"
+
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct TokenBuffer {
+    Token *items;
+    size_t count, capacity;
+} TokenBuffer;
+
+typedef struct Lexer {
+    const SourceFile *file;
+    const KeywordTable *keywords;
+    Arena *arena;
+    DiagList *diags;
+    const char *text;
+    uint32_t at, size;
+    TokenBuffer tokens;
+} Lexer;
+
+static Span span_from(const Lexer *lx, uint32_t begin) { return (Span){lx->file->id, begin, lx->at}; }
+
+static Token *push(Lexer *lx, int kind, uint32_t begin) {
+    Token *t = list_push(lx->arena, &lx->tokens);
+    *t = (Token){.kind = (uint8_t)kind, .span = span_from(lx, begin)};
+    return t;
+}
+
+/* comment = "/" "*" { comment | character } "*" "/" */
+static void skip_block_comment(Lexer *lx) {
+    uint32_t begin = lx->at, depth = 0;
+    do {
+        if (lx->at >= lx->size) {
+            diag_error(lx->diags, (Span){lx->file->id, begin, begin + 2}, "this comment has no end");
+            return;
+        }
+        const char *c = lx->text + lx->at;
+        if (c[0] == '/' && c[1] == '*') depth++, lx->at += 2;
+        else if (c[0] == '*' && c[1] == '/') depth--, lx->at += 2;
+        else lx->at++;
+    } while (depth);
+}
+
+static void skip_blanks(Lexer *lx) {
+    while (lx->at < lx->size) {
+        unsigned char c = (unsigned char)lx->text[lx->at];
+        if (c == '/' && lx->text[lx->at + 1] == '/') {
+            while (lx->at < lx->size && lx->text[lx->at] != '\n') lx->at++;
+        } else if (c == '/' && lx->text[lx->at + 1] == '*') {
+            skip_block_comment(lx);
+        } else if (c <= ' ') {
+            lx->at++;
+        } else {
+            return;
+        }
+    }
+}
+
+static bool is_word_start(char c) { return isalpha((unsigned char)c) || c == '_'; }
+static bool is_word_part(char c) { return isalnum((unsigned char)c) || c == '_'; }
+static bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/* number = (digits ["." [digits]] | "." digits) [("e" | "E") ["+" | "-"] digits] */
+static void lex_number(Lexer *lx) {
+    uint32_t begin = lx->at;
+    const char *text = lx->text;
+    while (is_digit(text[lx->at])) lx->at++;
+    if (text[lx->at] == '.') lx->at++;
+    while (is_digit(text[lx->at])) lx->at++;
+    if (text[lx->at] == 'e' || text[lx->at] == 'E') {
+        uint32_t exponent = lx->at + 1;
+        if (text[exponent] == '+' || text[exponent] == '-') exponent++;
+        if (is_digit(text[exponent])) {
+            lx->at = exponent;
+            while (is_digit(text[lx->at])) lx->at++;
+        }
+    }
+    push(lx, TOKEN_NUMBER, begin)->as.number = strtod(text + begin, NULL);
+}
+
+static void add_utf8(StrBuf *out, unsigned code) {
+    if (code < 0x80) {
+        strbuf_addc(out, (char)code);
+    } else if (code < 0x800) {
+        strbuf_addc(out, (char)(0xC0 | code >> 6));
+        strbuf_addc(out, (char)(0x80 | (code & 0x3F)));
+    } else {
+        strbuf_addc(out, (char)(0xE0 | code >> 12));
+        strbuf_addc(out, (char)(0x80 | (code >> 6 & 0x3F)));
+        strbuf_addc(out, (char)(0x80 | (code & 0x3F)));
+    }
+}
+
+static int hex_digit(char c) {
+    return is_digit(c) ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+}
+
+/* "\u" with up to four hexadecimal digits; false when there is none. */
+static bool unicode_escape(Lexer *lx, StrBuf *out) {
+    unsigned code = 0;
+    int digits = 0;
+    for (; digits < 4 && hex_digit(lx->text[lx->at]) >= 0; digits++, lx->at++)
+        code = code * 16 + (unsigned)hex_digit(lx->text[lx->at]);
+    if (digits == 0 || code == 0) return false;
+    add_utf8(out, code);
+    return true;
+}
+
+static void lex_escape(Lexer *lx, StrBuf *out) {
+    static const char letters[] = "abfnrtv0\\'\"", meant[] = "\a\b\f\n\r\t\v\0\\'\"";
+    uint32_t begin = lx->at++;
+    char c = lx->text[lx->at];
+    const char *found = c ? strchr(letters, c) : NULL;
+    if (found && c != '0') {
+        strbuf_addc(out, meant[found - letters]);
+        lx->at++;
+    } else if (c == 'u') {
+        lx->at++;
+        if (!unicode_escape(lx, out)) diag_error(lx->diags, span_from(lx, begin), "\\u needs hexadecimal digits");
+    } else {
+        if (lx->at < lx->size) lx->at++;
+        Diagnostic *d = diag_error(lx->diags, span_from(lx, begin), "unknown escape in a string");
+        diag_hint(lx->diags, d, "a backslash itself is written \\\\");
+    }
+}
+
+/* string = '"' { character | escape } '"': may go over several lines, but one that never ends is blamed on its start. */
+static void lex_string(Lexer *lx) {
+    uint32_t begin = lx->at++;
+    StrBuf decoded = {0};
+    while (lx->at < lx->size && lx->text[lx->at] != '"') {
+        if (lx->text[lx->at] == '\\') lex_escape(lx, &decoded);
+        else strbuf_addc(&decoded, lx->text[lx->at++]);
+    }
+    if (lx->at >= lx->size) {
+        const char *eol = memchr(lx->text + begin, '\n', lx->size - begin);
+        uint32_t end = eol ? (uint32_t)(eol - lx->text) : lx->size;
+        diag_error(lx->diags, (Span){lx->file->id, begin, end}, "this string has no closing quote");
+    } else {
+        lx->at++;
+    }
+    TokenString *string = arena_new(lx->arena, TokenString);
+    string->length = decoded.size;
+    string->text = decoded.size ? arena_copy(lx->arena, decoded.data, decoded.size + 1) : "";
+    strbuf_free(&decoded);
+    push(lx, TOKEN_STRING, begin)->as.string = string;
+}
+
+static Name take_word(Lexer *lx) {
+    uint32_t begin = lx->at;
+    while (is_word_part(lx->text[lx->at])) lx->at++;
+    return intern(lx->keywords->names, lx->text + begin, lx->at - begin);
+}
+
+static void lex_word(Lexer *lx) {
+    uint32_t begin = lx->at;
+    Name name = take_word(lx);
+    Token *t = push(lx, TOKEN_WORD, begin);
+    t->as.name = name;
+    t->keyword = (uint16_t)keyword_of(lx->keywords, name);
+}
+
+/* directive = "#" word: blanks and line ends may stand between. */
+static void lex_directive(Lexer *lx) {
+    uint32_t begin = lx->at++;
+    skip_blanks(lx);
+    if (!is_word_start(lx->text[lx->at])) {
+        diag_error(lx->diags, (Span){lx->file->id, begin, begin + 1}, "a directive's word must follow '#'");
+        return;
+    }
+    Name name = take_word(lx);
+    Keyword keyword = keyword_of(lx->keywords, name);
+    Token *t = push(lx, TOKEN_DIRECTIVE, begin);
+    t->as.name = name;
+    t->keyword = keyword_is_directive(keyword) ? (uint16_t)keyword : KW_NONE;
+}
+
+static void lex_symbol(Lexer *lx) {
+    uint32_t begin = lx->at;
+    char c = lx->text[lx->at++], next = lx->text[lx->at];
+    int kind = c;
+    if (c == '<' && next == '=') kind = TOKEN_LESS_EQUAL;
+    else if (c == '>' && next == '=') kind = TOKEN_GREATER_EQUAL;
+    else if (c == '!' && next == '=') kind = TOKEN_NOT_EQUAL;
+    if (kind != c) lx->at++;
+    push(lx, kind, begin);
+}
+
+/* A run of bytes that no token begins with: kept as one token '$', so that text which a branch skips may hold anything and what is
+ * not skipped is an error where it is read. */
+static void lex_unknown(Lexer *lx) {
+    uint32_t begin = lx->at++;
+    while (lx->at < lx->size && (unsigned char)lx->text[lx->at] >= 0x80) lx->at++;
+    push(lx, '$', begin);
+}
+
+static void lex_one(Lexer *lx) {
+    char c = lx->text[lx->at];
+    if (is_digit(c) || (c == '.' && is_digit(lx->text[lx->at + 1]))) lex_number(lx);
+    else if (is_word_start(c)) lex_word(lx);
+    else if (c == '"') lex_string(lx);
+    else if (c == '#') lex_directive(lx);
+    else if (strchr("+-*/^!=<>&|?:.,;()[]{}", c)) lex_symbol(lx);
+    else lex_unknown(lx);
+}
+
+TokenList *lexer_run(const SourceFile *file, const KeywordTable *keywords, Arena *arena, DiagList *diags) {
+    Lexer lx = {.file = file, .keywords = keywords, .arena = arena, .diags = diags, .text = file->text, .size = file->size};
+    if (lx.size >= 3 && memcmp(lx.text, "\xEF\xBB\xBF", 3) == 0) lx.at = 3;
+    for (skip_blanks(&lx); lx.at < lx.size; skip_blanks(&lx)) lex_one(&lx);
+    push(&lx, TOKEN_END, lx.at);
+    TokenList *list = arena_new(arena, TokenList);
+    *list = (TokenList){.file = file, .items = lx.tokens.items, .count = (uint32_t)lx.tokens.count};
+    list->balanced = token_match(lx.tokens.items, (uint32_t)lx.tokens.count, arena);
+    return list;
+}
+
+const char *token_describe(const Token *token, Arena *arena) {
+    switch (token->kind) {
+    case TOKEN_END: return "the end";
+    case TOKEN_NUMBER: return arena_printf(arena, "the number %g", token->as.number);
+    case TOKEN_STRING: return "a string";
+    case TOKEN_WORD: return arena_printf(arena, "'%s'", token->as.name->text);
+    case TOKEN_DIRECTIVE: return arena_printf(arena, "'#%s'", token->as.name->text);
+    case TOKEN_VALUE: return "a value";
+    case TOKEN_LESS_EQUAL: return "'<='";
+    case TOKEN_GREATER_EQUAL: return "'>='";
+    case TOKEN_NOT_EQUAL: return "'!='";
+    case '$': return "a character that the language does not use";
+    default: return arena_printf(arena, "'%c'", token->kind);
+    }
+}
+
+void lexer_print(const TokenList *tokens, SourceSet *sources, StrBuf *out) {
+    static const char *const kinds[] = {"end", "number", "string", "word", "directive", "value"};
+    for (uint32_t i = 0; i < tokens->count; i++) {
+        const Token *t = &tokens->items[i];
+        SourcePlace place = source_locate(sources, t->span);
+        const char *kind = t->kind < VTS_ARRAY_COUNT(kinds) ? kinds[t->kind] : "symbol";
+        if (t->kind == TOKEN_WORD && t->keyword) kind = "keyword";
+        strbuf_addf(out, "%u:%u %s ", place.line, place.column, kind);
+        if (t->kind == TOKEN_NUMBER) strbuf_addf(out, "%.17g", t->as.number);
+        else if (t->kind == TOKEN_STRING) strbuf_add_json(out, t->as.string->text);
+        else strbuf_add(out, tokens->file->text + t->span.begin, t->span.end - t->span.begin);
+        strbuf_addc(out, '\n');
+    }
+}

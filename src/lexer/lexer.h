@@ -1,0 +1,35 @@
+/* From text to tokens. */
+#ifndef VTS_LEXER_LEXER_H
+#define VTS_LEXER_LEXER_H
+
+#include "lexer/token.h"
+
+/* The reserved words as names of one interner. */
+typedef struct KeywordTable {
+    Interner *names;
+    uint16_t *by_id; /* Keyword of the name with this id, KW_NONE for ids that are none */
+    uint32_t count;
+    Name name_of[KW_COUNT];
+} KeywordTable;
+
+/* Interns the reserved words, so that from here on a keyword is known by its name's id. The table lives in `arena`. */
+void keyword_table_init(KeywordTable *table, Interner *names, Arena *arena);
+static inline Keyword keyword_of(const KeywordTable *table, Name name) {
+    return name->id < table->count ? (Keyword)table->by_id[name->id] : KW_NONE;
+}
+KeywordClass keyword_class(Keyword keyword);
+/* The word's text; "" for KW_NONE. */
+const char *keyword_text(Keyword keyword);
+/* Whether the word means something after #. */
+bool keyword_is_directive(Keyword keyword);
+
+/* All tokens of a file, in `arena`. Errors (unknown characters, strings and comments that do not end, words after # that are no
+ * directive) are reported to `diags` and left out of the tokens. */
+TokenList *lexer_run(const SourceFile *file, const KeywordTable *keywords, Arena *arena, DiagList *diags);
+
+/* One token a line: place, kind, text. */
+void lexer_print(const TokenList *tokens, SourceSet *sources, StrBuf *out);
+/* What a token is called in messages: "'+'", "the number 3", "'sphere'", "the end of the file". */
+const char *token_describe(const Token *token, Arena *arena);
+
+#endif

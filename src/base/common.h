@@ -2,6 +2,7 @@
 #ifndef VTS_BASE_COMMON_H
 #define VTS_BASE_COMMON_H
 
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -19,6 +20,7 @@
 #endif
 
 #define VTS_PI      3.14159265358979323846
+#define VTS_INFINITY ((double)INFINITY)
 #define VTS_RADIANS (VTS_PI / 180.0) /* degrees times this are radians */
 
 static inline double double_min(double a, double b) { return a < b ? a : b; }

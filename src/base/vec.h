@@ -138,7 +138,7 @@ static inline Vec3 transform_vector_back(const Transform *t, Vec3 v) { return ma
 static inline Vec3 transform_normal(const Transform *t, Vec3 n) { return mat3_apply_transposed(&t->inverse_linear, n); }
 
 static inline Box3 box3_empty(void) {
-    return (Box3){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    return (Box3){{VTS_INFINITY, VTS_INFINITY, VTS_INFINITY}, {-VTS_INFINITY, -VTS_INFINITY, -VTS_INFINITY}};
 }
 static inline bool box3_is_empty(Box3 b) { return !(b.min.x <= b.max.x && b.min.y <= b.max.y && b.min.z <= b.max.z); }
 static inline Box3 box3_add_point(Box3 b, Vec3 p) { return (Box3){vec3_min(b.min, p), vec3_max(b.max, p)}; }

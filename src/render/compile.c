@@ -1,0 +1,114 @@
+#include "render/compile.h"
+
+#include "base/stopwatch.h"
+
+#include <string.h>
+
+Cone view_cone(const View *view, double x, double y, double width_px) {
+    const Camera *c = &view->camera;
+    double s = x / view->width - 0.5, t = 0.5 - y / view->height;
+    Vec3 offset = vec3_madd(vec3_scale(c->right, s), c->up, t);
+    double pixel_area = vec3_length(vec3_cross(c->right, c->up)) / ((double)view->width * view->height);
+    if (c->kind == CAMERA_ORTHOGRAPHIC)
+        return (Cone){vec3_add(c->location, offset), vec3_normalize(c->direction), sqrt(pixel_area) * width_px, 0};
+    Vec3 d = vec3_add(c->direction, offset);
+    double length = vec3_length(d);
+    /* The pixel's solid angle: its area on the image plane, foreshortened, over the distance squared. */
+    Vec3 axis = vec3_normalize(vec3_cross(c->right, c->up));
+    double cosine = fabs(vec3_dot(axis, d)) / length;
+    return (Cone){c->location, vec3_scale(d, 1 / length), 0, sqrt(pixel_area * cosine) / length * width_px};
+}
+
+/* A texel placed as an object is a skin of one tile over the bottom of its box. */
+static const Skin *skin_of_texel(const Object *object, const Transform *to_world, const Texture *texture, Arena *arena) {
+    Box3 b = object->as.texel->bounds;
+    Vec3 *points = arena_new_array(arena, Vec3, 4), *heights = arena_new_array(arena, Vec3, 4);
+    for (int i = 0; i < 4; i++) {
+        points[i] = transform_point(to_world, vec3(i & 2 ? b.max.x : b.min.x, b.min.y, i & 1 ? b.max.z : b.min.z));
+        heights[i] = transform_vector(to_world, vec3(0, b.max.y - b.min.y, 0));
+    }
+    Surface *surface = arena_new(arena, Surface);
+    *surface = (Surface){.span = object->span, .kind = SURFACE_PATCHES, .nu = 1, .nv = 1, .points = points,
+                         .height_vectors = heights, .transform = transform_identity()};
+    SkinTexel *texel = arena_new(arena, SkinTexel);
+    *texel = (SkinTexel){.span = object->span, .texel = object->as.texel, .texture = texture, .density = 1};
+    Skin *skin = arena_new(arena, Skin);
+    *skin = (Skin){.span = object->span, .surface = surface, .texels = texel, .texel_count = 1,
+                   .mapping = {.repeat_u = 1, .repeat_v = 1, .height = 1, .w_tip = 1}};
+    return skin;
+}
+
+typedef struct SkinList {
+    const Skin **items;
+    size_t count, capacity;
+} SkinList;
+
+static void find_placed_texels(const Object *object, const Transform *parent, const Texture *inherited, Arena *arena, SkinList *out) {
+    Transform to_world = transform_then(&object->transform, parent);
+    const Texture *texture = object->texture ? object->texture : inherited;
+    if (object->kind == OBJECT_TEXEL) *list_push(arena, out) = skin_of_texel(object, &to_world, texture, arena);
+    if (object->kind == OBJECT_UNION || object->kind == OBJECT_MERGE)
+        for (size_t i = 0; i < object->as.children.count; i++)
+            find_placed_texels(object->as.children.items[i], &to_world, texture, arena, out);
+}
+
+static Quadrature quadrature_of(const char *name) {
+    if (name && strcmp(name, "grid16") == 0) return QUADRATURE_GRID16;
+    if (name && strcmp(name, "ring16") == 0) return QUADRATURE_RING16;
+    return QUADRATURE_RING8;
+}
+
+static OpacityModel opacity_of(const char *name) {
+    if (name && strcmp(name, "mean") == 0) return OPACITY_MEAN;
+    if (name && strcmp(name, "exponential") == 0) return OPACITY_EXPONENTIAL;
+    return OPACITY_CORRELATED;
+}
+
+CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, Arena *arena, DiagList *diags, CompiledScene *out) {
+    double start = stopwatch_wall();
+    size_t errors = diags->error_count;
+    *out = (CompiledScene){.scene = scene, .arena = arena, .view = {.camera = scene->camera, .width = options->width, .height = options->height}};
+    out->quadrature = quadrature_of(scene->settings.quadrature);
+    out->shadow_aperture = scene->settings.shadow_aperture;
+    OpacityModel opacity = opacity_of(scene->settings.opacity_model);
+    out->march = (MarchSettings){.opacity = opacity, .voxel_width = 1, .step = 1};
+    out->shadow_march = out->march;
+    out->hierarchy = hierarchy_build(scene, arena, diags);
+    if (!out->hierarchy) return COMPILE_FAILED;
+    SkinList skins = {0};
+    for (size_t i = 0; i < scene->skin_count; i++) *list_push(arena, &skins) = scene->skins[i];
+    Transform identity = transform_identity();
+    for (size_t i = 0; i < scene->object_count; i++) find_placed_texels(scene->objects[i], &identity, NULL, arena, &skins);
+    out->skins = arena_new_array(arena, CompiledSkin, skins.count);
+    for (size_t i = 0; i < skins.count; i++) {
+        bool ok = skin_compile(skins.items[i], options, out, diags, &out->skins[out->skin_count]);
+        if (options->interrupted && *options->interrupted) return COMPILE_INTERRUPTED;
+        if (ok) out->skin_count++;
+    }
+    out->build_seconds = stopwatch_wall() - start;
+    return diags->error_count > errors ? COMPILE_FAILED : COMPILE_OK;
+}
+
+void compiled_scene_destroy(CompiledScene *compiled) {
+    for (size_t i = 0; i < compiled->skin_count; i++) cell_tree_destroy(compiled->skins[i].tree);
+    for (size_t i = 0; i < compiled->texel_count; i++)
+        for (size_t k = 0; k < compiled->texels[i]->matter_count; k++) voxel_layer_destroy(compiled->texels[i]->matter[k].voxels);
+    hierarchy_destroy(compiled->hierarchy);
+    compiled->skin_count = compiled->texel_count = 0;
+    compiled->hierarchy = NULL;
+}
+
+void compiled_scene_print(const CompiledScene *compiled, StrBuf *out) {
+    strbuf_addf(out, "explicit parts %zu\n", hierarchy_object_count(compiled->hierarchy));
+    for (size_t i = 0; i < compiled->texel_count; i++) {
+        const BuiltTexel *t = compiled->texels[i];
+        strbuf_addf(out, "texel %s asked %d needed %d built %d layers %zu voxels %zu bytes %zu\n", t->def->name, t->asked,
+                    t->needed, t->built, t->matter_count, t->voxel_count, t->bytes);
+    }
+    for (size_t i = 0; i < compiled->skin_count; i++) {
+        const CompiledSkin *s = &compiled->skins[i];
+        strbuf_addf(out, "skin cells %zu texels %zu top %.4g bounds <%.4g, %.4g, %.4g> <%.4g, %.4g, %.4g>\n", s->cell_count,
+                    s->texel_count, s->top, s->bounds.min.x, s->bounds.min.y, s->bounds.min.z, s->bounds.max.x,
+                    s->bounds.max.y, s->bounds.max.z);
+    }
+}

@@ -1,0 +1,59 @@
+/* From the scene graph to what rays can be traced against: hierarchies, built texels, skins, lights. */
+#ifndef VTS_RENDER_COMPILE_H
+#define VTS_RENDER_COMPILE_H
+
+#include "base/diag.h"
+#include "base/pool.h"
+#include "base/progress.h"
+#include "render/hierarchy.h"
+#include "render/skin.h"
+#include "render/skin_march.h"
+
+/* What one frame asks of the compiled scene: its camera as cones. */
+typedef struct View {
+    Camera camera;
+    int width, height;   /* of the whole picture, pixels */
+    double pixel_spread; /* growth of a pixel's cone per unit length at the centre of the picture */
+} View;
+
+typedef struct CompileOptions {
+    Pool *pool;
+    MemoryBudget *memory;
+    const Progress *progress;
+    int width, height;
+    const volatile bool *interrupted;
+} CompileOptions;
+
+typedef struct CompiledScene {
+    const Scene *scene;
+    Arena *arena;
+    View view;
+    Hierarchy *hierarchy; /* explicit objects */
+    CompiledSkin *skins;
+    size_t skin_count;
+    BuiltTexel **texels;  /* every texel built, for the report */
+    size_t texel_count;
+    MarchSettings march, shadow_march;
+    Quadrature quadrature;
+    double shadow_aperture;
+    double build_seconds;
+} CompiledScene;
+
+typedef enum CompileStatus { COMPILE_OK, COMPILE_FAILED /* see diags */, COMPILE_INTERRUPTED } CompileStatus;
+
+/* `arena` owns the result but for the voxels and hierarchies: compiled_scene_destroy() releases those. */
+CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, Arena *arena, DiagList *diags, CompiledScene *out);
+void compiled_scene_destroy(CompiledScene *compiled);
+void compiled_scene_print(const CompiledScene *compiled, StrBuf *out);
+
+/* The cone through the picture's point (x, y), in pixels from the upper left corner; `width_px` is its width in pixels. */
+Cone view_cone(const View *view, double x, double y, double width_px);
+
+/* ---- parts, for compile.c ---- */
+
+/* Builds the texels that a skin uses, as finely as the view can see them. skin_build.c */
+bool skin_compile(const Skin *skin, const CompileOptions *options, CompiledScene *compiled, DiagList *diags, CompiledSkin *out);
+/* The built texel of a definition: from those already built for this scene when one is fine enough. */
+BuiltTexel *texel_build(const TexelDef *def, int needed, const CompileOptions *options, CompiledScene *compiled, DiagList *diags);
+
+#endif

@@ -1,0 +1,288 @@
+#include "render/integrate.h"
+
+#include "pattern/pattern.h"
+
+#include <string.h>
+
+/* Matter met along the cone, shaded but for shadows. */
+struct ShadeRecord {
+    float weight;     /* transmittance before × opacity of the segment */
+    double t;
+    float voxel_world;
+    uint32_t skin;
+    SkinPoint point;
+    Vec3f ambient;    /* light that no shadow takes away */
+};
+
+/* A segment that lets less than this through ends the march: one step of 8-bit pictures, four times over. */
+static const float OPAQUE_BELOW = 1.0f / 1024;
+/* Light that shadows could take away is tested where it makes more than this of a pixel. */
+static const float SHADOW_WORTH = 1.0f / 1024;
+enum { MOST_SHADOW_POINTS = 4 };
+
+void tracer_init(Tracer *tracer, const CompiledScene *compiled, Arena *arena) {
+    size_t skins = compiled->skin_count + 1; /* never zero */
+    *tracer = (Tracer){.compiled = compiled,
+                       .marches = arena_new_array(arena, SkinMarch, skins),
+                       .shadow_marches = arena_new_array(arena, SkinMarch, skins),
+                       .segments = arena_new_array(arena, SkinSegment, skins),
+                       .has_segment = arena_new_array(arena, bool, skins),
+                       .records = arena_new_array(arena, ShadeRecord, MOST_SHADE_RECORDS),
+                       .direct = arena_new_array(arena, Vec3f, MOST_SHADE_RECORDS * (compiled->scene->light_count + 1))};
+}
+
+/* ---- lights ---- */
+
+typedef struct LightRay {
+    Vec3 direction;  /* unit, towards the light */
+    double distance; /* VTS_INFINITY for parallel light */
+    Vec3f color;     /* arriving, unshadowed */
+} LightRay;
+
+static double spot_factor(const Light *light, Vec3 to_light) {
+    Vec3 axis = vec3_normalize(vec3_sub(light->point_at, light->location));
+    double cosine = -vec3_dot(axis, to_light);
+    double inner = cos(light->radius * VTS_RADIANS), outer = cos(light->falloff * VTS_RADIANS);
+    if (cosine <= outer) return 0;
+    double edge = 1;
+    if (cosine < inner) { /* POV-Ray's cubic between falloff and radius */
+        double x = (cosine - outer) / (inner - outer);
+        edge = x * x * (3 - 2 * x);
+    }
+    return edge * (light->tightness > 0 ? pow(cosine, light->tightness) : 1);
+}
+
+static LightRay light_ray(const Light *light, Vec3 point) {
+    LightRay ray = {.color = vec3f_from_color(light->color)};
+    if (light->kind == LIGHT_PARALLEL) {
+        ray.direction = light->to_light;
+        ray.distance = VTS_INFINITY;
+        return ray;
+    }
+    Vec3 to = vec3_sub(light->location, point);
+    ray.distance = vec3_length(to);
+    ray.direction = ray.distance > 0 ? vec3_scale(to, 1 / ray.distance) : vec3(0, 1, 0);
+    double factor = 1;
+    if (light->fade_power > 0 && light->fade_distance > 0)
+        factor = 2 / (1 + pow(ray.distance / light->fade_distance, light->fade_power));
+    if (light->kind == LIGHT_SPOT) factor *= spot_factor(light, ray.direction);
+    ray.color = vec3f_scale(ray.color, (float)factor);
+    return ray;
+}
+
+/* ---- shadows ---- */
+
+/* The share of light that comes through all skins along the cone; starts at `point` of skin `own` (own < 0: anywhere). */
+static float skin_transmittance(Tracer *tr, const Cone *cone, double t_max, int own, const SkinPoint *point, double offset) {
+    const CompiledScene *scene = tr->compiled;
+    float transmittance = 1;
+    for (size_t i = 0; i < scene->skin_count && transmittance > OPAQUE_BELOW; i++) {
+        SkinMarch *march = &tr->shadow_marches[i];
+        if ((int)i == own) {
+            skin_march_begin_at(march, &scene->skins[i], cone, point, 0, t_max, &scene->shadow_march, &tr->counters, false);
+            skin_march_skip(march, offset);
+        } else {
+            skin_march_begin(march, &scene->skins[i], cone, 0, t_max, &scene->shadow_march, &tr->counters, false);
+        }
+        SkinSegment segment;
+        while (transmittance > OPAQUE_BELOW && skin_march_next(march, &segment)) transmittance *= segment.transmittance;
+    }
+    return transmittance > OPAQUE_BELOW ? transmittance : 0;
+}
+
+/* `width` is that of the eye's cone at the point; `start` the distance from it at which shadows begin. */
+static float visibility(Tracer *tr, const Light *light, const LightRay *ray, Vec3 point, double width, double spread, int own,
+                        const SkinPoint *at, double offset, double start) {
+    if (light->shadowless) return 1;
+    tr->counters.shadow_rays++;
+    Ray explicit_ray = {point, ray->direction};
+    if (hierarchy_occluded(tr->compiled->hierarchy, &explicit_ray, start, ray->distance)) return 0;
+    double aperture = tr->compiled->shadow_aperture;
+    Cone cone = {point, ray->direction, width * aperture, spread * aperture};
+    return skin_transmittance(tr, &cone, ray->distance, own, at, offset);
+}
+
+/* ---- matter of skins ---- */
+
+static Vec3 place_in_bounds(const MatterHit *hit) {
+    Box3 b = hit->texel->def->bounds;
+    Vec3 size = vec3_sub(b.max, b.min);
+    return vec3_add(b.min, vec3_mul(size, vec3_from_f(hit->place)));
+}
+
+/* Shades a segment for all lights; returns the light that needs no shadow test. */
+static Vec3f shade_segment(const Tracer *tr, const Cone *cone, const SkinSegment *segment, const LightRay *rays, Vec3f *direct) {
+    size_t lights = tr->compiled->scene->light_count;
+    Vec3f ambient = {0, 0, 0}, view = vec3f_from(vec3_negate(cone->direction));
+    memset(direct, 0, lights * sizeof *direct);
+    for (int i = 0; i < segment->hit_count; i++) {
+        const MatterHit *hit = &segment->hits[i];
+        const Look *look = hit->look;
+        Vec3f color = look->uniform ? look->color
+                                    : look_color(look, place_in_bounds(hit), cone->direction, (double)segment->voxel_world);
+        color = vec3f_mul(color, hit->tint);
+        ambient = vec3f_madd(ambient, vec3f_add(vec3f_mul(look->ambient, color), vec3f_mul(look->emission, color)), hit->share);
+        for (size_t l = 0; l < lights; l++) {
+            NdfShade shade = ndf_shade(tr->compiled->quadrature, &hit->s, view, vec3f_from(rays[l].direction), &look->sheet);
+            Vec3f tone = vec3f_scale(color, shade.diffuse);
+            Vec3f metal = vec3f_add(vec3f_scale(color, look->metallic), vec3f_scale(vec3f(1, 1, 1), 1 - look->metallic));
+            tone = vec3f_madd(tone, metal, shade.highlight);
+            direct[l] = vec3f_madd(direct[l], vec3f_mul(tone, rays[l].color), hit->share);
+        }
+    }
+    return ambient;
+}
+
+/* Follows the cone through all skins at once, nearest segment first; returns how many records were made. */
+static size_t gather(Tracer *tr, const Cone *cone, double t_max, float *transmittance) {
+    const CompiledScene *scene = tr->compiled;
+    size_t lights = scene->scene->light_count, count = 0;
+    LightRay rays[64];
+    for (size_t i = 0; i < scene->skin_count; i++) {
+        skin_march_begin(&tr->marches[i], &scene->skins[i], cone, 0, t_max, &scene->march, &tr->counters, true);
+        tr->has_segment[i] = skin_march_next(&tr->marches[i], &tr->segments[i]);
+    }
+    *transmittance = 1;
+    while (count < MOST_SHADE_RECORDS && *transmittance > OPAQUE_BELOW) {
+        int nearest = -1;
+        for (size_t i = 0; i < scene->skin_count; i++)
+            if (tr->has_segment[i] && (nearest < 0 || tr->segments[i].t0 < tr->segments[nearest].t0)) nearest = (int)i;
+        if (nearest < 0) break;
+        const SkinSegment *segment = &tr->segments[nearest];
+        ShadeRecord *record = &tr->records[count];
+        double t = (segment->t0 + segment->t1) / 2;
+        Vec3 point = cone_point(cone, t);
+        for (size_t l = 0; l < lights && l < VTS_ARRAY_COUNT(rays); l++) rays[l] = light_ray(&scene->scene->lights[l], point);
+        *record = (ShadeRecord){.weight = *transmittance * (1 - segment->transmittance), .t = t, .voxel_world = segment->voxel_world,
+                                .skin = (uint32_t)nearest, .point = segment->point};
+        record->ambient = shade_segment(tr, cone, segment, rays, &tr->direct[count * (lights + 1)]);
+        *transmittance *= segment->transmittance;
+        count++;
+        tr->has_segment[nearest] = skin_march_next(&tr->marches[nearest], &tr->segments[nearest]);
+    }
+    if (*transmittance <= OPAQUE_BELOW) *transmittance = 0;
+    return count;
+}
+
+static float luminance(Vec3f c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+
+/* Light of one source over the records with shadows. Visibility is found at a few records, at equal shares of the light
+ * that is to be tested, and interpolated over that share in between: neighbours along a cone have nearly the same shadow. */
+static Vec3f add_shadowed(Tracer *tr, const Cone *cone, size_t count, size_t light_index) {
+    const Light *light = &tr->compiled->scene->lights[light_index];
+    size_t stride = tr->compiled->scene->light_count + 1;
+    const Vec3f *direct = tr->direct + light_index;
+    float total = 0;
+    for (size_t i = 0; i < count; i++) total += tr->records[i].weight * luminance(direct[i * stride]);
+    Vec3f sum = {0, 0, 0};
+    if (total <= 0) return sum;
+    bool worth = total > SHADOW_WORTH && !light->shadowless;
+    int points = worth ? int_clamp(1 + (int)(total * 16), 2, MOST_SHADOW_POINTS) : 0;
+    if (worth && count == 1) points = 1;
+    float seen[MOST_SHADOW_POINTS + 1], at[MOST_SHADOW_POINTS + 1];
+    float passed = 0;
+    int next = 0;
+    for (size_t i = 0; i < count && next < points; i++) {
+        const ShadeRecord *r = &tr->records[i];
+        float light_here = r->weight * luminance(direct[i * stride]);
+        float target = total * ((float)next + 0.5f) / (float)points;
+        if (passed + light_here >= target) {
+            Vec3 point = cone_point(cone, r->t);
+            LightRay ray = light_ray(light, point);
+            at[next] = passed + light_here / 2;
+            seen[next] = visibility(tr, light, &ray, point, cone_diameter(cone, r->t), cone->spread, (int)r->skin, &r->point,
+                                    (double)r->voxel_world, (double)r->voxel_world);
+            next++;
+            while (next < points && passed + light_here >= total * ((float)next + 0.5f) / (float)points) { /* one record, two targets */
+                at[next] = at[next - 1];
+                seen[next] = seen[next - 1];
+                next++;
+            }
+        }
+        passed += light_here;
+    }
+    points = next;
+    passed = 0;
+    int k = 0;
+    for (size_t i = 0; i < count; i++) {
+        float light_here = tr->records[i].weight * luminance(direct[i * stride]), middle = passed + light_here / 2;
+        float visible = 1;
+        if (points) {
+            while (k + 1 < points && at[k + 1] <= middle) k++;
+            visible = seen[k];
+            if (middle > at[k] && k + 1 < points && at[k + 1] > at[k])
+                visible += (seen[k + 1] - seen[k]) * (middle - at[k]) / (at[k + 1] - at[k]);
+        }
+        sum = vec3f_madd(sum, direct[i * stride], tr->records[i].weight * visible);
+        passed += light_here;
+    }
+    return sum;
+}
+
+/* ---- explicit surfaces ---- */
+
+static Vec3f shade_surface(Tracer *tr, const Cone *cone, const SurfaceHit *hit) {
+    const Scene *scene = tr->compiled->scene;
+    Vec3 point = cone_point(cone, hit->t);
+    double width = cone_diameter(cone, hit->t), facing = fmax(0.05, -vec3_dot(hit->normal, cone->direction));
+    Vec3 local = transform_point_back(hit->space, point);
+    Vec3 local_normal = vec3_normalize(mat3_apply_transposed(&hit->space->linear, hit->normal));
+    double shrink = cbrt(fabs(mat3_determinant(&hit->space->inverse_linear)));
+    Vec3f color = look_color(hit->look, local, local_normal, width / facing * shrink);
+    Vec3f sum = vec3f_mul(vec3f_add(hit->look->ambient, hit->look->emission), color);
+    double bias = 1e-5 * (1 + hit->t) + 0.01 * width;
+    Vec3 start = vec3_madd(point, hit->normal, bias);
+    for (size_t l = 0; l < scene->light_count; l++) {
+        LightRay ray = light_ray(&scene->lights[l], point);
+        NdfShade shade = sheet_shade(vec3f_from(hit->normal), vec3f_from(vec3_negate(cone->direction)), vec3f_from(ray.direction),
+                                     &hit->look->sheet);
+        if (shade.diffuse <= 0 && shade.highlight <= 0) continue;
+        Vec3 from = vec3_dot(ray.direction, hit->normal) > 0 ? start : vec3_madd(point, hit->normal, -bias);
+        float visible = visibility(tr, &scene->lights[l], &ray, from, width, cone->spread, -1, NULL, 0, bias);
+        Vec3f metal = vec3f_add(vec3f_scale(color, hit->look->metallic), vec3f_scale(vec3f(1, 1, 1), 1 - hit->look->metallic));
+        Vec3f tone = vec3f_madd(vec3f_scale(color, shade.diffuse), metal, shade.highlight);
+        sum = vec3f_madd(sum, vec3f_mul(tone, ray.color), visible);
+    }
+    return sum;
+}
+
+static Vec3f background(const Scene *scene, const Cone *cone) {
+    if (scene->sky_layer_count)
+        return vec3f_from_color(sky_color(scene->sky_layers, scene->sky_layer_count, cone->direction, cone->spread, scene->background));
+    return vec3f_from_color(scene->background);
+}
+
+/* POV-Ray's constant fog: exp(−t / distance). */
+static Vec3f add_fog(const Scene *scene, Vec3f color, float alpha, double t) {
+    if (!scene->has_fog || scene->fog.distance <= 0) return color;
+    float keep = isfinite(t) ? (float)exp(-t / scene->fog.distance) : 0;
+    float filter = (float)scene->fog.color.transmit;
+    keep = keep + (1 - keep) * filter;
+    return vec3f_madd(vec3f_scale(color, keep), vec3f_from_color(scene->fog.color), (1 - keep) * alpha);
+}
+
+Radiance trace_cone(Tracer *tr, const Cone *cone, const SurfaceHit *hit, float *reaching) {
+    const Scene *scene = tr->compiled->scene;
+    float transmittance = 1;
+    tr->counters.camera_rays++;
+    size_t count = gather(tr, cone, hit ? hit->t : VTS_INFINITY, &transmittance);
+    Vec3f color = {0, 0, 0};
+    double mean_t = 0;
+    for (size_t i = 0; i < count; i++) {
+        color = vec3f_madd(color, tr->records[i].ambient, tr->records[i].weight);
+        mean_t += (double)tr->records[i].weight * tr->records[i].t;
+    }
+    for (size_t l = 0; l < scene->light_count; l++) color = vec3f_add(color, add_shadowed(tr, cone, count, l));
+    float covered = 1 - transmittance;
+    if (count && covered > 0) color = add_fog(scene, color, covered, mean_t / (double)covered);
+    *reaching = transmittance;
+    Radiance out = {color, covered};
+    if (transmittance <= 0) return out;
+    if (hit) {
+        out.color = vec3f_madd(out.color, add_fog(scene, shade_surface(tr, cone, hit), 1, hit->t), transmittance);
+        out.alpha = 1;
+    } else {
+        out.color = vec3f_madd(out.color, add_fog(scene, background(scene, cone), 1, VTS_INFINITY), transmittance);
+    }
+    return out;
+}

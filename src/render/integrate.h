@@ -1,0 +1,34 @@
+/* The light that a cone gathers: skins, explicit objects, sky, composited from front to back. */
+#ifndef VTS_RENDER_INTEGRATE_H
+#define VTS_RENDER_INTEGRATE_H
+
+#include "render/compile.h"
+
+enum { MOST_SHADE_RECORDS = 1024 };
+
+typedef struct ShadeRecord ShadeRecord;
+
+/* What one worker needs; sized once, so that tracing allocates nothing. */
+typedef struct Tracer {
+    const CompiledScene *compiled;
+    SkinMarch *marches;        /* one for each skin */
+    SkinMarch *shadow_marches; /* likewise */
+    SkinSegment *segments;     /* likewise: the next of each */
+    bool *has_segment;
+    ShadeRecord *records;
+    Vec3f *direct;             /* [record][light] */
+    TraceCounters counters;
+} Tracer;
+
+typedef struct Radiance {
+    Vec3f color;   /* multiplied by alpha */
+    float alpha;   /* 1 - what of the background shows */
+} Radiance;
+
+void tracer_init(Tracer *tracer, const CompiledScene *compiled, Arena *arena);
+
+/* `hit` (NULL: nothing) is the nearest explicit surface on the cone's axis. *reaching gets the share of the light from
+ * there that is not hidden by skins. */
+Radiance trace_cone(Tracer *tracer, const Cone *cone, const SurfaceHit *hit, float *reaching);
+
+#endif

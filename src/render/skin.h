@@ -1,0 +1,123 @@
+/* Skins ready to be traced: cells that know their neighbours, texels built and placed.
+ *
+ * Skin space of a cell is (a, b, w): (a, b) in the unit square of a bilinear patch or the unit triangle, w from the foot
+ * (0) to the top (1) of the layer. World = P(a, b) + w·H(a, b), P and H bilinear. Texture space is (u, v, w'): u and v count
+ * tiles, w' is the height within the texel. A ray is followed by inverting the mapping step by step, each step starting from
+ * the one before; a ray that leaves a cell's unit square goes on in the neighbour with the same point, so nothing can leak
+ * through a wall (texels.md, "Mapping and traversal"). */
+#ifndef VTS_RENDER_SKIN_H
+#define VTS_RENDER_SKIN_H
+
+#include "base/diag.h"
+#include "render/cone.h"
+#include "render/look.h"
+#include "scene/scene.h"
+#include "shape/surface_mesh.h"
+#include "texel/opacity.h"
+
+/* c[0] + c[1]·a + c[2]·b + c[3]·a·b */
+typedef struct BilinearVec {
+    Vec3 c[4];
+} BilinearVec;
+typedef struct Bilinear {
+    double c[4];
+} Bilinear;
+
+typedef struct SkinCell {
+    BilinearVec foot, height;
+    Bilinear u, v, w_foot, w_tip;
+    SurfaceNeighbour neighbour[4];
+    bool triangle;
+} SkinCell;
+
+/* One layer of matter of a built texel. */
+typedef struct TexelMatter {
+    VoxelLayer *voxels;
+    Look look;
+} TexelMatter;
+
+typedef struct BuiltTexel {
+    const TexelDef *def;
+    Vec3f extent;        /* of texel space, longest side 1 */
+    float voxel;         /* side of the finest voxel, geometric mean of the axes, texel space */
+    int levels;
+    TexelMatter *matter;
+    size_t matter_count;
+    int asked, needed, built; /* resolutions: asked 0 = auto */
+    size_t voxel_count, bytes;
+    double build_seconds;
+} BuiltTexel;
+
+/* One `texel { … }` of a skin. */
+typedef struct PlacedTexel {
+    const BuiltTexel *const *family; /* one, or those of `choose` */
+    size_t family_size;
+    Vec3f finest_extent; /* of the member with the smallest voxels, which sets the step */
+    float finest_voxel;
+    int levels;
+    double density;      /* share of the tiles that hold a copy */
+    bool cyclic;         /* across u or v: copies are never moved */
+    const Look *look;    /* over the layers' own; NULL */
+    uint64_t seed;
+    InstanceJitter jitter; /* all zero for cyclic texels but for the tint */
+    int reach;           /* how many tiles away a copy may still cover a point: 0 when copies stay in their tile */
+} PlacedTexel;
+
+typedef struct CellTree CellTree; /* hierarchy over the cells' bounds, for entering the layer */
+
+typedef struct CompiledSkin {
+    const Skin *def;
+    SkinCell *cells;
+    size_t cell_count;
+    double top;          /* height of the layer in w': more than w_tip when copies are scaled up */
+    PlacedTexel *texels;
+    size_t texel_count;
+    CellTree *tree;
+    Box3 bounds;
+} CompiledSkin;
+
+/* A place in a skin. cell < 0: nowhere. */
+typedef struct SkinPoint {
+    int32_t cell;
+    double a, b, w;
+} SkinPoint;
+
+/* ---- mapping: skin_map.c ---- */
+
+/* World position, and the columns of the Jacobian ∂world/∂(a, b, w) (may be NULL). */
+Vec3 skin_cell_position(const SkinCell *cell, double a, double b, double w, Mat3 *jacobian);
+/* Finds (a, b, w) of the world point by Newton's method from the guess in *point, within or near the cell; `tolerance` in
+ * world units. False when it does not converge. The result may lie outside the cell. */
+bool skin_cell_invert(const SkinCell *cell, Vec3 world, double tolerance, SkinPoint *point);
+/* Goes on from *point (a guess, possibly outside its cell) to the cell that holds `world`. Returns SKIN_INSIDE, or how the
+ * point is outside: beyond the top, below the foot, past a border, or lost (the mapping is folded there). */
+typedef enum SkinSide { SKIN_INSIDE, SKIN_ABOVE, SKIN_BELOW, SKIN_BORDER, SKIN_LOST } SkinSide;
+SkinSide skin_locate(const CompiledSkin *skin, Vec3 world, double tolerance, SkinPoint *point, bool *crossed_seam);
+/* The first t in [t_min, t_max] at which the ray is within the layer; unit direction. False when nowhere. */
+bool skin_enter(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, SkinPoint *point, double *t);
+
+CellTree *cell_tree_build(CompiledSkin *skin, void *embree_device);
+void cell_tree_destroy(CellTree *tree);
+
+/* ---- texture space: skin_place.c ---- */
+
+/* Texture coordinates at a point. */
+typedef struct TexturePlace {
+    double u, v, w;
+    Vec3 grad_u, grad_v, grad_w; /* ∂/∂world; zero where the mapping is singular */
+    Vec3 grad_a, grad_b, grad_layer; /* the same of skin space (a, b, w) */
+} TexturePlace;
+TexturePlace skin_texture_place(const SkinCell *cell, const SkinPoint *point);
+
+/* A copy of a texel near a tile. From tile coordinates to the copy's own unit square: x = xu·u + xv·v + x0, likewise z; the
+ * height is w'/scale. */
+typedef struct TexelCopy {
+    const BuiltTexel *texel;
+    double xu, xv, x0, zu, zv, z0, inverse_scale;
+    Vec3f tint; /* 1, 1, 1: none */
+} TexelCopy;
+enum { MOST_COPIES = 25 };
+/* The copies whose unit squares may cover some point of tile (iu, iv). */
+int texel_copies(const PlacedTexel *placed, int64_t iu, int64_t iv, TexelCopy copies[MOST_COPIES]);
+
+#endif

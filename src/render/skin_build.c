@@ -1,0 +1,360 @@
+/* From a skin of the scene graph to cells and built texels. */
+#include "render/compile.h"
+
+#include "base/random.h"
+#include "pattern/pattern.h"
+#include "tape/noise.h"
+#include "texel/texel_content.h"
+
+#include <string.h>
+
+enum { LEAST_RESOLUTION = 8, LARGEST_AUTO_RESOLUTION = 512 };
+
+/* ---- texels ---- */
+
+static int power_of_two_above(double x, int most) {
+    int n = LEAST_RESOLUTION;
+    while (n < most && (double)n < x) n *= 2;
+    return n;
+}
+
+/* Contents are tessellated to a fifth of a voxel: what is left of facets disappears in the voxels' own blur. */
+static const double CONTENT_TOLERANCE_VOXELS = 0.2;
+
+static bool build_matter(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
+    const TexelDef *def = texel->def;
+    texel->matter = arena_new_array(compiled->arena, TexelMatter, def->layer_count);
+    Arena triangles;
+    arena_init(&triangles, options->memory, 0);
+    TexelBuildOptions build = {.resolution = texel->built, .extent = texel->extent, .cyclic = def->cyclic,
+                               .pool = options->pool, .memory = options->memory, .progress = options->progress,
+                               .name = def->name};
+    bool ok = true;
+    for (size_t i = 0; i < def->layer_count && ok; i++) {
+        const TexelLayer *layer = &def->layers[i];
+        TexelMesh mesh;
+        ShapeRefusal refusal;
+        TexelBuildStats stats = {0};
+        ArenaMark mark = arena_mark(&triangles);
+        if (!texel_layer_mesh(def, layer, CONTENT_TOLERANCE_VOXELS / texel->built, &triangles, &mesh, &refusal)) {
+            diag_error(diags, refusal.span, "this cannot be part of a texel: %s", refusal.reason);
+            ok = false;
+            break;
+        }
+        if (mesh.triangle_count == 0) diag_warning(diags, layer->span, "this layer of the texel '%s' is empty", def->name);
+        VoxelLayer *voxels = voxel_layer_build(&mesh, &build, &stats);
+        arena_reset_to(&triangles, mark);
+        if (!voxels) {
+            if (!options->interrupted || !*options->interrupted) memory_budget_fail(options->memory);
+            ok = false;
+            break;
+        }
+        const Texture *texture = layer->texture ? layer->texture : compiled->scene->default_texture;
+        texel->matter[texel->matter_count++] = (TexelMatter){voxels, look_from_texture(texture, &compiled->scene->settings)};
+        for (int l = 0; l < stats.levels; l++) texel->voxel_count += stats.voxels[l];
+        texel->bytes += stats.bytes;
+        texel->build_seconds += stats.seconds;
+    }
+    arena_destroy(&triangles);
+    return ok;
+}
+
+BuiltTexel *texel_build(const TexelDef *def, int needed, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
+    int most = def->resolution ? def->resolution : LARGEST_AUTO_RESOLUTION;
+    int wanted = power_of_two_above(needed, power_of_two_above(most, TEXEL_LARGEST_RESOLUTION));
+    for (size_t i = 0; i < compiled->texel_count; i++)
+        if (compiled->texels[i]->def == def && compiled->texels[i]->built >= wanted) return compiled->texels[i];
+    BuiltTexel *texel = arena_new(compiled->arena, BuiltTexel);
+    *texel = (BuiltTexel){.def = def, .extent = texel_extent(def), .asked = def->resolution, .needed = needed, .built = wanted};
+    /* The list is rebuilt at each addition: a scene has few texels. */
+    BuiltTexel **list = arena_new_array(compiled->arena, BuiltTexel *, compiled->texel_count + 1);
+    if (compiled->texel_count) memcpy(list, compiled->texels, compiled->texel_count * sizeof *list);
+    list[compiled->texel_count] = texel;
+    compiled->texels = list;
+    compiled->texel_count++;
+    for (const InertNote *note = def->inert; note; note = note->next)
+        diag_warning(diags, note->span, "'%s' is not modelled in this version: it has no effect here", note->word);
+    if (!build_matter(texel, options, compiled, diags)) return NULL;
+    if (texel->matter_count == 0) return texel;
+    int size[3];
+    voxel_layer_size(texel->matter[0].voxels, 0, size);
+    Vec3f e = texel->extent;
+    texel->voxel = cbrtf(e.x / (float)size[0] * e.y / (float)size[1] * e.z / (float)size[2]);
+    texel->levels = voxel_layer_levels(texel->matter[0].voxels);
+    return texel;
+}
+
+/* ---- vertices: height vectors and texture coordinates, jittered ---- */
+
+typedef struct SkinVertex {
+    Vec3 height;
+    double shift_u, shift_v, w_foot, w_tip;
+} SkinVertex;
+
+static double height_factor(const SkinMapping *mapping, Vec3 foot, Vec3 normal) {
+    double factor = 1, in[3] = {foot.x, foot.y, foot.z};
+    if (mapping->height_function) tape_eval_once(mapping->height_function, in, &factor);
+    if (mapping->height_pigment) {
+        Color c = pigment_color(mapping->height_pigment, foot, normal, 0);
+        factor *= 0.297 * c.red + 0.589 * c.green + 0.114 * c.blue; /* POV-Ray's grey */
+    }
+    return isfinite(factor) ? factor : 0;
+}
+
+static Vec3 noise_at(Vec3 foot, const NoiseJitter *jitter, uint32_t seed) {
+    return vec3_scale(noise_perlin3(vec3_scale(foot, 1 / jitter->scale), seed), jitter->amplitude);
+}
+
+/* Streams of the noises, so that one jitter does not repeat in another. */
+enum { STREAM_COORDINATES = 0x11, STREAM_HEIGHT = 0x22, STREAM_DIRECTION = 0x33 };
+
+static SkinVertex make_vertex(const Skin *skin, const SurfaceMesh *mesh, size_t i, double top) {
+    const SkinMapping *mapping = &skin->mapping;
+    const SkinJitter *jitter = &skin->jitter;
+    Vec3 foot = mesh->vertices[i], normal = mesh->normals[i];
+    double in[3] = {foot.x, foot.y, foot.z};
+    Vec3 given = mesh->height_vectors ? mesh->height_vectors[i] : normal;
+    double length = vec3_length(given);
+    Vec3 direction = vec3_normalize(given), comb = mapping->comb;
+    if (mapping->comb_function) {
+        double c[3];
+        tape_eval_once(mapping->comb_function, in, c);
+        if (isfinite(c[0]) && isfinite(c[1]) && isfinite(c[2])) comb = vec3_add(comb, vec3(c[0], c[1], c[2]));
+    }
+    direction = vec3_add(direction, comb);
+    if (jitter->direction.amplitude != 0) {
+        Vec3 n = noise_at(foot, &jitter->direction, jitter->seed + STREAM_DIRECTION);
+        direction = vec3_add(direction, vec3_madd(n, normal, -vec3_dot(n, normal)));
+    }
+    length *= mapping->height * height_factor(mapping, foot, normal);
+    if (jitter->height.amplitude != 0) length *= 1 + noise_at(foot, &jitter->height, jitter->seed + STREAM_HEIGHT).x;
+    SkinVertex out = {.w_foot = mapping->w_foot, .w_tip = mapping->w_tip};
+    if (jitter->coordinates.amplitude != 0) {
+        Vec3 shift = noise_at(foot, &jitter->coordinates, jitter->seed + STREAM_COORDINATES);
+        out.shift_u = shift.x, out.shift_v = shift.y;
+    }
+    if (mesh->w_vectors) out.w_foot = mesh->w_vectors[i].x, out.w_tip = mesh->w_vectors[i].y;
+    if (mapping->w_function) {
+        double w[3];
+        tape_eval_once(mapping->w_function, in, w);
+        out.w_foot = w[0], out.w_tip = w[1];
+    }
+    out.height = vec3_scale(direction, length * top);
+    out.w_tip = out.w_foot + (out.w_tip - out.w_foot) * top;
+    return out;
+}
+
+/* ---- cells ---- */
+
+static BilinearVec fit_vec(const Vec3 corner[4], bool triangle) {
+    BilinearVec f = {{corner[0], vec3_sub(corner[1], corner[0]), vec3_sub(corner[triangle ? 2 : 3], corner[0]), {0, 0, 0}}};
+    if (!triangle) f.c[3] = vec3_sub(vec3_add(corner[0], corner[2]), vec3_add(corner[1], corner[3]));
+    return f;
+}
+
+static Bilinear fit_scalar(const double corner[4], bool triangle) {
+    Bilinear f = {{corner[0], corner[1] - corner[0], corner[triangle ? 2 : 3] - corner[0], 0}};
+    if (!triangle) f.c[3] = corner[0] + corner[2] - corner[1] - corner[3];
+    return f;
+}
+
+/* The mean length of the surface along u and v, weighted by area: what `tile` divides. */
+static void mean_lengths(const SurfaceMesh *mesh, double *along_u, double *along_v) {
+    double sum_u = 0, sum_v = 0, weight = 0;
+    for (size_t i = 0; i < mesh->cell_count; i++) {
+        const SurfaceCell *c = &mesh->cells[i];
+        int last = c->corner_count - 1;
+        Vec3 e1 = vec3_sub(mesh->vertices[c->vertex[1]], mesh->vertices[c->vertex[0]]);
+        Vec3 e2 = vec3_sub(mesh->vertices[c->vertex[last]], mesh->vertices[c->vertex[0]]);
+        TexCoord t0 = mesh->uvs[c->uv[0]], t1 = mesh->uvs[c->uv[1]], t2 = mesh->uvs[c->uv[last]];
+        double du1 = t1.u - t0.u, dv1 = t1.v - t0.v, du2 = t2.u - t0.u, dv2 = t2.v - t0.v, det = du1 * dv2 - du2 * dv1;
+        double area = vec3_length(vec3_cross(e1, e2));
+        if (det == 0 || !(area > 0)) continue;
+        Vec3 pu = vec3_scale(vec3_sub(vec3_scale(e1, dv2), vec3_scale(e2, dv1)), 1 / det);
+        Vec3 pv = vec3_scale(vec3_sub(vec3_scale(e2, du1), vec3_scale(e1, du2)), 1 / det);
+        sum_u += area * vec3_length(pu), sum_v += area * vec3_length(pv), weight += area;
+    }
+    *along_u = weight > 0 ? sum_u / weight : 1;
+    *along_v = weight > 0 ? sum_v / weight : 1;
+}
+
+static void repeats(const SkinMapping *mapping, const SurfaceMesh *mesh, double *u, double *v) {
+    *u = mapping->repeat_u, *v = mapping->repeat_v;
+    if (!mapping->by_tile_size) return;
+    double along_u, along_v;
+    mean_lengths(mesh, &along_u, &along_v);
+    /* Whole numbers, so that tiles meet where a surface closes on itself. */
+    *u = fmax(1, round(along_u / mapping->tile_size));
+    *v = fmax(1, round(along_v / mapping->tile_size));
+}
+
+/* Whether the box over the cell turns inside out somewhere: det J at its corners has both signs. */
+static bool cell_folds(const SkinCell *cell) {
+    int positive = 0, negative = 0;
+    for (int i = 0; i < 8; i++) {
+        Mat3 j;
+        double a = i & 1, b = (i >> 1) & 1, w = (i >> 2) & 1;
+        if (cell->triangle && a + b > 1) continue;
+        skin_cell_position(cell, a, b, w, &j);
+        double det = mat3_determinant(&j);
+        positive += det > 0;
+        negative += det < 0;
+    }
+    return positive && negative;
+}
+
+static void make_cells(const Skin *skin, const SurfaceMesh *mesh, Arena *arena, CompiledSkin *out, DiagList *diags) {
+    SkinVertex *vertex = arena_new_array(arena, SkinVertex, mesh->vertex_count);
+    for (size_t i = 0; i < mesh->vertex_count; i++) vertex[i] = make_vertex(skin, mesh, i, out->top);
+    double repeat_u, repeat_v;
+    repeats(&skin->mapping, mesh, &repeat_u, &repeat_v);
+    out->cells = arena_new_array(arena, SkinCell, mesh->cell_count);
+    out->cell_count = mesh->cell_count;
+    out->bounds = box3_empty();
+    size_t folded = 0;
+    for (size_t i = 0; i < mesh->cell_count; i++) {
+        const SurfaceCell *in = &mesh->cells[i];
+        SkinCell *cell = &out->cells[i];
+        Vec3 foot[4], height[4];
+        double u[4], v[4], w_foot[4], w_tip[4];
+        cell->triangle = in->corner_count == 3;
+        for (int k = 0; k < in->corner_count; k++) {
+            const SkinVertex *at = &vertex[in->vertex[k]];
+            foot[k] = mesh->vertices[in->vertex[k]];
+            height[k] = at->height;
+            u[k] = mesh->uvs[in->uv[k]].u * repeat_u + at->shift_u;
+            v[k] = mesh->uvs[in->uv[k]].v * repeat_v + at->shift_v;
+            w_foot[k] = at->w_foot, w_tip[k] = at->w_tip;
+            out->bounds = box3_add_point(box3_add_point(out->bounds, foot[k]), vec3_add(foot[k], height[k]));
+        }
+        cell->foot = fit_vec(foot, cell->triangle);
+        cell->height = fit_vec(height, cell->triangle);
+        cell->u = fit_scalar(u, cell->triangle);
+        cell->v = fit_scalar(v, cell->triangle);
+        cell->w_foot = fit_scalar(w_foot, cell->triangle);
+        cell->w_tip = fit_scalar(w_tip, cell->triangle);
+        memcpy(cell->neighbour, mesh->neighbours[i], sizeof cell->neighbour);
+        folded += cell_folds(cell);
+    }
+    if (folded)
+        diag_warning(diags, skin->span, "the skin folds over %zu of %zu boxes: its height vectors cross; shorten `height` or smooth the surface",
+                     folded, mesh->cell_count);
+}
+
+/* ---- resolution: what the view can see ---- */
+
+static bool outside_view(const View *view, Box3 box) {
+    const Camera *c = &view->camera;
+    if (c->kind != CAMERA_PERSPECTIVE) return false;
+    Vec3 r = vec3_scale(c->right, 0.5), u = vec3_scale(c->up, 0.5);
+    Vec3 corner[4] = {vec3_sub(vec3_sub(c->direction, r), u), vec3_sub(vec3_add(c->direction, r), u),
+                      vec3_add(vec3_add(c->direction, r), u), vec3_add(vec3_sub(c->direction, r), u)};
+    for (int i = 0; i < 4; i++) {
+        Vec3 n = vec3_cross(corner[i], corner[(i + 1) % 4]);
+        if (vec3_dot(n, c->direction) < 0) n = vec3_negate(n); /* inwards */
+        Vec3 far = vec3(n.x > 0 ? box.max.x : box.min.x, n.y > 0 ? box.max.y : box.min.y, n.z > 0 ? box.max.z : box.min.z);
+        if (vec3_dot(n, vec3_sub(far, c->location)) < 0) return true;
+    }
+    return false;
+}
+
+/* Voxels along the longest side that the nearest visible cell asks for: one for each footprint of a pixel. */
+static double needed_resolution(const CompiledSkin *skin, const View *view, Vec3f extent) {
+    double needed = 1;
+    for (size_t i = 0; i < skin->cell_count; i++) {
+        const SkinCell *cell = &skin->cells[i];
+        Box3 box = box3_empty();
+        for (int k = 0; k < 8; k++) {
+            if (cell->triangle && (k & 3) == 3) continue;
+            box = box3_add_point(box, skin_cell_position(cell, k & 1, (k >> 1) & 1, (k >> 2) & 1, NULL));
+        }
+        if (outside_view(view, box)) continue;
+        Vec3 nearest = vec3_max(box.min, vec3_min(box.max, view->camera.location));
+        double distance = vec3_length(vec3_sub(nearest, view->camera.location));
+        Cone cone = view_cone(view, view->width / 2.0, view->height / 2.0, 1);
+        double footprint = cone_diameter(&cone, distance);
+        SkinPoint middle = {(int32_t)i, cell->triangle ? 1.0 / 3 : 0.5, cell->triangle ? 1.0 / 3 : 0.5, 0.5};
+        TexturePlace place = skin_texture_place(cell, &middle);
+        double volume = fabs(vec3_dot(place.grad_u, vec3_cross(place.grad_v, place.grad_w))) * (double)(extent.x * extent.y * extent.z);
+        if (!(volume > 0)) continue;
+        double side = cbrt(1 / volume); /* scene units for one unit of texel space */
+        needed = fmax(needed, footprint > 0 ? side / footprint : TEXEL_LARGEST_RESOLUTION);
+    }
+    return fmin(ceil(needed), TEXEL_LARGEST_RESOLUTION);
+}
+
+/* ---- placing ---- */
+
+static int copy_reach(const InstanceJitter *jitter) {
+    double largest = 1 + jitter->scale / 2, half = jitter->rotate != 0 ? 0.70711 : 0.5;
+    return int_clamp((int)ceil(jitter->displace / 2 + half * largest - 0.5 - 1e-9), 0, 2);
+}
+
+static bool place_texel(const Skin *skin, size_t index, const CompileOptions *options, CompiledScene *compiled, DiagList *diags,
+                        CompiledSkin *out) {
+    const SkinTexel *in = &skin->texels[index];
+    PlacedTexel *placed = &out->texels[index];
+    size_t family = in->texel->choice_count ? in->texel->choice_count : 1;
+    const BuiltTexel **members = arena_new_array(compiled->arena, const BuiltTexel *, family);
+    *placed = (PlacedTexel){.family = members, .density = in->density, .finest_voxel = INFINITY};
+    placed->seed = random_hash(skin->jitter.seed, index, 0, 0);
+    for (size_t k = 0; k < family; k++) {
+        const TexelDef *def = in->texel->choice_count ? in->texel->choices[k] : in->texel;
+        int needed = (int)needed_resolution(out, &compiled->view, texel_extent(def));
+        const BuiltTexel *texel = texel_build(def, needed, options, compiled, diags);
+        if (!texel) return false;
+        if (texel->matter_count == 0) continue;
+        members[placed->family_size++] = texel;
+        placed->cyclic |= (def->cyclic & (TEXEL_CYCLIC_X | TEXEL_CYCLIC_Z)) != 0;
+        placed->levels = int_max(placed->levels, texel->levels);
+        if (texel->voxel < placed->finest_voxel) {
+            placed->finest_voxel = texel->voxel;
+            placed->finest_extent = texel->extent;
+        }
+    }
+    placed->jitter = skin->jitter.instance;
+    placed->reach = placed->cyclic || !placed->jitter.present ? 0 : copy_reach(&placed->jitter);
+    const Texture *texture = in->texture ? in->texture : skin->texture;
+    if (texture) {
+        Look *look = arena_new(compiled->arena, Look);
+        *look = look_from_texture(texture, &compiled->scene->settings);
+        placed->look = look;
+    }
+    return true;
+}
+
+static double tallest_copy(const Skin *skin) {
+    const InstanceJitter *jitter = &skin->jitter.instance;
+    bool scaled = false;
+    for (size_t i = 0; i < skin->texel_count; i++) {
+        const TexelDef *def = skin->texels[i].texel;
+        if (def->choice_count) def = def->choices[0];
+        scaled |= (def->cyclic & (TEXEL_CYCLIC_X | TEXEL_CYCLIC_Z)) == 0;
+    }
+    return jitter->present && scaled ? 1 + jitter->scale / 2 : 1;
+}
+
+bool skin_compile(const Skin *skin, const CompileOptions *options, CompiledScene *compiled, DiagList *diags, CompiledSkin *out) {
+    SurfaceMesh mesh;
+    ShapeRefusal refusal;
+    *out = (CompiledSkin){.def = skin, .top = tallest_copy(skin)};
+    for (const InertNote *note = skin->inert; note; note = note->next)
+        diag_warning(diags, note->span, "'%s' is not modelled in this version: it has no effect here", note->word);
+    if (skin->texel_count > MOST_PLACED_TEXELS) {
+        diag_error(diags, skin->texels[MOST_PLACED_TEXELS].span, "a skin holds at most %d superimposed texels", MOST_PLACED_TEXELS);
+        return false;
+    }
+    SurfaceMeshOptions mesh_options = {.tolerance = 0.02 * skin->mapping.height};
+    if (!surface_mesh_build(skin->surface, &mesh_options, compiled->arena, &mesh, &refusal)) {
+        diag_error(diags, refusal.span, "this surface cannot carry a skin: %s", refusal.reason);
+        return false;
+    }
+    make_cells(skin, &mesh, compiled->arena, out, diags);
+    out->texels = arena_new_array(compiled->arena, PlacedTexel, skin->texel_count);
+    for (size_t i = 0; i < skin->texel_count; i++) {
+        if (!place_texel(skin, i, options, compiled, diags, out)) return false;
+        if (out->texels[i].family_size) out->texel_count = i + 1;
+    }
+    out->tree = cell_tree_build(out, hierarchy_device(compiled->hierarchy));
+    return out->tree != NULL;
+}

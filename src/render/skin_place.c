@@ -1,0 +1,87 @@
+/* Texture space: coordinates at a point of the skin, and the copies of a texel around a tile. */
+#include "render/skin.h"
+
+#include "base/random.h"
+
+static double bilinear(const Bilinear *f, double a, double b) { return f->c[0] + f->c[1] * a + (f->c[2] + f->c[3] * a) * b; }
+
+TexturePlace skin_texture_place(const SkinCell *cell, const SkinPoint *p) {
+    Mat3 j;
+    skin_cell_position(cell, p->a, p->b, p->w, &j);
+    /* Rows of the inverse: ∂a/∂world, ∂b/∂world, ∂w/∂world. */
+    Vec3 bc = vec3_cross(j.c[1], j.c[2]), ca = vec3_cross(j.c[2], j.c[0]), ab = vec3_cross(j.c[0], j.c[1]);
+    double inverse = 1 / vec3_dot(j.c[0], bc);
+    if (!isfinite(inverse)) inverse = 0;
+    Vec3 da = vec3_scale(bc, inverse), db = vec3_scale(ca, inverse), dw = vec3_scale(ab, inverse);
+    double foot = bilinear(&cell->w_foot, p->a, p->b), tip = bilinear(&cell->w_tip, p->a, p->b);
+    TexturePlace out = {.u = bilinear(&cell->u, p->a, p->b),
+                        .v = bilinear(&cell->v, p->a, p->b),
+                        .w = foot + p->w * (tip - foot),
+                        .grad_a = da,
+                        .grad_b = db,
+                        .grad_layer = dw};
+    const Bilinear *u = &cell->u, *v = &cell->v, *f = &cell->w_foot, *t = &cell->w_tip;
+    out.grad_u = vec3_madd(vec3_scale(da, u->c[1] + u->c[3] * p->b), db, u->c[2] + u->c[3] * p->a);
+    out.grad_v = vec3_madd(vec3_scale(da, v->c[1] + v->c[3] * p->b), db, v->c[2] + v->c[3] * p->a);
+    double w_a = (f->c[1] + f->c[3] * p->b) * (1 - p->w) + (t->c[1] + t->c[3] * p->b) * p->w;
+    double w_b = (f->c[2] + f->c[3] * p->a) * (1 - p->w) + (t->c[2] + t->c[3] * p->a) * p->w;
+    out.grad_w = vec3_madd(vec3_madd(vec3_scale(da, w_a), db, w_b), dw, tip - foot);
+    return out;
+}
+
+/* What a tile's hash decides about its copy. Each property reads its own bits, so that adding one changes no other. */
+enum { CHANCE_DENSITY, CHANCE_FAMILY, CHANCE_U, CHANCE_V, CHANCE_ROTATE, CHANCE_SCALE, CHANCE_MIRROR, CHANCE_TINT };
+
+static double chance(const PlacedTexel *placed, int64_t iu, int64_t iv, uint64_t what) {
+    return random_unit(random_hash((uint64_t)iu, (uint64_t)iv, what, placed->seed));
+}
+
+static bool make_copy(const PlacedTexel *placed, int64_t iu, int64_t iv, TexelCopy *copy) {
+    const InstanceJitter *jitter = &placed->jitter;
+    double share = placed->density * (placed->cyclic || !jitter->present ? 1 : jitter->density);
+    if (share < 1 && chance(placed, iu, iv, CHANCE_DENSITY) >= share) return false;
+    size_t member = 0;
+    if (placed->family_size > 1)
+        member = size_min((size_t)(chance(placed, iu, iv, CHANCE_FAMILY) * (double)placed->family_size), placed->family_size - 1);
+    *copy = (TexelCopy){.texel = placed->family[member], .xu = 1, .zv = 1, .x0 = -(double)iu, .z0 = -(double)iv,
+                        .inverse_scale = 1, .tint = {1, 1, 1}};
+    if (!jitter->present) return true;
+    if (jitter->tinted) {
+        float t = (float)chance(placed, iu, iv, CHANCE_TINT);
+        Color a = jitter->tint_a, b = jitter->tint_b;
+        copy->tint = vec3f_add(vec3f_scale(vec3f((float)a.red, (float)a.green, (float)a.blue), 1 - t),
+                               vec3f_scale(vec3f((float)b.red, (float)b.green, (float)b.blue), t));
+    }
+    if (placed->cyclic) return true;
+    double center_u = (double)iu + 0.5 + jitter->displace * (chance(placed, iu, iv, CHANCE_U) - 0.5);
+    double center_v = (double)iv + 0.5 + jitter->displace * (chance(placed, iu, iv, CHANCE_V) - 0.5);
+    double angle = jitter->rotate * VTS_RADIANS * (chance(placed, iu, iv, CHANCE_ROTATE) - 0.5);
+    double scale = 1 + jitter->scale * (chance(placed, iu, iv, CHANCE_SCALE) - 0.5);
+    double flip = jitter->mirror && chance(placed, iu, iv, CHANCE_MIRROR) < 0.5 ? -1 : 1;
+    /* Copy's unit square → turned and scaled about its centre; here the way back. */
+    double c = cos(angle) / scale, s = sin(angle) / scale;
+    copy->xu = flip * c, copy->xv = flip * s;
+    copy->zu = -s, copy->zv = c;
+    copy->x0 = 0.5 - (copy->xu * center_u + copy->xv * center_v);
+    copy->z0 = 0.5 - (copy->zu * center_u + copy->zv * center_v);
+    copy->inverse_scale = 1 / scale;
+    return true;
+}
+
+/* Whether the copy's unit square comes near the tile: distance of the centres against the half diagonals. */
+static bool may_cover(const TexelCopy *copy, int64_t iu, int64_t iv) {
+    double u = (double)iu + 0.5, v = (double)iv + 0.5;
+    double x = copy->xu * u + copy->xv * v + copy->x0, z = copy->zu * u + copy->zv * v + copy->z0;
+    double half = 0.5 + 0.70711 * copy->inverse_scale;
+    return fabs(x - 0.5) <= half && fabs(z - 0.5) <= half;
+}
+
+int texel_copies(const PlacedTexel *placed, int64_t iu, int64_t iv, TexelCopy copies[MOST_COPIES]) {
+    int count = 0, reach = placed->reach;
+    for (int64_t dv = -reach; dv <= reach; dv++)
+        for (int64_t du = -reach; du <= reach && count < MOST_COPIES; du++)
+            if (make_copy(placed, iu + du, iv + dv, &copies[count]) &&
+                (reach == 0 || may_cover(&copies[count], iu, iv)))
+                count++;
+    return count;
+}

@@ -1,0 +1,45 @@
+#include "texel/texel_content.h"
+
+#include "grow/particles.h"
+
+static double longest_side(const TexelDef *def) {
+    Vec3 size = vec3_sub(def->bounds.max, def->bounds.min);
+    return fmax(size.x, fmax(size.y, size.z));
+}
+
+/* A side much shorter than the longest (a flat box) keeps a thickness, so that no division by zero follows. */
+static const double THINNEST_SIDE = 1e-4;
+
+Vec3f texel_extent(const TexelDef *def) {
+    Vec3 size = vec3_scale(vec3_sub(def->bounds.max, def->bounds.min), 1 / longest_side(def));
+    return vec3f_from(vec3_max(size, vec3_splat(THINNEST_SIDE)));
+}
+
+Transform texel_space(const TexelDef *def) {
+    Transform move = transform_translate(vec3_negate(def->bounds.min));
+    Transform scale = transform_scale(vec3_splat(1 / longest_side(def)));
+    return transform_then(&move, &scale);
+}
+
+bool texel_layer_mesh(const TexelDef *def, const TexelLayer *layer, double tolerance, Arena *arena, TexelMesh *out,
+                      ShapeRefusal *refusal) {
+    TriangleSoup soup = {0};
+    Transform space = texel_space(def);
+    TessellateOptions options = {.tolerance = tolerance, .particles = particles_tessellate};
+    for (size_t i = 0; i < layer->content_count; i++)
+        if (!tessellate(layer->contents[i], &space, &options, arena, &soup, refusal)) return false;
+    Vec3f *vertices = arena_new_array(arena, Vec3f, soup.vertices.count);
+    uint32_t(*triangles)[3] = arena_push_array_(arena, soup.triangles.count, sizeof *triangles);
+    bool *solid = arena_new_array(arena, bool, soup.triangles.count);
+    for (size_t i = 0; i < soup.vertices.count; i++) vertices[i] = vec3f_from(soup.vertices.items[i].position);
+    for (size_t i = 0; i < soup.triangles.count; i++) {
+        for (int k = 0; k < 3; k++) triangles[i][k] = soup.triangles.items[i].vertex[k];
+        solid[i] = soup.triangles.items[i].solid;
+    }
+    *out = (TexelMesh){.vertices = vertices,
+                       .triangles = (const uint32_t(*)[3])triangles,
+                       .vertex_count = soup.vertices.count,
+                       .triangle_count = soup.triangles.count,
+                       .solid = solid};
+    return true;
+}

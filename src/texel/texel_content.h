@@ -1,0 +1,19 @@
+/* From what the scene says is in a texel to triangles in texel space, which the voxels are built from. */
+#ifndef VTS_TEXEL_TEXEL_CONTENT_H
+#define VTS_TEXEL_TEXEL_CONTENT_H
+
+#include "scene/scene.h"
+#include "shape/tessellate.h"
+#include "texel/texel.h"
+
+/* Extent of texel space: the bounds scaled so that their longest side is 1. */
+Vec3f texel_extent(const TexelDef *def);
+/* Scene space (as the layers' contents are written) → texel space. */
+Transform texel_space(const TexelDef *def);
+
+/* The contents of one layer as triangles in texel space, in `arena`; `tolerance` is the largest distance from the true
+ * surface in texel space. False, with *refusal filled, for contents that have no finite boundary or are not modelled. */
+bool texel_layer_mesh(const TexelDef *def, const TexelLayer *layer, double tolerance, Arena *arena, TexelMesh *out,
+                      ShapeRefusal *refusal);
+
+#endif

@@ -12,47 +12,43 @@
 
 #include "base/arena.h"
 #include "scene/scene.h"
-
-typedef struct TexCoord {
-    double u, v;
-} TexCoord;
+#include "shape/tessellate.h"
 
 typedef struct SurfaceCell {
     uint32_t vertex[4]; /* corners; [3] repeats [0] when there are three */
     uint32_t uv[4];     /* into SurfaceMesh.uvs, per corner */
     uint8_t corner_count;
-    bool degenerate;    /* no area: two corners coincide or all lie on a line; kept, so that indices stay those of the input */
+    bool
+        degenerate; /* no area: two corners coincide or all lie on a line; kept, so that indices stay those of the input */
 } SurfaceCell;
 
 typedef struct SurfaceNeighbour {
-    int32_t cell; /* -1: a border, an edge of three or more cells, or one where no consistent front exists (Möbius strip) */
+    int32_t
+        cell; /* -1: a border, an edge of three or more cells, or one where no consistent front exists (Möbius strip) */
     uint8_t edge; /* the same edge as `cell` numbers it; it runs the other way round */
     bool seam;    /* texture coordinates differ on the two sides */
 } SurfaceNeighbour;
 
 typedef struct SurfaceMesh {
     const Vec3 *vertices;
-    const Vec3 *normals;        /* one per vertex: unit vectors to the front; <0, 1, 0> where nothing defines one */
-    const Vec3 *height_vectors; /* one per vertex, with their own length; NULL: none given, the unit normal holds */
-    const Vec3 *w_vectors;      /* one per vertex, <w at the foot, w at the tip, 0>; NULL: the mapping's */
+    const Vec3 *normals; /* one per vertex: unit vectors to the front; <0, 1, 0> where nothing defines one */
+    const Vec3
+        *height_vectors; /* one per vertex, with their own length; NULL: none given, the unit normal holds */
+    const Vec3 *w_vectors; /* one per vertex, <w at the foot, w at the tip, 0>; NULL: the mapping's */
     size_t vertex_count;
-    const TexCoord *uvs;        /* one turn of the surface is 1; generated ones may pass 1 where a cell crosses the seam */
+    const TexCoord
+        *uvs; /* one turn of the surface is 1; generated ones may pass 1 where a cell crosses the seam */
     size_t uv_count;
     const SurfaceCell *cells;
     size_t cell_count;
     const SurfaceNeighbour (*neighbours)[4]; /* per cell and edge; symmetric */
-    Box3 bounds;                /* of the vertices */
+    Box3 bounds;                             /* of the vertices */
 } SurfaceMesh;
 
 typedef struct SurfaceMeshOptions {
-    double tolerance; /* > 0: largest distance of curved solids and deformed faces from the cells, scene units, for `subdivide` auto */
+    double
+        tolerance; /* > 0: largest distance of curved solids and deformed faces from the cells, scene units, for `subdivide` auto */
 } SurfaceMeshOptions;
-
-/* Why something has no triangles. */
-typedef struct ShapeRefusal {
-    Span span;          /* of the object at fault */
-    const char *reason; /* a clause for a diagnostic, static: "a plane has no end" */
-} ShapeRefusal;
 
 /* Builds the mesh in scene space in `arena`: tessellation, subdivision, deform, the surface's transform, in this order.
  *   patches   one cell for each patch, in the order i·nv + j; uv = (i/nu, j/nv). The front is that of ∂P/∂v × ∂P/∂u, or
@@ -66,7 +62,7 @@ typedef struct ShapeRefusal {
  * Vertex normals are the angle-weighted mean of the cells around (given normals win unless there is a deform); height
  * vectors and w vectors given with the scene are interpolated to subdivided vertices and follow deform and transform.
  * False, with *refusal filled, for what has no finite boundary or is not modelled. */
-bool surface_mesh_build(const Surface *surface, const SurfaceMeshOptions *options, Arena *arena, SurfaceMesh *out,
-                        ShapeRefusal *refusal);
+bool surface_mesh_build(const Surface *surface, const SurfaceMeshOptions *options, Arena *arena,
+                        SurfaceMesh *out, ShapeRefusal *refusal);
 
 #endif

@@ -1,0 +1,40 @@
+/* Any finite object as triangles: for texels, for skins on solids, for drawing.
+ *
+ * Flat and round shapes are placed so that what is seen of them is right on average: the vertices of round ones stand a
+ * little outside the true surface, its faces a little inside. A convex body shows, averaged over directions, a quarter of
+ * its area (Cauchy), so spheres, tori and the walls of cylinders and cones have the true area, however coarse they are;
+ * so have discs. */
+#ifndef VTS_SHAPE_TESSELLATE_H
+#define VTS_SHAPE_TESSELLATE_H
+
+#include "scene/scene.h"
+#include "shape/soup.h"
+
+/* Why something has no triangles. */
+typedef struct ShapeRefusal {
+    Span span;          /* of the object at fault */
+    const char *reason; /* a clause for a diagnostic, static: "a plane has no end" */
+} ShapeRefusal;
+
+/* Appends particles to a soup, in their own space; `grow` supplies it (particles_tessellate). */
+typedef void (*TessellateParticles)(const Particle *items, size_t count, double tolerance, Arena *arena,
+                                    TriangleSoup *out);
+
+typedef struct TessellateOptions {
+    double tolerance; /* > 0: largest distance between surface and triangles, in the space of the output */
+    int parts;        /* 0: by tolerance; N: N per quarter turn, and N along each edge of what is flat */
+    TessellateParticles particles; /* NULL: particles are refused */
+} TessellateOptions;
+
+enum { TESSELLATE_MOST_PARTS = 256 }; /* per quarter turn; a tolerance that asks for more is not met */
+
+/* Appends the object, with `transform` (NULL: none) after its own, to *out (start with {0}), in `arena`. Unions and merges
+ * are their children, walls inside included. Spheres, boxes, tori, closed cylinders and cones, round particles and closed
+ * meshes are solid: every edge belongs to two triangles that run along it in opposite ways, with coordinates equal bit for
+ * bit (meshes: as given).
+ * False, with *refusal filled, for planes, intersections, differences, texels and what is not modelled; *out is then
+ * incomplete. */
+bool tessellate(const Object *object, const Transform *transform, const TessellateOptions *options,
+                Arena *arena, TriangleSoup *out, ShapeRefusal *refusal);
+
+#endif

@@ -5,18 +5,19 @@
 
 /* The paper's published permutation of 0 … 255. */
 static const uint8_t permutation[256] = {
-    151, 160, 137, 91,  90,  15,  131, 13,  201, 95,  96,  53,  194, 233, 7,   225, 140, 36,  103, 30,  69,  142,
-    8,   99,  37,  240, 21,  10,  23,  190, 6,   148, 247, 120, 234, 75,  0,   26,  197, 62,  94,  252, 219, 203,
-    117, 35,  11,  32,  57,  177, 33,  88,  237, 149, 56,  87,  174, 20,  125, 136, 171, 168, 68,  175, 74,  165,
-    71,  134, 139, 48,  27,  166, 77,  146, 158, 231, 83,  111, 229, 122, 60,  211, 133, 230, 220, 105, 92,  41,
-    55,  46,  245, 40,  244, 102, 143, 54,  65,  25,  63,  161, 1,   216, 80,  73,  209, 76,  132, 187, 208, 89,
-    18,  169, 200, 196, 135, 130, 116, 188, 159, 86,  164, 100, 109, 198, 173, 186, 3,   64,  52,  217, 226, 250,
-    124, 123, 5,   202, 38,  147, 118, 126, 255, 82,  85,  212, 207, 206, 59,  227, 47,  16,  58,  17,  182, 189,
-    28,  42,  223, 183, 170, 213, 119, 248, 152, 2,   44,  154, 163, 70,  221, 153, 101, 155, 167, 43,  172, 9,
-    129, 22,  39,  253, 19,  98,  108, 110, 79,  113, 224, 232, 178, 185, 112, 104, 218, 246, 97,  228, 251, 34,
-    242, 193, 238, 210, 144, 12,  191, 179, 162, 241, 81,  51,  145, 235, 249, 14,  239, 107, 49,  192, 214, 31,
-    181, 199, 106, 157, 184, 84,  204, 176, 115, 121, 50,  45,  127, 4,   150, 254, 138, 236, 205, 93,  222, 114,
-    67,  29,  24,  72,  243, 141, 128, 195, 78,  66,  215, 61,  156, 180};
+    151, 160, 137, 91,  90,  15,  131, 13,  201, 95,  96,  53,  194, 233, 7,   225, 140, 36,  103, 30,
+    69,  142, 8,   99,  37,  240, 21,  10,  23,  190, 6,   148, 247, 120, 234, 75,  0,   26,  197, 62,
+    94,  252, 219, 203, 117, 35,  11,  32,  57,  177, 33,  88,  237, 149, 56,  87,  174, 20,  125, 136,
+    171, 168, 68,  175, 74,  165, 71,  134, 139, 48,  27,  166, 77,  146, 158, 231, 83,  111, 229, 122,
+    60,  211, 133, 230, 220, 105, 92,  41,  55,  46,  245, 40,  244, 102, 143, 54,  65,  25,  63,  161,
+    1,   216, 80,  73,  209, 76,  132, 187, 208, 89,  18,  169, 200, 196, 135, 130, 116, 188, 159, 86,
+    164, 100, 109, 198, 173, 186, 3,   64,  52,  217, 226, 250, 124, 123, 5,   202, 38,  147, 118, 126,
+    255, 82,  85,  212, 207, 206, 59,  227, 47,  16,  58,  17,  182, 189, 28,  42,  223, 183, 170, 213,
+    119, 248, 152, 2,   44,  154, 163, 70,  221, 153, 101, 155, 167, 43,  172, 9,   129, 22,  39,  253,
+    19,  98,  108, 110, 79,  113, 224, 232, 178, 185, 112, 104, 218, 246, 97,  228, 251, 34,  242, 193,
+    238, 210, 144, 12,  191, 179, 162, 241, 81,  51,  145, 235, 249, 14,  239, 107, 49,  192, 214, 31,
+    181, 199, 106, 157, 184, 84,  204, 176, 115, 121, 50,  45,  127, 4,   150, 254, 138, 236, 205, 93,
+    222, 114, 67,  29,  24,  72,  243, 141, 128, 195, 78,  66,  215, 61,  156, 180};
 
 static unsigned hash(unsigned i) { return permutation[i & 255]; }
 
@@ -39,7 +40,7 @@ static unsigned cell(double x, double *fraction) {
 }
 
 double noise_perlin(Vec3 p) {
-    if (!vec3_is_finite(p)) return NAN;
+    if (!vec3_is_finite(p)) return (double)NAN;
     double x, y, z;
     unsigned i = cell(p.x, &x), j = cell(p.y, &y), k = cell(p.z, &z);
     double u = fade(x), v = fade(y), w = fade(z);
@@ -47,8 +48,9 @@ double noise_perlin(Vec3 p) {
     unsigned b = hash(i + 1) + j, ba = hash(b) + k, bb = hash(b + 1) + k;
     double near = mix(v, mix(u, gradient(hash(aa), x, y, z), gradient(hash(ba), x - 1, y, z)),
                       mix(u, gradient(hash(ab), x, y - 1, z), gradient(hash(bb), x - 1, y - 1, z)));
-    double far = mix(v, mix(u, gradient(hash(aa + 1), x, y, z - 1), gradient(hash(ba + 1), x - 1, y, z - 1)),
-                     mix(u, gradient(hash(ab + 1), x, y - 1, z - 1), gradient(hash(bb + 1), x - 1, y - 1, z - 1)));
+    double far =
+        mix(v, mix(u, gradient(hash(aa + 1), x, y, z - 1), gradient(hash(ba + 1), x - 1, y, z - 1)),
+            mix(u, gradient(hash(ab + 1), x, y - 1, z - 1), gradient(hash(bb + 1), x - 1, y - 1, z - 1)));
     return mix(w, near, far);
 }
 
@@ -66,14 +68,16 @@ static Vec3 turn(Vec3 p, uint64_t bits) {
 }
 
 double noise_perlin_seeded(Vec3 p, uint32_t seed) {
-    Vec3 shift = vec3(256 * random_unit(random_hash(seed, 0, 0, 1)), 256 * random_unit(random_hash(seed, 1, 0, 1)),
-                      256 * random_unit(random_hash(seed, 2, 0, 1)));
+    Vec3 shift =
+        vec3(256 * random_unit(random_hash(seed, 0, 0, 1)), 256 * random_unit(random_hash(seed, 1, 0, 1)),
+             256 * random_unit(random_hash(seed, 2, 0, 1)));
     return noise_perlin(vec3_add(turn(p, random_hash(seed, 3, 0, 1) >> 8), shift));
 }
 
 Vec3 noise_perlin3(Vec3 p, uint32_t seed) {
     uint32_t base = (uint32_t)random_mix(seed);
-    return vec3(noise_perlin_seeded(p, base), noise_perlin_seeded(p, base + 1), noise_perlin_seeded(p, base + 2));
+    return vec3(noise_perlin_seeded(p, base), noise_perlin_seeded(p, base + 1),
+                noise_perlin_seeded(p, base + 2));
 }
 
 double noise_fbm(Vec3 p, int octaves, double lacunarity, double gain) {

@@ -67,7 +67,8 @@ static uint32_t *share_place(const TapeBuilder *builder, const TapeNode *node) {
 static void share_grow(TapeBuilder *builder) {
     builder->share_size = builder->share_size ? 2 * builder->share_size : 64;
     builder->share = arena_new_array(builder->arena, uint32_t, builder->share_size);
-    for (uint32_t i = 0; i < builder->nodes.count; i++) *share_place(builder, &builder->nodes.items[i]) = i + 1;
+    for (uint32_t i = 0; i < builder->nodes.count; i++)
+        *share_place(builder, &builder->nodes.items[i]) = i + 1;
 }
 
 static TapeRef add_node(TapeBuilder *builder, TapeNode node, Span span) {
@@ -95,7 +96,10 @@ TapeRef tape_input(TapeBuilder *builder, int index) {
 }
 
 TapeRef tape_constant(TapeBuilder *builder, double value) {
-    union { double value; uint64_t bits; } u = {.value = isnan(value) ? (double)NAN : value};
+    union {
+        double value;
+        uint64_t bits;
+    } u = {.value = isnan(value) ? (double)NAN : value};
     TapeNode node = {.op = TAPE_CONSTANT, .a = (uint32_t)u.bits, .b = (uint32_t)(u.bits >> 32)};
     return add_node(builder, node, (Span){0});
 }
@@ -118,10 +122,13 @@ static bool all_constant(const TapeBuilder *builder, const TapeRef *refs, size_t
 /* Simplifications that change no bit of any value. */
 static bool simplify(const TapeBuilder *builder, TapeOp op, TapeRef a, TapeRef b, TapeRef *out) {
     double value;
-    if (op == TAPE_NEG && builder->nodes.items[a].op == TAPE_NEG) return *out = builder->nodes.items[a].a, true;
-    if ((op == TAPE_MUL || op == TAPE_DIV) && tape_is_constant(builder, b, &value) && value == 1) return *out = a, true;
+    if (op == TAPE_NEG && builder->nodes.items[a].op == TAPE_NEG)
+        return *out = builder->nodes.items[a].a, true;
+    if ((op == TAPE_MUL || op == TAPE_DIV) && tape_is_constant(builder, b, &value) && value == 1)
+        return *out = a, true;
     if (op == TAPE_MUL && tape_is_constant(builder, a, &value) && value == 1) return *out = b, true;
-    if (op == TAPE_SUB && tape_is_constant(builder, b, &value) && value == 0 && !signbit(value)) return *out = a, true;
+    if (op == TAPE_SUB && tape_is_constant(builder, b, &value) && value == 0 && !signbit(value))
+        return *out = a, true;
     return false;
 }
 
@@ -136,10 +143,12 @@ TapeRef tape_unary(TapeBuilder *builder, TapeOp op, TapeRef a, Span span) {
 TapeRef tape_binary(TapeBuilder *builder, TapeOp op, TapeRef a, TapeRef b, Span span) {
     double x[2];
     TapeRef simple;
-    if (all_constant(builder, (TapeRef[]){a, b}, 2, x)) return tape_constant(builder, tape_apply(op, x[0], x[1], 0));
+    if (all_constant(builder, (TapeRef[]){a, b}, 2, x))
+        return tape_constant(builder, tape_apply(op, x[0], x[1], 0));
     if (simplify(builder, op, a, b, &simple)) return simple;
     if (op == TAPE_MUL && a == b) return tape_unary(builder, TAPE_SQR, a, span);
-    if ((op == TAPE_ADD || op == TAPE_MUL) && a > b) return add_node(builder, (TapeNode){(uint32_t)op, b, a, 0}, span);
+    if ((op == TAPE_ADD || op == TAPE_MUL) && a > b)
+        return add_node(builder, (TapeNode){(uint32_t)op, b, a, 0}, span);
     return add_node(builder, (TapeNode){(uint32_t)op, a, b, 0}, span);
 }
 
@@ -154,7 +163,8 @@ TapeRef tape_ternary(TapeBuilder *builder, TapeOp op, TapeRef a, TapeRef b, Tape
 
 /* ---- externals and loops ---- */
 
-static bool fold_call(TapeBuilder *builder, const TapeExternal *external, const TapeRef *inputs, TapeRef *outputs) {
+static bool fold_call(TapeBuilder *builder, const TapeExternal *external, const TapeRef *inputs,
+                      TapeRef *outputs) {
     double in[TAPE_CALL_MAX], out[TAPE_CALL_MAX];
     if (!all_constant(builder, inputs, (size_t)external->input_count, in)) return false;
     external->eval(external->data, in, out);
@@ -162,7 +172,8 @@ static bool fold_call(TapeBuilder *builder, const TapeExternal *external, const 
     return true;
 }
 
-void tape_call(TapeBuilder *builder, const TapeExternal *external, const TapeRef *inputs, TapeRef *outputs, Span span) {
+void tape_call(TapeBuilder *builder, const TapeExternal *external, const TapeRef *inputs, TapeRef *outputs,
+               Span span) {
     if (fold_call(builder, external, inputs, outputs)) return;
     TapeCall *call = list_push(builder->arena, &builder->calls);
     *call = (TapeCall){.external = external};
@@ -189,8 +200,8 @@ static bool fold_loop(TapeBuilder *builder, bool product, const TapeRef range[2]
     return known;
 }
 
-TapeRef tape_loop(TapeBuilder *builder, bool product, TapeRef from, TapeRef to, const Tape *body, const TapeRef *captured,
-                  int captured_count, Span span) {
+TapeRef tape_loop(TapeBuilder *builder, bool product, TapeRef from, TapeRef to, const Tape *body,
+                  const TapeRef *captured, int captured_count, Span span) {
     double value;
     size_t count = (size_t)captured_count;
     if (fold_loop(builder, product, (TapeRef[]){from, to}, body, captured, count, &value))
@@ -210,7 +221,8 @@ static void map_refs(const TapeRef *map, const TapeRef *refs, size_t count, Tape
     for (size_t k = 0; k < count; k++) out[k] = map[refs[k]];
 }
 
-static TapeRef inline_loop(TapeBuilder *builder, const Tape *callee, const TapeNode *node, const TapeRef *map, Span span) {
+static TapeRef inline_loop(TapeBuilder *builder, const Tape *callee, const TapeNode *node, const TapeRef *map,
+                           Span span) {
     const TapeLoop *loop = &callee->loops[node->c];
     TapeRef *captured = arena_new_array(builder->arena, TapeRef, loop->captured_count);
     map_refs(map, loop->captured, loop->captured_count, captured);
@@ -218,12 +230,14 @@ static TapeRef inline_loop(TapeBuilder *builder, const Tape *callee, const TapeN
                      (int)loop->captured_count, span);
 }
 
-static TapeRef inline_node(TapeBuilder *builder, const TapeNode *node, const TapeRef *inputs, const TapeRef *map, Span span) {
+static TapeRef inline_node(TapeBuilder *builder, const TapeNode *node, const TapeRef *inputs,
+                           const TapeRef *map, Span span) {
     switch (tape_op_arity((TapeOp)node->op)) {
     case 1: return tape_unary(builder, (TapeOp)node->op, map[node->a], span);
     case 2: return tape_binary(builder, (TapeOp)node->op, map[node->a], map[node->b], span);
     case 3: return tape_ternary(builder, (TapeOp)node->op, map[node->a], map[node->b], map[node->c], span);
-    default: return node->op == TAPE_INPUT ? inputs[node->a] : tape_constant(builder, tape_node_constant(node));
+    default:
+        return node->op == TAPE_INPUT ? inputs[node->a] : tape_constant(builder, tape_node_constant(node));
     }
 }
 

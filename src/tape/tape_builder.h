@@ -7,10 +7,22 @@
 struct TapeBuilder {
     Arena *arena;
     uint32_t input_count;
-    struct { TapeNode *items; size_t count, capacity; } nodes;
-    struct { Span *items; size_t count, capacity; } spans; /* of nodes */
-    struct { TapeCall *items; size_t count, capacity; } calls;
-    struct { TapeLoop *items; size_t count, capacity; } loops;
+    struct {
+        TapeNode *items;
+        size_t count, capacity;
+    } nodes;
+    struct {
+        Span *items;
+        size_t count, capacity;
+    } spans; /* of nodes */
+    struct {
+        TapeCall *items;
+        size_t count, capacity;
+    } calls;
+    struct {
+        TapeLoop *items;
+        size_t count, capacity;
+    } loops;
     uint32_t *share; /* open hash table: 1 + index of a node, 0 = empty */
     size_t share_size;
 };

@@ -8,7 +8,8 @@
 static void walk(const Tape *tape, double *slots);
 
 static void load_constants(const Tape *tape, double *slots) {
-    if (tape->constant_count) memcpy(slots + tape->input_count, tape->constants, tape->constant_count * sizeof *slots);
+    if (tape->constant_count)
+        memcpy(slots + tape->input_count, tape->constants, tape->constant_count * sizeof *slots);
 }
 
 static void call(const TapeCall *call_, double *slots) {
@@ -22,7 +23,7 @@ static void call(const TapeCall *call_, double *slots) {
 
 double tape_loop_value(const Tape *body, bool product, double from, double to, double *scratch) {
     double passes = to - from, total = product ? 1 : 0, i = from;
-    if (!(passes < TAPE_LOOP_LIMIT)) return NAN;
+    if (!(passes < TAPE_LOOP_LIMIT)) return (double)NAN;
     load_constants(body, scratch);
     /* Far from zero i + 1 may be i: the count ends the loop. */
     for (double pass = 0; i <= to && pass <= passes; pass++, i += 1) {
@@ -34,15 +35,16 @@ double tape_loop_value(const Tape *body, bool product, double from, double to, d
     return total;
 }
 
-static double loop(const TapeLoop *loop_, bool product, double from, double to, const double *slots, double *scratch) {
+static double loop(const TapeLoop *loop_, bool product, double from, double to, const double *slots,
+                   double *scratch) {
     for (uint32_t k = 0; k < loop_->captured_count; k++) scratch[k] = slots[loop_->captured_slots[k]];
     return tape_loop_value(loop_->body, product, from, to, scratch);
 }
 
-#define WALK_STEP_1(name)  slots[step->dst] = scalar_##name(slots[step->a])
-#define WALK_STEP_2(name)  slots[step->dst] = scalar_##name(slots[step->a], slots[step->b])
-#define WALK_STEP_3(name)  slots[step->dst] = scalar_##name(slots[step->a], slots[step->b], slots[step->c])
-#define WALK_CALL          call(&tape->calls[step->c], slots)
+#define WALK_STEP_1(name) slots[step->dst] = scalar_##name(slots[step->a])
+#define WALK_STEP_2(name) slots[step->dst] = scalar_##name(slots[step->a], slots[step->b])
+#define WALK_STEP_3(name) slots[step->dst] = scalar_##name(slots[step->a], slots[step->b], slots[step->c])
+#define WALK_CALL         call(&tape->calls[step->c], slots)
 #define WALK_LOOP(product)                                                                                   \
     slots[step->dst] = loop(&tape->loops[step->c], product, slots[step->a], slots[step->b], slots,           \
                             slots + tape->slot_count)
@@ -52,7 +54,7 @@ static void walk(const Tape *tape, double *slots) {
 }
 
 double tape_apply(TapeOp op, double a, double b, double c) {
-    double slots[4] = {a, b, c, NAN};
+    double slots[4] = {a, b, c, (double)NAN};
     TapeStep step = {(uint32_t)op, 3, 0, 1, 2};
     Tape tape = {.step_count = 1, .steps = &step};
     walk(&tape, slots);
@@ -68,10 +70,11 @@ void tape_eval(const Tape *tape, const double *in, double *out, double *scratch)
 
 void tape_eval_once(const Tape *tape, const double *in, double *out) {
     double few[256];
-    double *scratch = tape->scratch_size <= VTS_ARRAY_COUNT(few) ? few : malloc(tape->scratch_size * sizeof *few);
+    double *scratch =
+        tape->scratch_size <= VTS_ARRAY_COUNT(few) ? few : malloc(tape->scratch_size * sizeof *few);
     if (scratch)
         tape_eval(tape, in, out, scratch);
     else
-        for (uint32_t k = 0; k < tape->output_count; k++) out[k] = NAN;
+        for (uint32_t k = 0; k < tape->output_count; k++) out[k] = (double)NAN;
     if (scratch != few) free(scratch);
 }

@@ -20,7 +20,8 @@ static void copy(double *restrict to, const double *restrict from, size_t lanes)
 }
 
 static void load_constants(const Tape *tape, Row *slots, size_t lanes) {
-    for (uint32_t k = 0; k < tape->constant_count; k++) fill(slots[tape->input_count + k], tape->constants[k], lanes);
+    for (uint32_t k = 0; k < tape->constant_count; k++)
+        fill(slots[tape->input_count + k], tape->constants[k], lanes);
 }
 
 static void call(const TapeCall *call_, Row *slots, size_t lanes) {
@@ -49,18 +50,21 @@ static bool loop_pass(const TapeLoop *loop_, bool product, const double *from, c
     walk(loop_->body, scratch, lanes);
     const double *term = scratch[loop_->body->output_slots[0]];
     for (size_t l = 0; l < lanes; l++) {
-        if (loop_runs(from[l], to[l], i[l], pass)) total[l] = product ? total[l] * term[l] : total[l] + term[l];
+        if (loop_runs(from[l], to[l], i[l], pass))
+            total[l] = product ? total[l] * term[l] : total[l] + term[l];
         i[l] += 1;
     }
     return true;
 }
 
-static void loop(const TapeLoop *loop_, bool product, const double *from, const double *to, double *total, Row *slots,
-                 Row *scratch, size_t lanes) {
+static void loop(const TapeLoop *loop_, bool product, const double *from, const double *to, double *total,
+                 Row *slots, Row *scratch, size_t lanes) {
     load_constants(loop_->body, scratch, lanes);
-    for (uint32_t k = 0; k < loop_->captured_count; k++) copy(scratch[k], slots[loop_->captured_slots[k]], lanes);
+    for (uint32_t k = 0; k < loop_->captured_count; k++)
+        copy(scratch[k], slots[loop_->captured_slots[k]], lanes);
     copy(scratch[loop_->captured_count], from, lanes);
-    for (size_t l = 0; l < lanes; l++) total[l] = to[l] - from[l] < TAPE_LOOP_LIMIT ? (product ? 1 : 0) : NAN;
+    for (size_t l = 0; l < lanes; l++)
+        total[l] = to[l] - from[l] < TAPE_LOOP_LIMIT ? (product ? 1 : 0) : (double)NAN;
     for (double pass = 0; loop_pass(loop_, product, from, to, pass, scratch, total, lanes);) pass++;
 }
 
@@ -69,7 +73,7 @@ static void loop(const TapeLoop *loop_, bool product, const double *from, const 
         double *restrict d = slots[step->dst];                                                               \
         for (size_t l = 0; l < lanes; l++) d[l] = (expression);                                              \
     }
-#define WALK_ROW(operand)  const double *restrict operand = slots[step->operand]
+#define WALK_ROW(operand) const double *restrict operand = slots[step->operand]
 #define WALK_STEP_1(name)                                                                                    \
     {                                                                                                        \
         WALK_ROW(a);                                                                                         \
@@ -103,7 +107,8 @@ static void eval_rows(const Tape *tape, size_t n, const double *const *in, doubl
         size_t lanes = size_min(LANES, n - begin);
         for (uint32_t k = 0; k < tape->input_count; k++) copy(slots[k], in[k] + begin, lanes);
         walk(tape, slots, lanes);
-        for (uint32_t k = 0; k < tape->output_count; k++) copy(out[k] + begin, slots[tape->output_slots[k]], lanes);
+        for (uint32_t k = 0; k < tape->output_count; k++)
+            copy(out[k] + begin, slots[tape->output_slots[k]], lanes);
     }
 }
 
@@ -113,6 +118,6 @@ void tape_eval_batch(const Tape *tape, size_t n, const double *const *in, double
     if (slots)
         eval_rows(tape, n, in, out, slots);
     else
-        for (uint32_t k = 0; k < tape->output_count; k++) fill(out[k], NAN, n);
+        for (uint32_t k = 0; k < tape->output_count; k++) fill(out[k], (double)NAN, n);
     if (slots != few) free(slots);
 }

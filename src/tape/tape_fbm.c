@@ -5,13 +5,15 @@
 
 enum { MAX_OCTAVES = 64 };
 
-static TapeRef octave(TapeBuilder *b, const TapeRef place[3], TapeRef frequency, TapeRef amplitude, Span span) {
+static TapeRef octave(TapeBuilder *b, const TapeRef place[3], TapeRef frequency, TapeRef amplitude,
+                      Span span) {
     TapeRef p[3];
     for (int k = 0; k < 3; k++) p[k] = tape_binary(b, TAPE_MUL, place[k], frequency, span);
     return tape_binary(b, TAPE_MUL, amplitude, tape_ternary(b, TAPE_PERLIN, p[0], p[1], p[2], span), span);
 }
 
-static TapeRef unrolled(TapeBuilder *b, const TapeRef place[3], int octaves, TapeRef lacunarity, TapeRef gain, Span span) {
+static TapeRef unrolled(TapeBuilder *b, const TapeRef place[3], int octaves, TapeRef lacunarity, TapeRef gain,
+                        Span span) {
     TapeRef sum = tape_constant(b, 0), frequency = tape_constant(b, 1), amplitude = frequency;
     for (int k = 0; k < octaves; k++) {
         TapeRef term = octave(b, place, frequency, amplitude, span);
@@ -35,9 +37,9 @@ static TapeRef looped(TapeBuilder *b, const TapeRef place[3], TapeRef octaves, T
     return tape_loop(b, false, tape_constant(b, 0), last, tape_finish(body, &term, 1), captured, 5, span);
 }
 
-TapeRef tape_fbm(TapeBuilder *b, const TapeRef place[3], TapeRef octaves, TapeRef lacunarity, TapeRef gain, Span span) {
+TapeRef tape_fbm(TapeBuilder *b, const TapeRef place[3], TapeRef octaves, TapeRef lacunarity, TapeRef gain,
+                 Span span) {
     double count;
-    if (!tape_is_constant(b, octaves, &count))
-        return looped(b, place, octaves, lacunarity, gain, span);
+    if (!tape_is_constant(b, octaves, &count)) return looped(b, place, octaves, lacunarity, gain, span);
     return unrolled(b, place, (int)double_clamp(count, 0, MAX_OCTAVES), lacunarity, gain, span);
 }

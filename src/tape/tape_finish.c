@@ -16,7 +16,8 @@ static size_t plain_operand_count(TapeOp op) {
     }
 }
 
-static void visit_operands(TapeNode *node, TapeCall *calls, TapeLoop *loops, OperandVisitor *visit, void *context) {
+static void visit_operands(TapeNode *node, TapeCall *calls, TapeLoop *loops, OperandVisitor *visit,
+                           void *context) {
     size_t count = plain_operand_count((TapeOp)node->op);
     if (count > 0) visit(context, &node->a);
     if (count > 1) visit(context, &node->b);
@@ -75,7 +76,8 @@ static void note_use(void *context, TapeRef *operand) {
 static void release(void *context, TapeRef *operand) {
     SlotPlan *plan = context;
     TapeOp op = (TapeOp)plan->builder->nodes.items[*operand].op;
-    if (plan->last_use[*operand] != plan->node || op == TAPE_INPUT || op == TAPE_CONSTANT || op == TAPE_CALL) return;
+    if (plan->last_use[*operand] != plan->node || op == TAPE_INPUT || op == TAPE_CONSTANT || op == TAPE_CALL)
+        return;
     plan->last_use[*operand] = 0; /* once, though it may be read twice by this node */
     plan->free[plan->free_count++] = plan->slots[*operand];
 }
@@ -109,7 +111,8 @@ static void place_node(SlotPlan *plan, uint32_t i) {
     if (node->op == TAPE_INPUT || node->op == TAPE_CONSTANT) return;
     if (node->op != TAPE_CALL)
         plan->slots[i] = plan->free_count ? plan->free[--plan->free_count] : plan->slot_count++;
-    if (node->op == TAPE_RESULT) b->calls.items[b->nodes.items[node->a].c].result_slots[node->b] = plan->slots[i];
+    if (node->op == TAPE_RESULT)
+        b->calls.items[b->nodes.items[node->a].c].result_slots[node->b] = plan->slots[i];
     visit_operands(node, b->calls.items, b->loops.items, release, plan);
 }
 
@@ -135,7 +138,8 @@ static TapeStep make_step(TapeBuilder *b, const uint32_t *slots, size_t i) {
     } else if (node->op == TAPE_SUM || node->op == TAPE_PROD) {
         TapeLoop *loop = &b->loops.items[node->c];
         loop->captured_slots = arena_new_array(b->arena, uint32_t, loop->captured_count);
-        for (uint32_t k = 0; k < loop->captured_count; k++) loop->captured_slots[k] = slots[loop->captured[k]];
+        for (uint32_t k = 0; k < loop->captured_count; k++)
+            loop->captured_slots[k] = slots[loop->captured[k]];
     }
     return step;
 }

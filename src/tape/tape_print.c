@@ -30,7 +30,9 @@ static void print_node(const Tape *tape, const TapeNode *node, int indent, StrBu
     }
     case TAPE_SUM:
     case TAPE_PROD: print_loop(&tape->loops[node->c], node, indent, out); break;
-    default: print_operands((TapeRef[]){node->a, node->b, node->c}, (uint32_t)tape_op_arity((TapeOp)node->op), out);
+    default:
+        print_operands((TapeRef[]){node->a, node->b, node->c}, (uint32_t)tape_op_arity((TapeOp)node->op),
+                       out);
     }
 }
 

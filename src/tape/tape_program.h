@@ -20,15 +20,15 @@ typedef struct TapeStep {
 
 typedef struct TapeCall {
     const TapeExternal *external;
-    TapeRef args[TAPE_CALL_MAX];           /* nodes */
-    uint32_t arg_slots[TAPE_CALL_MAX];     /* of a finished tape, as the next one */
-    uint32_t result_slots[TAPE_CALL_MAX];  /* TAPE_NO_SLOT: nobody wants it */
+    TapeRef args[TAPE_CALL_MAX];          /* nodes */
+    uint32_t arg_slots[TAPE_CALL_MAX];    /* of a finished tape, as the next one */
+    uint32_t result_slots[TAPE_CALL_MAX]; /* TAPE_NO_SLOT: nobody wants it */
 } TapeCall;
 
 typedef struct TapeLoop {
     const Tape *body;
     uint32_t captured_count;
-    TapeRef *captured;        /* nodes */
+    TapeRef *captured; /* nodes */
     uint32_t *captured_slots;
 } TapeLoop;
 
@@ -39,7 +39,7 @@ struct Tape {
     size_t node_count, step_count, call_count, loop_count;
     size_t scratch_size; /* slots in all, loops' bodies included */
     const TapeNode *nodes;
-    const Span *spans;   /* of nodes */
+    const Span *spans; /* of nodes */
     const TapeStep *steps;
     const double *constants;
     const TapeCall *calls;
@@ -50,7 +50,10 @@ struct Tape {
 };
 
 static inline double tape_node_constant(const TapeNode *node) {
-    union { uint64_t bits; double value; } u = {.bits = (uint64_t)node->b << 32 | node->a};
+    union {
+        uint64_t bits;
+        double value;
+    } u = {.bits = (uint64_t)node->b << 32 | node->a};
     return u.value;
 }
 

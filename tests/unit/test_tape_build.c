@@ -47,8 +47,9 @@ static void prints_one_instruction_a_line(void **state) {
     TapeRef sine = tape_unary(b, TAPE_SIN, x, here), product = tape_binary(b, TAPE_MUL, two, y, here);
     TapeRef sum = tape_binary(b, TAPE_ADD, sine, product, here);
     const Tape *tape = tape_finish(b, (TapeRef[]){sum, x}, 2);
-    expect_print(tape, "%0 = input 0\n%1 = input 1\n%2 = constant 2\n%3 = sin %0\n%4 = mul %1 %2\n%5 = add %3 %4\n"
-                       "return %5 %0\n");
+    expect_print(tape,
+                 "%0 = input 0\n%1 = input 1\n%2 = constant 2\n%3 = sin %0\n%4 = mul %1 %2\n%5 = add %3 %4\n"
+                 "return %5 %0\n");
     assert_int_equal(tape_instruction_span(tape, 3).begin, 10);
     assert_int_equal(tape_input_count(tape), 2);
     assert_int_equal(tape_output_count(tape), 2);
@@ -127,7 +128,8 @@ static void drops_what_no_output_needs(void **state) {
 static const Tape *make_square_plus(double constant) {
     TapeBuilder *b = tape_builder_create(&arena, 1);
     TapeRef x = tape_input(b, 0);
-    TapeRef y = tape_binary(b, TAPE_ADD, tape_binary(b, TAPE_MUL, x, x, here), tape_constant(b, constant), here);
+    TapeRef y =
+        tape_binary(b, TAPE_ADD, tape_binary(b, TAPE_MUL, x, x, here), tape_constant(b, constant), here);
     return tape_finish(b, &y, 1);
 }
 
@@ -176,7 +178,8 @@ static void calls_externals(void **state) {
     TapeRef args[2] = {tape_input(outer, 0), tape_constant(outer, 4)}, results[3];
     tape_inline(outer, callee, args, results);
     const Tape *tape = tape_finish(outer, &results[1], 1);
-    expect_print(tape, "%0 = input 0\n%1 = constant 4\n%2 = call swapper %0 %1\n%3 = result %2 0\nreturn %3\n");
+    expect_print(tape,
+                 "%0 = input 0\n%1 = constant 4\n%2 = call swapper %0 %1\n%3 = result %2 0\nreturn %3\n");
     assert_true(eval1(tape, 3) == 20);
 }
 
@@ -184,18 +187,25 @@ static void calls_externals(void **state) {
 static const Tape *make_loop(bool product) {
     TapeBuilder *body = tape_builder_create(&arena, 2), *b = tape_builder_create(&arena, 3);
     TapeRef i = tape_input(body, 1);
-    TapeRef term = tape_binary(body, TAPE_MUL, tape_binary(body, TAPE_ADD, tape_input(body, 0), i, here), i, here);
+    TapeRef term =
+        tape_binary(body, TAPE_MUL, tape_binary(body, TAPE_ADD, tape_input(body, 0), i, here), i, here);
     TapeRef captured = tape_input(b, 2);
-    TapeRef loop = tape_loop(b, product, tape_input(b, 0), tape_input(b, 1), tape_finish(body, &term, 1), &captured, 1, here);
+    TapeRef loop = tape_loop(b, product, tape_input(b, 0), tape_input(b, 1), tape_finish(body, &term, 1),
+                             &captured, 1, here);
     return tape_finish(b, &loop, 1);
 }
 
 static void loops_as_povray_does(void **state) {
     (void)state;
     static const double cases[][5] = {/* from, to, captured, sum, product */
-                                      {1, 3, 0, 14, 36},      {1.5, 3, 0, 8.5, 14.0625}, {3, 1, 5, 0, 1},
-                                      {1, 3.5, 0, 14, 36},    {2, 2, 10, 24, 24},        {0, 3e8, 0, NAN, NAN},
-                                      {0, INFINITY, 0, NAN, NAN}, {NAN, 1, 0, NAN, NAN}};
+                                      {1, 3, 0, 14, 36},
+                                      {1.5, 3, 0, 8.5, 14.0625},
+                                      {3, 1, 5, 0, 1},
+                                      {1, 3.5, 0, 14, 36},
+                                      {2, 2, 10, 24, 24},
+                                      {0, 3e8, 0, (double)NAN, (double)NAN},
+                                      {0, (double)INFINITY, 0, (double)NAN, (double)NAN},
+                                      {(double)NAN, 1, 0, (double)NAN, (double)NAN}};
     const Tape *sum = make_loop(false), *product = make_loop(true);
     for (size_t k = 0; k < VTS_ARRAY_COUNT(cases); k++) {
         double s, p;
@@ -226,9 +236,12 @@ static void nests_loops(void **state) {
     /* Σ_{i=1..n} Σ_{j=1..i} i·j */
     TapeBuilder *inner = tape_builder_create(&arena, 2), *outer = tape_builder_create(&arena, 1),
                 *b = tape_builder_create(&arena, 1);
-    TapeRef term = tape_binary(inner, TAPE_MUL, tape_input(inner, 0), tape_input(inner, 1), here), i = tape_input(outer, 0);
-    TapeRef row = tape_loop(outer, false, tape_constant(outer, 1), i, tape_finish(inner, &term, 1), &i, 1, here);
-    TapeRef all = tape_loop(b, false, tape_constant(b, 1), tape_input(b, 0), tape_finish(outer, &row, 1), NULL, 0, here);
+    TapeRef term = tape_binary(inner, TAPE_MUL, tape_input(inner, 0), tape_input(inner, 1), here),
+            i = tape_input(outer, 0);
+    TapeRef row =
+        tape_loop(outer, false, tape_constant(outer, 1), i, tape_finish(inner, &term, 1), &i, 1, here);
+    TapeRef all = tape_loop(b, false, tape_constant(b, 1), tape_input(b, 0), tape_finish(outer, &row, 1),
+                            NULL, 0, here);
     const Tape *tape = tape_finish(b, &all, 1);
     double expected = 0;
     for (int p = 1; p <= 7; p++)
@@ -280,7 +293,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(ends_loops_where_adding_one_changes_nothing, set_up, tear_down),
         cmocka_unit_test_setup_teardown(nests_loops, set_up, tear_down),
         cmocka_unit_test_setup_teardown(huge_tapes_need_little_scratch, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(outputs_may_be_inputs_constants_and_twice_the_same, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(outputs_may_be_inputs_constants_and_twice_the_same, set_up,
+                                        tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,49 @@
+#include "render/report.h"
+
+static void add_text(StrBuf *out, const char *key, const char *text) {
+    strbuf_addf(out, "\"%s\":", key);
+    strbuf_add_json(out, text);
+}
+
+static void add_texels(StrBuf *out, const CompiledScene *compiled) {
+    strbuf_adds(out, "\"texels\":[");
+    for (size_t i = 0; i < compiled->texel_count; i++) {
+        const BuiltTexel *t = compiled->texels[i];
+        if (i) strbuf_addc(out, ',');
+        strbuf_addc(out, '{');
+        add_text(out, "name", t->def->name);
+        if (t->asked) strbuf_addf(out, ",\"asked\":%d", t->asked);
+        else strbuf_adds(out, ",\"asked\":\"auto\"");
+        strbuf_addf(out, ",\"needed\":%d,\"built\":%d,\"voxels\":%zu,\"bytes\":%zu,\"build_s\":%.4f,\"cached\":false}", t->needed,
+                    t->built, t->voxel_count, t->bytes, t->build_seconds);
+    }
+    strbuf_addc(out, ']');
+}
+
+static void add_frame(StrBuf *out, const FrameReport *f) {
+    const TraceCounters *c = &f->stats->counters;
+    strbuf_addf(out, "{\"frame\":%d,\"clock\":%.9g,", f->frame, f->clock);
+    add_text(out, "output", f->output);
+    strbuf_addf(out, ",\"wall_s\":%.4f,\"cpu_s\":%.4f,\"parse_s\":%.4f,\"build_s\":%.4f,\"render_s\":%.4f,", f->wall_s, f->cpu_s,
+                f->parse_s, f->build_s, f->render_s);
+    strbuf_addf(out, "\"peak_rss_bytes\":%zu,\"rays\":{\"camera\":%llu,\"shadow\":%llu},\"voxels_visited\":%llu,", f->peak_rss_bytes,
+                (unsigned long long)c->camera_rays, (unsigned long long)c->shadow_rays, (unsigned long long)c->voxels_visited);
+    strbuf_adds(out, "\"function_evaluations\":0,\"evaluations_per_ray\":0,");
+    add_texels(out, f->compiled);
+    strbuf_addf(out, ",\"error_estimate\":null,\"stages\":{\"parse_s\":%.4f,\"build_s\":%.4f,\"render_s\":%.4f,\"write_s\":%.4f,"
+                     "\"march_steps\":%llu,\"split_pixels\":%llu}}",
+                f->parse_s, f->build_s, f->render_s, f->write_s, (unsigned long long)c->steps, (unsigned long long)f->stats->split_pixels);
+}
+
+void report_write(StrBuf *out, const char *scene, const char *version, const FrameReport *frames, size_t count) {
+    strbuf_addc(out, '{');
+    add_text(out, "scene", scene);
+    strbuf_addc(out, ',');
+    add_text(out, "version", version);
+    strbuf_adds(out, ",\"frames\":[");
+    for (size_t i = 0; i < count; i++) {
+        if (i) strbuf_addc(out, ',');
+        add_frame(out, &frames[i]);
+    }
+    strbuf_adds(out, "]}\n");
+}

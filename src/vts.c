@@ -1,0 +1,444 @@
+#include "vts.h"
+
+#include "base/stopwatch.h"
+#include "eval/eval.h"
+#include "render/report.h"
+
+#include <errno.h>
+#include <setjmp.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+struct VtsSession {
+    VtsOptions options;
+    MemoryBudget memory;
+    jmp_buf out_of_memory;      /* valid while `guarded` */
+    Pool *pool;
+    Progress progress;
+    volatile bool interrupted;
+    /* of the session */
+    Arena arena;
+    SourceSet sources;
+    DiagList diags;
+    Interner names;
+    StrBuf stdlib, printed, report;
+    const Diagnostic *last_printed;
+    /* of one call */
+    Arena parse, scene_arena, compiled_arena;
+    const Scene *scene;
+    Scene scene_with_settings;
+    CompiledScene compiled;
+    Image picture;
+    double started_wall, started_cpu;
+};
+
+const char *vts_version(void) { return VTS_VERSION; }
+
+VtsOptions vts_options_default(void) { return (VtsOptions){.width = 768, .height = 576}; }
+
+/* ---- sessions ---- */
+
+static void memory_exhausted(void *context) {
+    VtsSession *session = context;
+    longjmp(session->out_of_memory, 1);
+}
+
+static void pass_progress(void *context, const char *stage, size_t done, size_t total) {
+    VtsSession *session = context;
+    if (session->options.on_progress) session->options.on_progress(session->options.context, stage, done, total);
+}
+
+static bool is_folder(const char *path) {
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
+/* The standard library: as told, beside the program (installed or in a build tree), or where it was to be installed. */
+static void find_stdlib(VtsSession *session) {
+    static const char *const beside[] = {"../share/vts/stdlib", "../stdlib", "stdlib", "../../stdlib"};
+    if (session->options.stdlib_dir) {
+        strbuf_adds(&session->stdlib, session->options.stdlib_dir);
+        return;
+    }
+    for (size_t i = 0; session->options.program_dir && i < VTS_ARRAY_COUNT(beside); i++) {
+        strbuf_clear(&session->stdlib);
+        strbuf_addf(&session->stdlib, "%s/%s", session->options.program_dir, beside[i]);
+        if (is_folder(session->stdlib.data)) return;
+    }
+    strbuf_clear(&session->stdlib);
+#ifdef VTS_STDLIB_DIR
+    if (is_folder(VTS_STDLIB_DIR)) strbuf_adds(&session->stdlib, VTS_STDLIB_DIR);
+#endif
+}
+
+static const char *option_fault(const VtsOptions *o) {
+    if (o->width < 1 || o->height < 1 || o->width > IMAGE_LARGEST_SIDE || o->height > IMAGE_LARGEST_SIDE)
+        return "the picture's width and height must be 1 to 1048576 pixels";
+    if ((double)o->width * o->height * 4 > IMAGE_LARGEST_SAMPLES) return "the picture is too large";
+    if (o->threads < 0 || o->threads > 1024) return "the number of threads must be 0 (all) to 1024";
+    if (!(o->max_error >= 0 && o->max_error <= 1)) return "max_error must be 0 to 1";
+    if (o->samples < 0 || o->samples > 256) return "samples must be 0 to 256";
+    const int *r = o->region;
+    if ((r[0] || r[1] || r[2] || r[3]) && (r[0] < 0 || r[1] < 0 || r[2] > o->width || r[3] > o->height || r[0] >= r[2] || r[1] >= r[3]))
+        return "the region must lie in the picture and hold at least one pixel";
+    if (!isfinite(o->clock) || !isfinite(o->exposure)) return "clock and exposure must be finite numbers";
+    if (fabs(o->exposure) > 100) return "exposure must be -100 to 100 EV";
+    return NULL;
+}
+
+VtsSession *vts_session_create(const VtsOptions *options, const char **error) {
+    const char *fault = option_fault(options);
+    VtsSession *session = fault ? NULL : calloc(1, sizeof *session);
+    if (!session) {
+        if (error) *error = fault ? fault : "out of memory";
+        return NULL;
+    }
+    session->options = *options;
+    session->memory = (MemoryBudget){.limit = options->memory_limit, .on_exhausted = memory_exhausted, .context = session};
+    session->progress = (Progress){pass_progress, session};
+    if (setjmp(session->out_of_memory) == 0) {
+        arena_init(&session->arena, &session->memory, 0);
+        source_set_init(&session->sources, &session->arena);
+        diag_init(&session->diags, &session->arena, &session->sources);
+        interner_init(&session->names, &session->arena);
+        find_stdlib(session);
+        session->pool = pool_create(options->threads);
+    }
+    if (!session->pool) {
+        vts_session_destroy(session);
+        if (error) *error = "out of memory, or threads cannot be started";
+        return NULL;
+    }
+    return session;
+}
+
+static void end_call(VtsSession *session) {
+    compiled_scene_destroy(&session->compiled);
+    image_free(&session->picture);
+    session->picture = (Image){0};
+    arena_destroy(&session->parse);
+    arena_destroy(&session->scene_arena);
+    arena_destroy(&session->compiled_arena);
+}
+
+void vts_session_destroy(VtsSession *session) {
+    if (!session) return;
+    end_call(session);
+    pool_destroy(session->pool);
+    arena_destroy(&session->arena);
+    strbuf_free(&session->stdlib);
+    strbuf_free(&session->printed);
+    strbuf_free(&session->report);
+    free(session);
+}
+
+void vts_interrupt(VtsSession *session) {
+    session->interrupted = true;
+    pool_cancel(session->pool);
+}
+
+const char *vts_diagnostics(const VtsSession *session) { return session->printed.data ? session->printed.data : ""; }
+const char *vts_report(const VtsSession *session) { return session->report.data ? session->report.data : ""; }
+
+/* Formats what was found since the last time. */
+static void print_diagnostics(VtsSession *session) {
+    const Diagnostic *d = session->last_printed ? session->last_printed->next : session->diags.first;
+    for (; d; d = d->next) {
+        StrBuf text = {0};
+        diag_format(&text, &session->sources, d, session->options.colour);
+        strbuf_adds(&session->printed, text.data);
+        if (session->options.on_diagnostic) session->options.on_diagnostic(session->options.context, text.data, d->severity == SEVERITY_ERROR);
+        strbuf_free(&text);
+        session->last_printed = d;
+    }
+}
+
+/* ---- settings from outside ---- */
+
+typedef struct Knob {
+    const char *name;
+    const char *const *values; /* NULL: a number */
+} Knob;
+static const char *const opacity_values[] = {"mean", "exponential", "correlated", NULL};
+static const char *const quadrature_values[] = {"ring8", "ring16", "grid16", NULL};
+static const Knob knobs[] = {{"opacity_model", opacity_values}, {"quadrature", quadrature_values}, {"shadow_aperture", NULL}, {"samples", NULL}};
+
+static const Knob *find_knob(const char *name) {
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(knobs); i++)
+        if (strcmp(knobs[i].name, name) == 0) return &knobs[i];
+    return NULL;
+}
+
+static bool parse_number(const char *text, double *out) {
+    char *end;
+    errno = 0;
+    *out = strtod(text, &end);
+    return end != text && *end == '\0' && errno == 0 && isfinite(*out);
+}
+
+static VtsStatus bad_setting(VtsSession *session, const VtsPair *pair, const char *why) {
+    diag_error(&session->diags, (Span){0}, "--set %s=%s: %s", pair->name, pair->value, why);
+    return VTS_ERROR_USAGE;
+}
+
+/* --set KNOB=VALUE over the scene's global_settings. */
+static VtsStatus apply_setting(VtsSession *session, const VtsPair *pair, GlobalSettings *settings) {
+    const Knob *knob = find_knob(pair->name);
+    double number;
+    if (!knob) return bad_setting(session, pair, "no such knob in this version; there are opacity_model, quadrature, shadow_aperture, samples");
+    if (!knob->values) {
+        if (!parse_number(pair->value, &number)) return bad_setting(session, pair, "not a number");
+        if (strcmp(knob->name, "samples") == 0) {
+            if (number < 1 || number > 256 || number != floor(number)) return bad_setting(session, pair, "must be a whole number, 1 to 256");
+            settings->samples = (int)number;
+        } else {
+            if (!(number >= 1 && number <= 1000)) return bad_setting(session, pair, "must be 1 to 1000");
+            settings->shadow_aperture = number;
+        }
+        return VTS_OK;
+    }
+    for (const char *const *v = knob->values; *v; v++)
+        if (strcmp(*v, pair->value) == 0) {
+            if (knob->values == opacity_values) settings->opacity_model = *v;
+            else settings->quadrature = *v;
+            return VTS_OK;
+        }
+    return bad_setting(session, pair, knob->values == opacity_values ? "must be mean, exponential or correlated" : "must be ring8, ring16 or grid16");
+}
+
+static VtsStatus apply_settings(VtsSession *session) {
+    session->scene_with_settings = *session->scene;
+    GlobalSettings *settings = &session->scene_with_settings.settings;
+    for (size_t i = 0; i < session->options.setting_count; i++) {
+        VtsStatus status = apply_setting(session, &session->options.settings[i], settings);
+        if (status != VTS_OK) return status;
+    }
+    if (session->options.samples) settings->samples = session->options.samples;
+    session->scene = &session->scene_with_settings;
+    return VTS_OK;
+}
+
+/* A whole number below 2⁶³, or false. */
+static bool parse_count(const char *text, uint64_t *out) {
+    double number;
+    if (!parse_number(text, &number) || number < 1 || number != floor(number) || number > 9e18) return false;
+    *out = (uint64_t)number;
+    return true;
+}
+
+static VtsStatus apply_limits(VtsSession *session, EvalLimits *limits) {
+    for (size_t i = 0; i < session->options.limit_count; i++) {
+        const VtsPair *pair = &session->options.limits[i];
+        uint64_t count;
+        if (!parse_count(pair->value, &count)) {
+            diag_error(&session->diags, (Span){0}, "--limit %s=%s: the limit must be a whole number from 1", pair->name, pair->value);
+            return VTS_ERROR_USAGE;
+        }
+        uint32_t small = count > UINT32_MAX ? UINT32_MAX : (uint32_t)count;
+        if (strcmp(pair->name, "loops") == 0) limits->loops = count;
+        else if (strcmp(pair->name, "recursion") == 0) limits->recursion = small;
+        else if (strcmp(pair->name, "includes") == 0) limits->include_depth = small;
+        else if (strcmp(pair->name, "array") == 0) limits->array_elements = count;
+        else if (strcmp(pair->name, "string") == 0) limits->string_bytes = count;
+        else {
+            diag_error(&session->diags, (Span){0}, "--limit %s: no such limit; there are loops, recursion, includes, array, string", pair->name);
+            return VTS_ERROR_USAGE;
+        }
+    }
+    return VTS_OK;
+}
+
+/* ---- stages ---- */
+
+static void pass_text(void *context, EvalStream stream, const char *text) {
+    VtsSession *session = context;
+    static const VtsStream streams[] = {VTS_STREAM_DEBUG, VTS_STREAM_WARNING, VTS_STREAM_RENDER, VTS_STREAM_STATISTICS};
+    if (session->options.on_text) session->options.on_text(session->options.context, streams[stream], text);
+}
+
+typedef struct EvalMode {
+    bool writes_in_memory, print_tokens, print_ast;
+} EvalMode;
+
+static VtsStatus evaluate(VtsSession *session, const char *path, EvalMode mode) {
+    const VtsOptions *o = &session->options;
+    struct EvalDeclare *declares = arena_new_array(&session->parse, struct EvalDeclare, o->declare_count);
+    for (size_t i = 0; i < o->declare_count; i++) declares[i] = (struct EvalDeclare){o->declares[i].name, o->declares[i].value};
+    EvalOptions options = {.include_dirs = o->include_dirs, .include_dir_count = o->include_dir_count,
+                           .stdlib_dir = session->stdlib.size ? session->stdlib.data : NULL,
+                           .declares = declares, .declare_count = o->declare_count, .clock = o->clock, .clock_on = o->clock_set,
+                           .image_width = o->width, .image_height = o->height, .limits = eval_limits_default(),
+                           .allow_read = o->allow_read, .allow_read_count = o->allow_read_count, .allow_write = o->allow_write,
+                           .allow_write_count = o->allow_write_count, .keep_writes_in_memory = mode.writes_in_memory,
+                           .on_text = pass_text, .context = session, .interrupted = &session->interrupted,
+                           .print_tokens = mode.print_tokens, .print_ast = mode.print_ast};
+    VtsStatus status = apply_limits(session, &options.limits);
+    if (status != VTS_OK) return status;
+    EvalStatus result = eval_file(path, &options, &session->sources, &session->diags, &session->names, &session->parse,
+                                  &session->scene_arena, &session->scene);
+    print_diagnostics(session);
+    switch (result) {
+    case EVAL_OK: return VTS_OK;
+    case EVAL_NO_FILE: return VTS_ERROR_FILE;
+    case EVAL_INTERRUPTED: return VTS_INTERRUPTED;
+    case EVAL_FAILED: break;
+    }
+    return VTS_ERROR_SCENE;
+}
+
+static VtsStatus compile(VtsSession *session) {
+    VtsStatus status = apply_settings(session);
+    if (status != VTS_OK) return status;
+    CompileOptions options = {.pool = session->pool, .memory = &session->memory, .progress = &session->progress,
+                              .width = session->options.width, .height = session->options.height,
+                              .interrupted = &session->interrupted};
+    CompileStatus result = compile_scene(session->scene, &options, &session->compiled_arena, &session->diags, &session->compiled);
+    print_diagnostics(session);
+    return result == COMPILE_OK ? VTS_OK : result == COMPILE_INTERRUPTED ? VTS_INTERRUPTED : VTS_ERROR_SCENE;
+}
+
+static const char *or_default(const char *text, const char *standard) { return text ? text : standard; }
+
+/* What the picture says of itself. No time stamp: equal pictures are equal files. */
+static void describe(VtsSession *session, const char *scene_path) {
+    const VtsOptions *o = &session->options;
+    const GlobalSettings *s = &session->scene->settings;
+    Image *picture = &session->picture;
+    const char *slash = strrchr(scene_path, '/');
+    image_set_text(picture, "Software", "vts " VTS_VERSION);
+    image_set_text(picture, "vts:scene", slash ? slash + 1 : scene_path);
+    image_set_text(picture, "vts:version", VTS_VERSION);
+    image_set_number(picture, "vts:clock", o->clock);
+    image_set_number(picture, "vts:exposure", o->exposure);
+    image_set_text(picture, "vts:opacity_model", or_default(s->opacity_model, "correlated"));
+    image_set_text(picture, "vts:quadrature", or_default(s->quadrature, "ring8"));
+    image_set_number(picture, "vts:shadow_aperture", s->shadow_aperture);
+    image_set_number(picture, "vts:samples", s->samples);
+}
+
+static VtsStatus file_error(VtsSession *session, const StrBuf *why) {
+    diag_error(&session->diags, (Span){0}, "%s", why->size ? why->data : "the picture could not be written");
+    print_diagnostics(session);
+    return VTS_ERROR_FILE;
+}
+
+static VtsStatus save(VtsSession *session, const char *scene_path, const char *output_path) {
+    describe(session, scene_path);
+    StrBuf error = {0};
+    ImageSample sample = IMAGE_SAMPLE_AUTO;
+    if (session->options.float_type && strcmp(session->options.float_type, "float") == 0) sample = IMAGE_SAMPLE_FLOAT;
+    bool ok = image_save(&session->picture, output_path, sample, &error);
+    VtsStatus status = ok ? VTS_OK : file_error(session, &error);
+    strbuf_free(&error);
+    return status;
+}
+
+static VtsStatus render(VtsSession *session, const char *scene_path, const char *output_path) {
+    const VtsOptions *o = &session->options;
+    StrBuf error = {0};
+    bool writable = image_can_write(output_path, &error);
+    VtsStatus status = writable ? evaluate(session, scene_path, (EvalMode){0}) : file_error(session, &error);
+    strbuf_free(&error);
+    if (status != VTS_OK) return status;
+    double parsed = stopwatch_wall();
+    if ((status = compile(session)) != VTS_OK) return status;
+    double built = stopwatch_wall();
+    RenderOptions options = {.pool = session->pool, .progress = &session->progress, .samples = session->scene->settings.samples,
+                             .exposure = o->exposure, .alpha = o->alpha};
+    memcpy(options.region, o->region, sizeof options.region);
+    if (options.region[2] == 0) options.region[2] = o->width, options.region[3] = o->height;
+    RenderStats stats;
+    bool done = !session->interrupted && render_picture(&session->compiled, &options, &session->memory, &session->picture, &stats, NULL);
+    if (session->interrupted) return VTS_INTERRUPTED;
+    if (!done) memory_budget_fail(&session->memory);
+    double rendered = stopwatch_wall();
+    if ((status = save(session, scene_path, output_path)) != VTS_OK) return status;
+    double written = stopwatch_wall();
+    FrameReport report = {.frame = 1, .clock = o->clock, .output = output_path, .wall_s = written - session->started_wall,
+                          .cpu_s = stopwatch_cpu() - session->started_cpu, .parse_s = parsed - session->started_wall,
+                          .build_s = built - parsed, .render_s = rendered - built, .write_s = written - rendered,
+                          .peak_rss_bytes = peak_resident_bytes(), .compiled = &session->compiled, .stats = &stats};
+    strbuf_clear(&session->report);
+    report_write(&session->report, scene_path, VTS_VERSION, &report, 1);
+    return VTS_OK;
+}
+
+/* ---- calls ---- */
+
+typedef enum CallKind { CALL_CHECK, CALL_RUN, CALL_RENDER, CALL_DUMP } CallKind;
+
+typedef struct Call {
+    CallKind kind;
+    const char *scene_path, *output_path;
+    VtsDump dump;
+} Call;
+
+static VtsStatus dump(VtsSession *session, const Call *call) {
+    EvalMode mode = {.writes_in_memory = true, .print_tokens = call->dump == VTS_DUMP_TOKENS, .print_ast = call->dump == VTS_DUMP_AST};
+    VtsStatus status = evaluate(session, call->scene_path, mode);
+    if (status != VTS_OK || mode.print_tokens || mode.print_ast) return status;
+    StrBuf text = {0};
+    if (call->dump == VTS_DUMP_COMPILED) {
+        if ((status = compile(session)) == VTS_OK) compiled_scene_print(&session->compiled, &text);
+    } else {
+        scene_print(session->scene, &text);
+    }
+    if (text.size) pass_text(session, EVAL_STREAM_STATISTICS, text.data);
+    strbuf_free(&text);
+    return status;
+}
+
+static VtsStatus perform(VtsSession *session, const Call *call) {
+    switch (call->kind) {
+    case CALL_CHECK: return evaluate(session, call->scene_path, (EvalMode){.writes_in_memory = true});
+    case CALL_RUN: return evaluate(session, call->scene_path, (EvalMode){0});
+    case CALL_RENDER: return render(session, call->scene_path, call->output_path);
+    case CALL_DUMP: return dump(session, call);
+    }
+    return VTS_ERROR_USAGE;
+}
+
+/* Without the arenas: they may be what is full. */
+static void report_memory(VtsSession *session) {
+    StrBuf text = {0};
+    strbuf_adds(&text, "vts: error: ");
+    if (session->memory.limit) strbuf_addf(&text, "the memory limit of %zu bytes was reached (--memory-limit)\n", session->memory.limit);
+    else strbuf_adds(&text, "out of memory\n");
+    strbuf_adds(&session->printed, text.data);
+    if (session->options.on_diagnostic) session->options.on_diagnostic(session->options.context, text.data, true);
+    strbuf_free(&text);
+}
+
+/* Runs a call with its own arenas; memory exhaustion anywhere below comes back here. */
+static VtsStatus guarded(VtsSession *session, const Call *call) {
+    session->started_wall = stopwatch_wall();
+    session->started_cpu = stopwatch_cpu();
+    if (session->interrupted) return VTS_INTERRUPTED;
+    arena_init(&session->parse, &session->memory, 0);
+    arena_init(&session->scene_arena, &session->memory, 0);
+    arena_init(&session->compiled_arena, &session->memory, 0);
+    VtsStatus status;
+    if (setjmp(session->out_of_memory) == 0) {
+        status = perform(session, call);
+        print_diagnostics(session);
+    } else {
+        status = VTS_ERROR_MEMORY;
+        report_memory(session);
+    }
+    end_call(session);
+    return status;
+}
+
+VtsStatus vts_check(VtsSession *session, const char *scene_path) {
+    return guarded(session, &(Call){.kind = CALL_CHECK, .scene_path = scene_path});
+}
+VtsStatus vts_run(VtsSession *session, const char *scene_path) {
+    return guarded(session, &(Call){.kind = CALL_RUN, .scene_path = scene_path});
+}
+VtsStatus vts_render(VtsSession *session, const char *scene_path, const char *output_path) {
+    return guarded(session, &(Call){.kind = CALL_RENDER, .scene_path = scene_path, .output_path = output_path});
+}
+VtsStatus vts_dump(VtsSession *session, const char *scene_path, VtsDump stage) {
+    return guarded(session, &(Call){.kind = CALL_DUMP, .scene_path = scene_path, .dump = stage});
+}

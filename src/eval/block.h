@@ -20,7 +20,9 @@
  * evaluates 16 once and then the body 16 times, with the local name `index` declared as 0, 1 … 15. Each pass gives one
  * ITEM_WORD `count` of its own: arguments[0] is the index (a float), arguments[1] the number of particles, `body` the items
  * of that pass. A count of zero gives no item. A count that is negative, no whole number or past the limit of loops is the
- * evaluator's error. Everywhere else `word N { … }` is one ITEM_WORD with one body (phases 8 { … }). */
+ * evaluator's error. Everywhere else `word N { … }` is one ITEM_WORD with one body (phases 8 { … }).
+ *
+ * Blocks, items, arguments and components live until the evaluation ends: builders and values may point into them. */
 #ifndef VTS_EVAL_BLOCK_H
 #define VTS_EVAL_BLOCK_H
 

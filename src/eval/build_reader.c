@@ -228,7 +228,13 @@ bool word_int(Reader *reader, const Word *word, size_t index, int *out) {
 
 bool word_vector(Reader *reader, const Word *word, size_t index, Vec3 *out) {
     const Argument *argument = word_argument(reader, word, index, "a vector");
-    return argument && argument_vector(reader, argument, quoted(reader, word), out);
+    if (!argument) return false;
+    if (argument->value.kind == VALUE_VECTOR && argument->value.size == 3) { /* the common case, without a text for errors */
+        const double *c = argument->value.as.components;
+        *out = vec3(c[0], c[1], c[2]);
+        if (vec3_is_finite(*out)) return true;
+    }
+    return argument_vector(reader, argument, quoted(reader, word), out);
 }
 
 bool word_color(Reader *reader, const Word *word, size_t index, Color *out) {
@@ -315,6 +321,7 @@ void reader_word(Reader *reader, const Word *word) {
     for (size_t t = 0; t < reader->table_count; t++) {
         const WordRule *rule = find_rule(&reader->tables[t], word->text);
         if (!rule) continue;
+        if (t == 0) reader->met |= 1ull << (size_t)(rule - reader->tables[0].rules);
         if (!rule->once || check_once(reader, word, rule)) apply_rule(reader, word, rule, reader->tables[t].target);
         return;
     }

@@ -55,6 +55,7 @@ struct Reader {
     bool failed; /* an error was reported */
     WordTable tables[READER_TABLES];
     size_t table_count;
+    uint64_t met; /* bit i: rule i of the first table was read */
     /* Values that are not words: the handler says whether it took the value. NULL: none are expected. */
     bool (*on_value)(Reader *reader, const Argument *value, void *target);
     void *value_target;

@@ -275,6 +275,7 @@ typedef struct Camera {
     Span span;
     CameraKind kind;
     Vec3 location, direction, right, up;
+    const InertNote *inert;
 } Camera;
 
 typedef enum LightKind { LIGHT_POINT, LIGHT_PARALLEL, LIGHT_SPOT } LightKind;
@@ -296,6 +297,7 @@ typedef struct Fog {
     Span span;
     double distance;
     Color color;
+    const InertNote *inert;
 } Fog;
 
 typedef struct GlobalSettings {

@@ -1,0 +1,141 @@
+#include "eval/build_parts.h"
+
+#include <string.h>
+
+/* A finish with what its block set, so that `texture { T finish { ambient 0 } }` changes one number of T's finish. */
+typedef struct BuiltFinish {
+    Finish finish; /* first: a pointer to it is a pointer to the whole */
+    uint64_t set;  /* bits of rules[]; all: made from a declared finish */
+} BuiltFinish;
+
+/* POV-Ray's `diffuse albedo 0.6`: the word in between changes the normalisation, which is not modelled. */
+static bool amount(Reader *reader, const Word *word, size_t high, Word *source) {
+    *source = *word;
+    if (word->count == 0) reader_take_word(reader, "albedo", source);
+    return word_arguments(reader, source, 1, high);
+}
+
+static void read_diffuse(Reader *reader, const Word *word, void *target) {
+    Finish *finish = target;
+    Word source;
+    if (!amount(reader, word, 2, &source) || !word_float(reader, &source, 0, &finish->diffuse)) return;
+    finish->transmission = 0;
+    if (source.count == 2) word_float(reader, &source, 1, &finish->transmission);
+}
+
+static void read_specular(Reader *reader, const Word *word, void *target) {
+    Word source;
+    if (amount(reader, word, 1, &source)) word_float(reader, &source, 0, &((Finish *)target)->specular);
+}
+
+static void read_phong(Reader *reader, const Word *word, void *target) {
+    Word source;
+    if (amount(reader, word, 1, &source)) word_float(reader, &source, 0, &((Finish *)target)->phong);
+}
+
+static const WordRule reflection_rules[] = {
+    {"fresnel", WORD_FLAG, offsetof(Finish, fresnel), NULL, false},
+    {"falloff", WORD_IGNORED, 0, NULL, false},
+    {"exponent", WORD_IGNORED, 0, NULL, false},
+    {"metallic", WORD_IGNORED, 0, NULL, false},
+};
+
+typedef struct ReflectionColors {
+    Color colors[2];
+    size_t count;
+} ReflectionColors;
+
+static bool on_reflection_value(Reader *reader, const Argument *value, void *target) {
+    ReflectionColors *colors = target;
+    if (colors->count == 2) return false;
+    argument_color(reader, value, "'reflection'", &colors->colors[colors->count++]);
+    return true;
+}
+
+/* `reflection c`, `reflection { c }`, `reflection { c_min, c_max fresnel … }` */
+static void read_reflection(Reader *reader, const Word *word, void *target) {
+    Finish *finish = target;
+    ReflectionColors colors = {0};
+    if (word->body) {
+        Reader body = reader_nested(reader, word->body);
+        reader_add_table(&body, reflection_rules, VTS_ARRAY_COUNT(reflection_rules), finish);
+        body.on_value = on_reflection_value;
+        body.value_target = &colors;
+        reader_run(&body);
+        reader_end_nested(reader, &body);
+    } else if (word_arguments(reader, word, 1, 1) && word_color(reader, word, 0, &colors.colors[0])) {
+        colors.count = 1;
+    }
+    if (colors.count == 0) return;
+    finish->reflection_max = colors.colors[colors.count - 1];
+    finish->reflection_min = colors.count == 2 ? colors.colors[0] : finish->reflection_max;
+}
+
+static void read_metallic(Reader *reader, const Word *word, void *target) {
+    Finish *finish = target;
+    finish->metallic = 1;
+    if (word_arguments(reader, word, 0, 1) && word->count) word_float(reader, word, 0, &finish->metallic);
+}
+
+#define FIELD(name) offsetof(Finish, name)
+static const WordRule rules[] = {
+    {"ambient", WORD_COLOR, FIELD(ambient), NULL, false},
+    {"emission", WORD_COLOR, FIELD(emission), NULL, false},
+    {"diffuse", WORD_CUSTOM, FIELD(diffuse), read_diffuse, false},
+    {"brilliance", WORD_FLOAT, FIELD(brilliance), NULL, false},
+    {"specular", WORD_CUSTOM, FIELD(specular), read_specular, false},
+    {"roughness", WORD_POSITIVE, FIELD(roughness), NULL, false},
+    {"phong", WORD_CUSTOM, FIELD(phong), read_phong, false},
+    {"phong_size", WORD_FLOAT, FIELD(phong_size), NULL, false},
+    {"metallic", WORD_CUSTOM, FIELD(metallic), read_metallic, false},
+    {"reflection", WORD_CUSTOM, FIELD(reflection_min), read_reflection, false},
+    {"fresnel", WORD_FLAG, FIELD(fresnel), NULL, false},
+    {"conserve_energy", WORD_IGNORED, 0, NULL, false},
+    {"crand", WORD_IGNORED, 0, NULL, false},
+    {"reflection_exponent", WORD_IGNORED, 0, NULL, false},
+    {"irid", WORD_IGNORED, 0, NULL, false},
+    {"subsurface", WORD_IGNORED, 0, NULL, false},
+    {"use_alpha", WORD_IGNORED, 0, NULL, false},
+};
+
+/* What each of the first rules sets: so many bytes from its offset on. */
+static const size_t rule_bytes[] = {
+    sizeof(Color), sizeof(Color), 2 * sizeof(double), sizeof(double),                          sizeof(double), sizeof(double),
+    sizeof(double), sizeof(double), sizeof(double),   FIELD(fresnel) + sizeof(bool) - FIELD(reflection_min), sizeof(bool),
+};
+
+static bool on_value(Reader *reader, const Argument *value, void *target) {
+    (void)reader;
+    BuiltFinish *built = target;
+    if (value->value.kind != VALUE_FINISH) return false;
+    built->finish = *value->value.as.finish;
+    built->set = ~(uint64_t)0;
+    return true;
+}
+
+const Finish *finish_over(const BuildContext *context, const Finish *base, const Finish *block) {
+    const BuiltFinish *change = (const BuiltFinish *)(const void *)block;
+    BuiltFinish *built = arena_new(context->arena, BuiltFinish);
+    built->set = ~(uint64_t)0;
+    if (change->set == built->set) return block;
+    built->finish = *base;
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(rule_bytes); i++)
+        if (change->set >> i & 1)
+            memcpy((char *)&built->finish + rules[i].offset, (const char *)block + rules[i].offset, rule_bytes[i]);
+    finish_rehash(&built->finish);
+    return &built->finish;
+}
+
+bool build_finish(BuildContext *context, const EvalBlock *block, Value *out) {
+    BuiltFinish *built = arena_new(context->arena, BuiltFinish);
+    built->finish = *texture_default(context)->finish;
+    Reader reader = reader_begin(context, block);
+    reader_add_table(&reader, rules, VTS_ARRAY_COUNT(rules), &built->finish);
+    reader.on_value = on_value;
+    reader.value_target = built;
+    if (!reader_run(&reader)) return false;
+    built->set |= reader.met;
+    finish_rehash(&built->finish);
+    *out = (Value){.kind = VALUE_FINISH, .as.finish = &built->finish};
+    return true;
+}

@@ -1,0 +1,156 @@
+#include "eval/build_parts.h"
+
+#include <string.h>
+
+/* ---- triangle, smooth_triangle: meshes of one triangle ---- */
+
+typedef struct TriangleDraft {
+    Object object;
+    Vec3 *uvs; /* 3; NULL: none */
+} TriangleDraft;
+
+static void read_uv_vectors(Reader *reader, const Word *word, void *target) {
+    TriangleDraft *draft = target;
+    Vec3 *uvs = arena_new_array(reader->context->arena, Vec3, 3);
+    if (!word_arguments(reader, word, 3, 3)) return;
+    for (size_t i = 0; i < 3; i++)
+        if (!word_vector(reader, word, i, &uvs[i])) return;
+    draft->uvs = uvs;
+}
+
+static bool is_degenerate(const Vec3 *v) {
+    Vec3 area = vec3_cross(vec3_sub(v[1], v[0]), vec3_sub(v[2], v[0]));
+    return vec3_length_squared(area) == 0;
+}
+
+static MeshData *one_triangle(Arena *arena, const Vec3 *vertices, const Vec3 *normals) {
+    MeshData *mesh = arena_new(arena, MeshData);
+    uint32_t(*triangles)[3] = arena_push(arena, sizeof *triangles);
+    for (uint32_t i = 0; i < 3; i++) triangles[0][i] = i;
+    *mesh = (MeshData){.vertices = vertices, .vertex_count = 3, .normals = normals, .normal_count = normals ? 3 : 0,
+                       .triangles = (const uint32_t(*)[3])triangles, .triangle_count = 1};
+    return mesh;
+}
+
+bool build_triangle(BuildContext *context, const EvalBlock *block, Value *out) {
+    static const WordRule uv_rules[] = {{"uv_vectors", WORD_CUSTOM, 0, read_uv_vectors, false}};
+    if (object_is_copy(block)) return build_object(context, block, out);
+    bool smooth = strcmp(block->word->text, "smooth_triangle") == 0;
+    Reader reader = reader_begin(context, block);
+    TriangleDraft draft = {.object = object_begin(block, OBJECT_TRIANGLES)};
+    Vec3 *vertices = arena_new_array(context->arena, Vec3, 3), *normals = arena_new_array(context->arena, Vec3, 3);
+    for (int i = 0; i < 3; i++)
+        if (!reader_vector(&reader, "a corner", &vertices[i], NULL) ||
+            (smooth && !reader_vector(&reader, "a normal", &normals[i], NULL)))
+            return false;
+    MeshData *mesh = one_triangle(context->arena, vertices, smooth ? normals : NULL);
+    if (is_degenerate(vertices)) {
+        diag_warning(context->diags, block->word_span, "this triangle has no area: it is left out");
+        mesh->triangle_count = 0;
+    }
+    draft.object.as.mesh = mesh;
+    reader_add_table(&reader, uv_rules, VTS_ARRAY_COUNT(uv_rules), &draft);
+    for (int i = 0; i < 3; i++) normals[i] = vec3_normalize(normals[i]);
+    mesh_rehash(mesh);
+    if (!object_finish(&reader, &draft.object, out)) return false;
+    if (!draft.uvs) return true;
+    mesh->uvs = draft.uvs;
+    mesh->uv_count = 3;
+    mesh_rehash(mesh);
+    Object *made = arena_copy(context->arena, out->as.object, sizeof *made);
+    object_rehash(made);
+    out->as.object = made;
+    return true;
+}
+
+/* ---- mesh: triangles one by one ---- */
+
+typedef struct MeshDraft {
+    Object object;
+    struct { const Object **items; size_t count, capacity; } parts;
+    bool textured, smooth, mapped;
+} MeshDraft;
+
+static bool on_mesh_value(Reader *reader, const Argument *value, void *target) {
+    MeshDraft *draft = target;
+    if (value->value.kind != VALUE_OBJECT || value->value.as.object->kind != OBJECT_TRIANGLES)
+        return take_looks(reader->context, value, &draft->object.texture, &draft->object.inert, &draft->object.transform) ||
+               take_transform(value, &draft->object.transform);
+    const Object *part = value->value.as.object;
+    if (part->as.mesh->triangle_count == 0) return true;
+    draft->textured |= part->texture != NULL;
+    draft->smooth |= part->as.mesh->normals != NULL;
+    draft->mapped |= part->as.mesh->uvs != NULL;
+    *list_push(reader->context->arena, &draft->parts) = part;
+    return true;
+}
+
+static void fill_normals(const MeshData *part, Vec3 *normals) {
+    Vec3 flat = vec3_normalize(vec3_cross(vec3_sub(part->vertices[1], part->vertices[0]),
+                                          vec3_sub(part->vertices[2], part->vertices[0])));
+    for (int k = 0; k < 3; k++) normals[k] = part->normals ? part->normals[k] : flat;
+}
+
+static const Texture **gather_textures(Arena *arena, const MeshDraft *draft, MeshData *mesh, uint32_t *indices) {
+    const Texture **textures = arena_new_array(arena, const Texture *, draft->parts.count + 1);
+    for (size_t i = 0; i < draft->parts.count; i++) {
+        const Texture *texture = draft->parts.items[i]->texture;
+        if (!texture) texture = draft->object.texture;
+        if (mesh->texture_count == 0 || textures[mesh->texture_count - 1] != texture) textures[mesh->texture_count++] = texture;
+        indices[i] = (uint32_t)(mesh->texture_count - 1);
+    }
+    return textures;
+}
+
+/* Three vertices of its own for each triangle. */
+static const MeshData *join_triangles(const BuildContext *context, const MeshDraft *draft) {
+    size_t count = draft->parts.count;
+    MeshData *mesh = arena_new(context->arena, MeshData);
+    Vec3 *vertices = arena_new_array(context->arena, Vec3, 3 * count);
+    Vec3 *normals = draft->smooth ? arena_new_array(context->arena, Vec3, 3 * count) : NULL;
+    Vec3 *uvs = draft->mapped ? arena_new_array(context->arena, Vec3, 3 * count) : NULL;
+    uint32_t(*triangles)[3] = arena_push_array_(context->arena, count, sizeof *triangles);
+    for (size_t i = 0; i < count; i++) {
+        const MeshData *part = draft->parts.items[i]->as.mesh;
+        memcpy(&vertices[3 * i], part->vertices, 3 * sizeof *vertices);
+        if (normals) fill_normals(part, &normals[3 * i]);
+        if (uvs && part->uvs) memcpy(&uvs[3 * i], part->uvs, 3 * sizeof *uvs);
+        for (uint32_t k = 0; k < 3; k++) triangles[i][k] = (uint32_t)(3 * i) + k;
+    }
+    *mesh = (MeshData){.vertices = vertices, .vertex_count = 3 * count, .normals = normals, .uvs = uvs,
+                       .normal_count = normals ? 3 * count : 0, .uv_count = uvs ? 3 * count : 0,
+                       .triangles = (const uint32_t(*)[3])triangles, .triangle_count = count};
+    if (draft->textured) {
+        uint32_t *indices = arena_new_array(context->arena, uint32_t, count);
+        mesh->textures = gather_textures(context->arena, draft, mesh, indices);
+        mesh->triangle_textures = indices;
+    }
+    mesh_rehash(mesh);
+    return mesh;
+}
+
+bool build_mesh(BuildContext *context, const EvalBlock *block, Value *out) {
+    if (block->count == 0) {
+        diag_error(context->diags, block->word_span, "'mesh' without triangles");
+        return false;
+    }
+    MeshDraft draft = {.object = object_begin(block, OBJECT_UNION)}; /* a kind without data until they are joined */
+    Reader reader = reader_begin(context, block);
+    const BlockItem *first = reader_peek(&reader);
+    bool copy = object_is_copy(block) && first->value.as.object->as.mesh && first->value.as.object->kind == OBJECT_TRIANGLES &&
+                strcmp(first->value.as.object->word, "mesh") == 0;
+    if (copy) return build_object(context, block, out);
+    reader.on_value = on_mesh_value;
+    reader.value_target = &draft;
+    if (!object_finish(&reader, &draft.object, out)) return false;
+    if (draft.parts.count == 0) {
+        reader_error(&reader, block->word_span, "'mesh' without triangles");
+        return false;
+    }
+    Object *made = arena_copy(context->arena, out->as.object, sizeof *made);
+    made->kind = OBJECT_TRIANGLES;
+    made->as.mesh = join_triangles(context, &draft);
+    object_rehash(made);
+    out->as.object = made;
+    return true;
+}

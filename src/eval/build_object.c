@@ -1,0 +1,160 @@
+#include "eval/build_parts.h"
+
+#include <string.h>
+
+Object object_begin(const EvalBlock *block, ObjectKind kind) {
+    return (Object){.span = block->span, .kind = kind, .word = block->word->text, .transform = transform_identity()};
+}
+
+#define FIELD(name) offsetof(Object, name)
+#define IGNORED(word) {word, WORD_IGNORED, 0, NULL, false}
+#define INERT(word) {word, WORD_INERT, FIELD(inert), NULL, false}
+static const WordRule rules[] = {
+    {"no_shadow", WORD_FLAG, FIELD(no_shadow), NULL, false},
+    {"no_image", WORD_FLAG, FIELD(no_image), NULL, false},
+    {"inverse", WORD_FLAG, FIELD(inverse), NULL, false},
+    {"hollow", WORD_FLAG, FIELD(hollow), NULL, false},
+    IGNORED("bounded_by"), IGNORED("no_reflection"), IGNORED("double_illuminate"), IGNORED("hierarchy"), IGNORED("sturm"),
+    IGNORED("photons"), IGNORED("radiosity"), IGNORED("no_radiosity"), IGNORED("split_union"), IGNORED("cutaway_textures"),
+    IGNORED("no_bump_scale"), IGNORED("inside_vector"),
+    INERT("clipped_by"), INERT("uv_mapping"), INERT("interior_texture"),
+};
+
+static bool on_value(Reader *reader, const Argument *value, void *target) {
+    Object *object = target;
+    return take_looks(reader->context, value, &object->texture, &object->inert, &object->transform) ||
+           take_transform(value, &object->transform);
+}
+
+bool object_finish(Reader *reader, Object *object, Value *out) {
+    reader_add_table(reader, rules, VTS_ARRAY_COUNT(rules), object);
+    reader_add_table(reader, transform_rules, transform_rule_count, &object->transform);
+    if (!reader->on_value) {
+        reader->on_value = on_value;
+        reader->value_target = object;
+    }
+    if (reader->failed || !reader_run(reader)) return false;
+    Object *made = arena_copy(reader->context->arena, object, sizeof *object);
+    object_rehash(made);
+    *out = (Value){.kind = VALUE_OBJECT, .as.object = made};
+    return true;
+}
+
+bool object_is_copy(const EvalBlock *block) {
+    return block->count && block->items[0].kind == ITEM_VALUE && block->items[0].value.kind == VALUE_OBJECT;
+}
+
+const Object *object_from_value(const BuildContext *context, const Argument *value) {
+    if (value->value.kind == VALUE_OBJECT) return value->value.as.object;
+    Object object = {.span = value->span, .transform = transform_identity()};
+    if (value->value.kind == VALUE_SURFACE) {
+        object.kind = OBJECT_SURFACE;
+        object.word = "surface";
+        object.as.surface = value->value.as.surface;
+        object.texture = object.as.surface->texture;
+    } else if (value->value.kind == VALUE_TEXEL) {
+        object.kind = OBJECT_TEXEL;
+        object.word = "texel";
+        object.as.texel = value->value.as.texel;
+    } else {
+        return NULL;
+    }
+    Object *made = arena_copy(context->arena, &object, sizeof object);
+    object_rehash(made);
+    return made;
+}
+
+/* object { LIGHT transforms } */
+static bool build_light_copy(Reader *reader, const Light *light, Value *out) {
+    Object carrier = object_begin(reader->block, OBJECT_UNION); /* takes the modifiers; only its transform matters */
+    Value ignored;
+    if (!object_finish(reader, &carrier, &ignored)) return false;
+    *out = (Value){.kind = VALUE_LIGHT, .as.light = light_placed(reader->context, light, &carrier.transform)};
+    return true;
+}
+
+bool build_object(BuildContext *context, const EvalBlock *block, Value *out) {
+    Reader reader = reader_begin(context, block);
+    const BlockItem *first = reader_peek(&reader);
+    if (!first || first->kind != ITEM_VALUE) {
+        reader_error(&reader, first ? first->span : block->word_span, "'%s' begins with an object", block->word->text);
+        return false;
+    }
+    reader.next++;
+    Argument value = {first->value, first->span};
+    if (value.value.kind == VALUE_LIGHT) return build_light_copy(&reader, value.value.as.light, out);
+    const Object *source = object_from_value(context, &value);
+    if (!source) {
+        reader_mismatch(&reader, value.span, arena_printf(context->arena, "'%s'", block->word->text), "an object",
+                        value.value.kind);
+        return false;
+    }
+    Object object = *source;
+    object.span = block->span;
+    return object_finish(&reader, &object, out);
+}
+
+/* ---- union, merge, intersection, difference ---- */
+
+typedef struct ChildList {
+    const Object **items;
+    size_t count, capacity;
+} ChildList;
+
+typedef struct LightList {
+    const Light **items;
+    size_t count, capacity;
+} LightList;
+
+typedef struct CsgDraft {
+    Object object;
+    ChildList children;
+    LightList lights;
+} CsgDraft;
+
+static bool on_csg_value(Reader *reader, const Argument *value, void *target) {
+    CsgDraft *draft = target;
+    const Object *child = object_from_value(reader->context, value);
+    if (child)
+        *list_push(reader->context->arena, &draft->children) = child;
+    else if (value->value.kind == VALUE_LIGHT)
+        *list_push(reader->context->arena, &draft->lights) = value->value.as.light;
+    else
+        return on_value(reader, value, &draft->object);
+    return true;
+}
+
+static ObjectKind csg_kind(const char *word) {
+    if (strcmp(word, "merge") == 0) return OBJECT_MERGE;
+    if (strcmp(word, "intersection") == 0) return OBJECT_INTERSECTION;
+    if (strcmp(word, "difference") == 0) return OBJECT_DIFFERENCE;
+    return OBJECT_UNION;
+}
+
+bool build_csg(BuildContext *context, const EvalBlock *block, Value *out) {
+    CsgDraft draft = {.object = object_begin(block, csg_kind(block->word->text))};
+    Reader reader = reader_begin(context, block);
+    reader.on_value = on_csg_value;
+    reader.value_target = &draft;
+    if (!object_finish(&reader, &draft.object, out)) return false;
+    if (draft.children.count + draft.lights.count < 2 && strcmp(block->word->text, "light_group") != 0)
+        diag_warning(context->diags, block->word_span, "'%s' should hold at least 2 objects, found %zu", block->word->text,
+                     draft.children.count + draft.lights.count);
+    Object *made = arena_copy(context->arena, out->as.object, sizeof *made);
+    made->as.children.items = draft.children.items;
+    made->as.children.count = draft.children.count;
+    made->as.children.lights = draft.lights.items;
+    made->as.children.light_count = draft.lights.count;
+    object_rehash(made);
+    out->as.object = made;
+    return true;
+}
+
+bool build_unmodelled(BuildContext *context, const EvalBlock *block, Value *out) {
+    Object *object = arena_new(context->arena, Object);
+    *object = object_begin(block, OBJECT_UNMODELLED);
+    inert_add(context, &object->inert, object->word, block->word_span);
+    object_rehash(object);
+    *out = (Value){.kind = VALUE_OBJECT, .as.object = object};
+    return true;
+}

@@ -1,0 +1,64 @@
+/* What builders share: tables of words that stand in many blocks, and operations on the nodes that they make. */
+#ifndef VTS_EVAL_BUILD_PARTS_H
+#define VTS_EVAL_BUILD_PARTS_H
+
+#include "eval/build_reader.h"
+#include "scene/scene_hash.h"
+
+/* ---- build_transform.c: translate rotate scale matrix transform; target: a Transform, composed onto ---- */
+extern const WordRule transform_rules[];
+extern const size_t transform_rule_count;
+/* Takes a VALUE_TRANSFORM: composes it onto `onto`. */
+bool take_transform(const Argument *value, Transform *onto);
+bool transform_is_identity(const Transform *t);
+BlockBuilder build_transform;
+
+/* ---- build_pigment.c, build_map.c ---- */
+BlockBuilder build_pigment, build_color_map;
+/* Reads a pigment's items from the reader's position on, beginning with the default pigment. */
+const Pigment *pigment_read(Reader *reader);
+
+/* ---- build_finish.c ---- */
+BlockBuilder build_finish;
+/* `base` with what the finish block sets changed; a finish made from a declared one replaces it whole. */
+const Finish *finish_over(const BuildContext *context, const Finish *base, const Finish *block);
+
+/* ---- build_texture.c ---- */
+BlockBuilder build_texture, build_material, build_inert_value;
+const Texture *texture_default(const BuildContext *context);
+/* Copies with all layers changed: placed by `t`; laid over `bottom`. */
+const Texture *texture_placed(const BuildContext *context, const Texture *texture, const Transform *t);
+const Texture *texture_over(const BuildContext *context, const Texture *top, const Texture *bottom);
+/* Takes texture, pigment, finish, normal, interior and material onto *texture, which may be NULL (the default then).
+ * `place`: transform so far of what carries the texture. */
+bool take_looks(const BuildContext *context, const Argument *value, const Texture **texture, const InertNote **inert,
+                const Transform *place);
+
+/* ---- build_object.c ---- */
+/* Modifiers of all objects; target: an Object. Reads to the end of the block, stores the object in *out. */
+bool object_finish(Reader *reader, Object *object, Value *out);
+Object object_begin(const EvalBlock *block, ObjectKind kind);
+/* The block is `sphere { S … }` with a declared object S: a copy of S with modifiers. */
+bool object_is_copy(const EvalBlock *block);
+BlockBuilder build_object, build_csg, build_unmodelled;
+/* An object for a surface or a texel that stands where objects are wanted; NULL for other values. */
+const Object *object_from_value(const BuildContext *context, const Argument *value);
+
+BlockBuilder build_sphere, build_box, build_cone, build_plane, build_disc, build_torus;     /* build_solid.c */
+BlockBuilder build_triangle, build_mesh, build_mesh2;                                        /* build_mesh.c */
+BlockBuilder build_camera;                                                                   /* build_camera.c */
+BlockBuilder build_light;                                                                    /* build_light.c */
+const Light *light_placed(const BuildContext *context, const Light *light, const Transform *t);
+BlockBuilder build_sky_sphere, build_fog;                                                    /* build_sky.c */
+bool background_read(BuildContext *context, const EvalBlock *block, Color *out);
+bool settings_read(BuildContext *context, const EvalBlock *block, GlobalSettings *settings); /* build_settings.c */
+BlockBuilder build_texel;                                                                    /* build_texel.c */
+BlockBuilder build_particles;                                                                /* build_particles.c */
+BlockBuilder build_surface;                                                                  /* build_surface.c */
+/* ARRAY of `count` vectors, or a kept block { n, <…>, … } of them; `what` names it in messages. NULL after an error. */
+const Vec3 *vectors_read(Reader *reader, const EvalBlock *body, const char *what, size_t *count);
+BlockBuilder build_skin;                                                                     /* build_skin.c */
+bool mapping_read(Reader *parent, const Word *word, SkinMapping *mapping);                   /* build_mapping.c */
+bool jitter_read(Reader *parent, const Word *word, SkinJitter *jitter);
+
+#endif

@@ -1,0 +1,126 @@
+#include "eval/build_parts.h"
+
+/* POV-Ray squares radii, so a negative one draws what its absolute value does. */
+static double radius(Reader *reader, const char *what, double value, Span span) {
+    if (value < 0)
+        diag_warning(reader->context->diags, span, "%s of '%s' is negative: %g is taken as %g", what, reader->block->word->text,
+                     value, -value);
+    if (value == 0)
+        diag_warning(reader->context->diags, span, "%s of '%s' is 0: nothing will be seen", what, reader->block->word->text);
+    return fabs(value);
+}
+
+static bool read_radius(Reader *reader, const char *what, double *out) {
+    Span span;
+    if (!reader_float(reader, what, out, &span)) return false;
+    *out = radius(reader, what, *out, span);
+    return true;
+}
+
+/* The strength of a component of a blob, which is not drawn: the solid stands alone nowhere. */
+static bool skip_strength(Reader *reader) {
+    Argument strength;
+    reader_take_value(reader, VALUE_FLOAT, &strength);
+    return true;
+}
+
+bool build_sphere(BuildContext *context, const EvalBlock *block, Value *out) {
+    if (object_is_copy(block)) return build_object(context, block, out);
+    Reader reader = reader_begin(context, block);
+    Object object = object_begin(block, OBJECT_SPHERE);
+    return reader_vector(&reader, "the center", &object.as.sphere.center, NULL) &&
+           read_radius(&reader, "the radius", &object.as.sphere.radius) && skip_strength(&reader) &&
+           object_finish(&reader, &object, out);
+}
+
+bool build_box(BuildContext *context, const EvalBlock *block, Value *out) {
+    if (object_is_copy(block)) return build_object(context, block, out);
+    Reader reader = reader_begin(context, block);
+    Object object = object_begin(block, OBJECT_BOX);
+    Vec3 a, b;
+    if (!reader_vector(&reader, "the first corner", &a, NULL) || !reader_vector(&reader, "the second corner", &b, NULL))
+        return false;
+    object.as.box.corner1 = vec3_min(a, b);
+    object.as.box.corner2 = vec3_max(a, b);
+    return object_finish(&reader, &object, out);
+}
+
+static void read_open(Reader *reader, const Word *word, void *target) {
+    if (word_arguments(reader, word, 0, 0)) ((Object *)target)->as.cone.open = true;
+}
+
+static bool read_cone_ends(Reader *reader, Object *object) {
+    double *base_radius = &object->as.cone.base_radius, *cap_radius = &object->as.cone.cap_radius, value;
+    Span first, second;
+    bool cone = object->kind == OBJECT_CONE;
+    if (!reader_vector(reader, "the base point", &object->as.cone.base, &first)) return false;
+    if (cone && !reader_float(reader, "the base radius", base_radius, NULL)) return false;
+    *base_radius = fabs(*base_radius); /* a tip has radius 0 */
+    if (!reader_vector(reader, "the cap point", &object->as.cone.cap, &second)) return false;
+    if (!reader_float(reader, cone ? "the cap radius" : "the radius", &value, &first)) return false;
+    *cap_radius = cone ? fabs(value) : radius(reader, "the radius", value, first);
+    if (!cone) *base_radius = *cap_radius;
+    Vec3 axis = vec3_sub(object->as.cone.cap, object->as.cone.base);
+    if (vec3_length_squared(axis) == 0) {
+        reader_error(reader, second, "this %s is degenerate: its base and cap points are the same", reader->block->word->text);
+        return false;
+    }
+    return true;
+}
+
+/* cylinder and cone */
+bool build_cone(BuildContext *context, const EvalBlock *block, Value *out) {
+    static const WordRule cone_rules[] = {{"open", WORD_CUSTOM, 0, read_open, false}};
+    if (object_is_copy(block)) return build_object(context, block, out);
+    Reader reader = reader_begin(context, block);
+    Object object = object_begin(block, block->word->text[1] == 'o' ? OBJECT_CONE : OBJECT_CYLINDER);
+    if (!read_cone_ends(&reader, &object) || !skip_strength(&reader)) return false;
+    reader_add_table(&reader, cone_rules, VTS_ARRAY_COUNT(cone_rules), &object);
+    return object_finish(&reader, &object, out);
+}
+
+static bool read_normal(Reader *reader, const char *what, Vec3 *normal, double *length) {
+    Span span;
+    if (!reader_vector(reader, what, normal, &span)) return false;
+    *length = vec3_length(*normal);
+    if (*length == 0) {
+        reader_error(reader, span, "%s of '%s' has no length", what, reader->block->word->text);
+        return false;
+    }
+    *normal = vec3_scale(*normal, 1 / *length);
+    return true;
+}
+
+/* The distance counts along the unit normal, as in POV-Ray. */
+bool build_plane(BuildContext *context, const EvalBlock *block, Value *out) {
+    if (object_is_copy(block)) return build_object(context, block, out);
+    Reader reader = reader_begin(context, block);
+    Object object = object_begin(block, OBJECT_PLANE);
+    double length;
+    return read_normal(&reader, "the normal", &object.as.plane.normal, &length) &&
+           reader_float(&reader, "the distance", &object.as.plane.distance, NULL) && object_finish(&reader, &object, out);
+}
+
+bool build_disc(BuildContext *context, const EvalBlock *block, Value *out) {
+    if (object_is_copy(block)) return build_object(context, block, out);
+    Reader reader = reader_begin(context, block);
+    Object object = object_begin(block, OBJECT_DISC);
+    double length;
+    if (!reader_vector(&reader, "the center", &object.as.disc.center, NULL) ||
+        !read_normal(&reader, "the normal", &object.as.disc.normal, &length) ||
+        !read_radius(&reader, "the radius", &object.as.disc.radius))
+        return false;
+    Argument hole;
+    if (reader_take_value(&reader, VALUE_FLOAT, &hole) &&
+        argument_float(&reader, &hole, "the radius of the hole", &object.as.disc.hole_radius))
+        object.as.disc.hole_radius = fabs(object.as.disc.hole_radius);
+    return object_finish(&reader, &object, out);
+}
+
+bool build_torus(BuildContext *context, const EvalBlock *block, Value *out) {
+    if (object_is_copy(block)) return build_object(context, block, out);
+    Reader reader = reader_begin(context, block);
+    Object object = object_begin(block, OBJECT_TORUS);
+    return read_radius(&reader, "the major radius", &object.as.torus.major_radius) &&
+           read_radius(&reader, "the minor radius", &object.as.torus.minor_radius) && object_finish(&reader, &object, out);
+}

@@ -1,0 +1,185 @@
+#include "eval/build_parts.h"
+
+#include <string.h>
+
+static const Texture *make_default(const BuildContext *context) {
+    Texture *texture = arena_new(context->arena, Texture);
+    Pigment *pigment = arena_new(context->arena, Pigment);
+    Finish *finish = arena_new(context->arena, Finish);
+    *pigment = pigment_default();
+    *finish = finish_default();
+    *texture = (Texture){.pigment = pigment, .finish = finish, .transform = transform_identity()};
+    texture_rehash(texture);
+    return texture;
+}
+
+const Texture *texture_default(const BuildContext *context) {
+    return context->default_texture ? context->default_texture : make_default(context);
+}
+
+static Texture *copy_texture(const BuildContext *context, const Texture *texture) {
+    return arena_copy(context->arena, texture, sizeof *texture);
+}
+
+const Texture *texture_placed(const BuildContext *context, const Texture *texture, const Transform *t) {
+    if (!texture || transform_is_identity(t)) return texture;
+    Texture *copy = copy_texture(context, texture);
+    copy->transform = transform_then(&texture->transform, t);
+    copy->under = texture_placed(context, texture->under, t);
+    texture_rehash(copy);
+    return copy;
+}
+
+const Texture *texture_over(const BuildContext *context, const Texture *top, const Texture *bottom) {
+    if (!bottom) return top;
+    Texture *copy = copy_texture(context, top);
+    copy->under = top->under ? texture_over(context, top->under, bottom) : bottom;
+    texture_rehash(copy);
+    return copy;
+}
+
+/* A pigment given in the space in which the texture already has its transform: that is taken back first. */
+static const Texture *with_pigment(const BuildContext *context, const Texture *texture, const Pigment *pigment) {
+    Texture *copy = copy_texture(context, texture);
+    if (!transform_is_identity(&texture->transform)) {
+        Pigment *placed = arena_copy(context->arena, pigment, sizeof *pigment);
+        Transform back = transform_inverse(&texture->transform);
+        placed->transform = transform_then(&pigment->transform, &back);
+        pigment_rehash(placed);
+        pigment = placed;
+    }
+    copy->pigment = pigment;
+    texture_rehash(copy);
+    return copy;
+}
+
+static const Texture *with_finish(const BuildContext *context, const Texture *texture, const Finish *finish) {
+    Texture *copy = copy_texture(context, texture);
+    copy->finish = finish_over(context, texture->finish, finish);
+    texture_rehash(copy);
+    return copy;
+}
+
+/* material { … }: a texture and what is not drawn. */
+typedef struct Material {
+    const Texture *texture; /* in the space before `transform`; NULL: none */
+    const InertNote *inert;
+    Transform transform;
+} Material;
+
+/* Interiors and normals are no more than the name and place of what is not drawn. */
+static void note_inert(const BuildContext *context, const InertNote *made, const InertNote **inert) {
+    for (; made; made = made->next) inert_add(context, inert, made->word, made->span);
+}
+
+/* The texture in the parent's space as of now, so that a modifier given there can be put onto it. */
+static const Texture *current(const BuildContext *context, const Texture *texture, const Transform *place) {
+    return texture ? texture_placed(context, texture, place) : texture_default(context);
+}
+
+bool take_looks(const BuildContext *context, const Argument *value, const Texture **texture, const InertNote **inert,
+                const Transform *place) {
+    const Texture *made = NULL;
+    switch (value->value.kind) {
+    case VALUE_TEXTURE:
+        made = value->value.as.texture;
+        if (*texture) made = texture_over(context, made, texture_placed(context, *texture, place));
+        break;
+    case VALUE_PIGMENT: made = with_pigment(context, current(context, *texture, place), value->value.as.pigment); break;
+    case VALUE_FINISH: made = with_finish(context, current(context, *texture, place), value->value.as.finish); break;
+    case VALUE_NORMAL:
+    case VALUE_INTERIOR: note_inert(context, value->value.as.node, inert); return true;
+    case VALUE_MATERIAL: {
+        const Material *material = value->value.as.node;
+        note_inert(context, material->inert, inert);
+        if (!material->texture) return true;
+        made = texture_placed(context, material->texture, &material->transform);
+        break;
+    }
+    default: return false;
+    }
+    Transform back = transform_inverse(place);
+    *texture = transform_is_identity(place) ? made : texture_placed(context, made, &back);
+    return true;
+}
+
+/* ---- texture { … } ---- */
+
+typedef struct TextureDraft {
+    const Texture *texture; /* in the space before `transform`; NULL: nothing said yet */
+    const InertNote *inert;
+    Transform transform;
+} TextureDraft;
+
+static bool on_value(Reader *reader, const Argument *value, void *target) {
+    TextureDraft *draft = target;
+    return take_looks(reader->context, value, &draft->texture, &draft->inert, &draft->transform) ||
+           take_transform(value, &draft->transform);
+}
+
+#define INERT(word) {word, WORD_INERT, offsetof(TextureDraft, inert), NULL, false}
+#define IGNORED(word) {word, WORD_IGNORED, 0, NULL, false}
+static const WordRule rules[] = {
+    INERT("texture_map"), INERT("material_map"), INERT("uv_mapping"), INERT("gradient"), INERT("checker"), INERT("brick"),
+    INERT("hexagon"), INERT("bozo"), INERT("bumps"), INERT("granite"), INERT("wrinkles"), INERT("agate"), INERT("marble"),
+    INERT("wood"), INERT("crackle"), INERT("leopard"), INERT("onion"), INERT("radial"), INERT("spotted"), INERT("cells"),
+    INERT("boxed"), INERT("cylindrical"), INERT("spherical"), INERT("planar"), INERT("slope"), INERT("average"), INERT("object"),
+    INERT("image_pattern"), INERT("function"), INERT("aoi"), INERT("dents"), INERT("ripples"), INERT("waves"), INERT("quilted"),
+    IGNORED("turbulence"), IGNORED("octaves"), IGNORED("lambda"), IGNORED("omega"), IGNORED("frequency"), IGNORED("phase"),
+    IGNORED("warp"), IGNORED("quick_color"), IGNORED("brick_size"), IGNORED("mortar"),
+};
+
+bool build_texture(BuildContext *context, const EvalBlock *block, Value *out) {
+    TextureDraft draft = {.transform = transform_identity()};
+    Reader reader = reader_begin(context, block);
+    reader_add_table(&reader, rules, VTS_ARRAY_COUNT(rules), &draft);
+    reader_add_table(&reader, transform_rules, transform_rule_count, &draft.transform);
+    reader.on_value = on_value;
+    reader.value_target = &draft;
+    if (!reader_run(&reader)) return false;
+    const Texture *base = draft.texture ? draft.texture : texture_default(context);
+    Texture *texture = copy_texture(context, texture_placed(context, base, &draft.transform));
+    texture->span = block->span;
+    note_inert(context, draft.inert, &texture->inert);
+    *out = (Value){.kind = VALUE_TEXTURE, .as.texture = texture};
+    return true;
+}
+
+/* ---- normal, interior, wind_field: a note of what is not drawn ---- */
+
+bool build_inert_value(BuildContext *context, const EvalBlock *block, Value *out) {
+    static const struct { const char *word; ValueKind kind; } kinds[] = {
+        {"normal", VALUE_NORMAL}, {"interior", VALUE_INTERIOR}, {"wind_field", VALUE_WIND_FIELD}};
+    const InertNote *note = NULL;
+    if (block->count) inert_add(context, &note, block->word->text, block->word_span);
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(kinds); i++)
+        if (strcmp(kinds[i].word, block->word->text) == 0) *out = (Value){.kind = kinds[i].kind, .as.node = note};
+    return true;
+}
+
+/* ---- material ---- */
+
+static bool on_material_value(Reader *reader, const Argument *value, void *target) {
+    Material *material = target;
+    if (value->value.kind == VALUE_MATERIAL) {
+        *material = *(const Material *)value->value.as.node;
+        return true;
+    }
+    return take_looks(reader->context, value, &material->texture, &material->inert, &material->transform) ||
+           take_transform(value, &material->transform);
+}
+
+bool build_material(BuildContext *context, const EvalBlock *block, Value *out) {
+    static const WordRule material_rules[] = {{"interior_texture", WORD_INERT, offsetof(Material, inert), NULL, false},
+                                              {"uv_mapping", WORD_INERT, offsetof(Material, inert), NULL, false}};
+    Material *material = arena_new(context->arena, Material);
+    material->transform = transform_identity();
+    Reader reader = reader_begin(context, block);
+    reader_add_table(&reader, material_rules, VTS_ARRAY_COUNT(material_rules), material);
+    reader_add_table(&reader, transform_rules, transform_rule_count, &material->transform);
+    reader.on_value = on_material_value;
+    reader.value_target = material;
+    if (!reader_run(&reader)) return false;
+    *out = (Value){.kind = VALUE_MATERIAL, .as.node = material};
+    return true;
+}

@@ -1,0 +1,23 @@
+#include "cli/command.h"
+#include "cli/complaint.h"
+
+typedef struct Program {
+    const char *path;
+    const Settings *settings;
+} Program;
+
+static VtsStatus run(VtsSession *session, const void *context) {
+    const Program *program = context;
+    if (program->settings->dumps) return vts_dump(session, program->path, program->settings->dump);
+    return vts_run(session, program->path);
+}
+
+int command_run(Settings *settings) {
+    if (settings->scenes.count == 0) return complain_usage(settings, "no program given");
+    if (settings->scenes.count > 1)
+        return complain_usage(settings, "one program at a time, not also '%s'", settings->scenes.items[1]);
+    Console console;
+    console_init(&console, settings);
+    Program program = {settings->scenes.items[0], settings};
+    return command_with_session(settings, &console, program.path, run, &program);
+}

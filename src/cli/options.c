@@ -1,0 +1,282 @@
+#include "cli/options.h"
+
+#include "cli/complaint.h"
+#include "cli/povray_options.h"
+#include "cli/spelling.h"
+#include "cli/values.h"
+
+#include <string.h>
+
+/* Each returns NULL, or what it wanted: "WxH, such as 640x480". */
+typedef const char *ApplyOption(Settings *settings, const char *value);
+
+typedef struct Option {
+    const char *name;
+    char letter;          /* 0: none */
+    const char *argument; /* as help shows it; NULL: takes none */
+    unsigned commands;
+    ApplyOption *apply; /* NULL: not available in this version */
+    const char *help;
+} Option;
+
+static const char *apply_output(Settings *s, const char *value) {
+    s->output = value;
+    s->output_as_povray = false;
+    return *value ? NULL : "a file name";
+}
+static const char *apply_size(Settings *s, const char *value) {
+    return value_size(value, &s->options.width, &s->options.height) ? NULL : "WxH, such as 640x480";
+}
+static const char *apply_threads(Settings *s, const char *value) {
+    return value_int(value, 0, 1024, &s->options.threads) ? NULL : "a number from 0 (all processors) to 1024";
+}
+static const char *apply_clock(Settings *s, const char *value) {
+    s->options.clock_set = true;
+    return value_double(value, &s->options.clock) ? NULL : "a number";
+}
+static const char *apply_quality(Settings *s, const char *value) {
+    static const char *const names[] = {"draft", "good", "best", NULL};
+    static const double errors[] = {4 / 255.0, 1 / 255.0, 0.25 / 255.0};
+    int quality = value_word(value, names);
+    if (quality >= 0) s->options.max_error = errors[quality];
+    return quality >= 0 ? NULL : "draft, good or best";
+}
+static const char *apply_max_error(Settings *s, const char *value) {
+    bool valid =
+        value_quotient(value, &s->options.max_error) && s->options.max_error > 0 && s->options.max_error <= 1;
+    return valid ? NULL : "a number in (0, 1], such as 1/255";
+}
+static const char *apply_samples(Settings *s, const char *value) {
+    return value_int(value, 1, 256, &s->options.samples) ? NULL : "a number from 1 to 256";
+}
+static const char *apply_declare(Settings *s, const char *value) {
+    return settings_add_pair(s, &s->declares, value) ? NULL : "NAME=VALUE";
+}
+static const char *apply_include(Settings *s, const char *value) {
+    settings_add(&s->includes, value);
+    return *value ? NULL : "a folder";
+}
+static const char *apply_region(Settings *s, const char *value) {
+    return value_region(value, s->options.region) ? NULL : "x0,y0,x1,y1 in pixels, x0 < x1 and y0 < y1";
+}
+static const char *apply_report(Settings *s, const char *value) {
+    s->report = value;
+    return *value ? NULL : "a file name, or - for the standard output";
+}
+static const char *apply_progress(Settings *s, const char *value) {
+    static const char *const names[] = {"auto", "bar", "plain", "none", NULL};
+    int style = value_word(value, names);
+    if (style >= 0) s->progress = (ProgressStyle)style;
+    return style >= 0 ? NULL : "auto, bar, plain or none";
+}
+static const char *apply_seed(Settings *s, const char *value) {
+    return value_unsigned(value, &s->options.seed) ? NULL : "a number from 0 to 2^64 - 1";
+}
+static const char *apply_set(Settings *s, const char *value) {
+    return settings_add_pair(s, &s->knobs, value) ? NULL : "KNOB=VALUE";
+}
+static const char *apply_exposure(Settings *s, const char *value) {
+    return value_double(value, &s->options.exposure) ? NULL : "a number (in EV)";
+}
+static const char *apply_alpha(Settings *s, const char *value) {
+    (void)value;
+    s->options.alpha = true;
+    return NULL;
+}
+static const char *apply_float_type(Settings *s, const char *value) {
+    s->options.float_type = value;
+    return strcmp(value, "half") == 0 || strcmp(value, "float") == 0 ? NULL : "half or float";
+}
+static const char *apply_limit(Settings *s, const char *value) {
+    while (*value) {
+        size_t size = strcspn(value, ",");
+        if (!settings_add_pair(s, &s->limits, settings_copy(s, value, size))) return "NAME=N,…";
+        value += size + (value[size] == ',');
+    }
+    return NULL;
+}
+static const char *apply_memory_limit(Settings *s, const char *value) {
+    return value_bytes(value, &s->options.memory_limit) ? NULL : "a number of bytes, such as 8G or 512M";
+}
+static const char *apply_allow_read(Settings *s, const char *value) {
+    settings_add(&s->read_folders, value);
+    return *value ? NULL : "a folder";
+}
+static const char *apply_allow_write(Settings *s, const char *value) {
+    settings_add(&s->write_folders, value);
+    return *value ? NULL : "a folder";
+}
+static const char *apply_dump(Settings *s, const char *value) {
+    static const char *const names[] = {"tokens", "ast", "scene", "tape", "compiled", NULL};
+    int stage = value_word(value, names);
+    if (stage >= 0) s->dump = (VtsDump)stage;
+    s->dumps = true;
+    return stage >= 0 ? NULL : "tokens, ast, scene, tape or compiled";
+}
+static const char *apply_verbose(Settings *s, const char *value) {
+    (void)value;
+    s->verbose = true;
+    return NULL;
+}
+static const char *apply_help(Settings *s, const char *value) {
+    (void)value;
+    s->help = true;
+    return NULL;
+}
+
+static const Option OPTIONS[] = {
+    {"output", 'o', "F", COMMAND_RENDER, apply_output,
+     "the picture; its suffix names the format (.exr .png .tif .jpg .hdr .pfm .ppm); default: the scene's "
+     "name with .png"},
+    {"size", 's', "WxH", COMMAND_ALL, apply_size, "size of the picture in pixels; default 768x576"},
+    {"threads", 't', "N", COMMAND_ALL, apply_threads, "workers; default 0: all processors"},
+    {"clock", 0, "V", COMMAND_ALL, apply_clock, "value of `clock` in the scene"},
+    {"quality", 'q', "draft|good|best", COMMAND_RENDER, apply_quality,
+     "--max-error 4/255, 1/255 or 0.25/255"},
+    {"max-error", 0, "E", COMMAND_RENDER, apply_max_error,
+     "accepted RMSE over pixels and channels, linear light in [0,1]"},
+    {"samples", 0, "N", COMMAND_RENDER, apply_samples,
+     "samples of a pixel where it needs several; default: by --max-error"},
+    {"declare", 'D', "NAME=VALUE", COMMAND_ALL, apply_declare,
+     "declares a float, or a string if VALUE is no number"},
+    {"include", 'I', "DIR", COMMAND_ALL, apply_include, "where includes and data are looked for as well"},
+    {"region", 0, "x0,y0,x1,y1", COMMAND_RENDER, apply_region,
+     "renders this part only, in pixels, x1 and y1 exclusive"},
+    {"report", 0, "F|-", COMMAND_RENDER, apply_report, "writes what was modelled, counted and timed as JSON"},
+    {"progress", 0, "auto|bar|plain|none", COMMAND_ALL, apply_progress,
+     "how to show progress; auto: a bar on a terminal"},
+    {"seed", 0, "N", COMMAND_RENDER, apply_seed, "of the sampling; default 0"},
+    {"set", 0, "KNOB=VALUE", COMMAND_ALL, apply_set, "sets what global_settings would"},
+    {"exposure", 0, "EV", COMMAND_RENDER, apply_exposure, "multiplies the picture by 2^EV"},
+    {"alpha", 0, NULL, COMMAND_RENDER, apply_alpha, "leaves the background transparent"},
+    {"float-type", 0, "half|float", COMMAND_RENDER, apply_float_type, "how EXR stores colours; default half"},
+    {"limit", 0, "NAME=N,...", COMMAND_ALL, apply_limit, "limits of the language: loops, recursion ..."},
+    {"memory-limit", 0, "SIZE", COMMAND_ALL, apply_memory_limit,
+     "gives up with status 4 past this much memory (8G, 512M)"},
+    {"allow-read", 0, "DIR", COMMAND_ALL, apply_allow_read, "lets scenes read files of this folder"},
+    {"allow-write", 0, "DIR", COMMAND_ALL, apply_allow_write, "lets scenes write files of this folder"},
+    {"dump", 0, "tokens|ast|scene|tape|compiled", COMMAND_RUN, apply_dump,
+     "prints one stage of the program instead"},
+    {"verbose", 'v', NULL, COMMAND_ALL, apply_verbose, "says more about what is done"},
+    {"help", 'h', NULL, COMMAND_ALL, apply_help, "this text"},
+    {"frames", 'f', "A-B", COMMAND_ALL, NULL, NULL},
+    {"resume", 0, NULL, COMMAND_ALL, NULL, NULL},
+    {"aov", 0, "NAMES", COMMAND_ALL, NULL, NULL},
+    {"preview", 0, "HOST:PORT", COMMAND_ALL, NULL, NULL},
+    {"cache", 0, "DIR", COMMAND_ALL, NULL, NULL},
+    {"sweep", 0, "KNOB=VALUES", COMMAND_ALL, NULL, NULL},
+    {"methods", 0, "NAMES", COMMAND_ALL, NULL, NULL},
+    {"metric", 0, "NAMES", COMMAND_ALL, NULL, NULL},
+    {"diff", 0, "F", COMMAND_ALL, NULL, NULL},
+    {"save", 0, "F", COMMAND_ALL, NULL, NULL},
+};
+enum { OPTION_COUNT = sizeof OPTIONS / sizeof *OPTIONS };
+
+/* The arguments that are still to be read. */
+typedef struct Arguments {
+    char *const *at, *const *end;
+} Arguments;
+
+static const Option *find_long(const char *name, size_t size) {
+    for (int i = 0; i < OPTION_COUNT; i++)
+        if (strlen(OPTIONS[i].name) == size && memcmp(OPTIONS[i].name, name, size) == 0) return &OPTIONS[i];
+    return NULL;
+}
+
+static const Option *find_short(char letter) {
+    for (int i = 0; i < OPTION_COUNT; i++)
+        if (OPTIONS[i].letter && OPTIONS[i].letter == letter) return &OPTIONS[i];
+    return NULL;
+}
+
+/* `argument` with its "--" and value, as typed. */
+static int unknown_long(const Settings *settings, unsigned command, const char *argument, size_t name_size) {
+    char typed[64], best[64];
+    snprintf(typed, sizeof typed, "%.*s", (int)(name_size > 50 ? 50 : name_size), argument + 2);
+    Spelling spelling = spelling_of(typed);
+    for (int i = 0; i < OPTION_COUNT; i++)
+        if (OPTIONS[i].apply && OPTIONS[i].commands & command) spelling_try(&spelling, OPTIONS[i].name);
+    snprintf(best, sizeof best, "--%s", spelling.best ? spelling.best : "");
+    char whole[80];
+    snprintf(whole, sizeof whole, "--%s", typed);
+    return complain_unknown(settings, "option", whole, spelling.best ? best : NULL);
+}
+
+/* `value` is what was glued to the option, or NULL; `typed` how the option was written. */
+static int apply_option(Settings *settings, unsigned command, const Option *option, const char *typed,
+                        const char *value, Arguments *rest) {
+    if (!option->apply) return complain_usage(settings, "'%s' is not available in this version", typed);
+    if (!(option->commands & command))
+        return complain_usage(settings, "'%s' has no meaning for '%s'", typed, settings->program);
+    if (!option->argument && value) return complain_usage(settings, "'%s' takes no value", typed);
+    if (option->argument && !value) {
+        if (rest->at == rest->end)
+            return complain_usage(settings, "'%s' needs a value: %s", typed, option->argument);
+        value = *rest->at++;
+    }
+    const char *wanted = option->apply(settings, value);
+    if (!wanted) return 0;
+    return complain_usage(settings, "the value '%s' of '%s' is not valid: wanted %s", value, typed, wanted);
+}
+
+static int parse_long(Settings *settings, unsigned command, const char *argument, Arguments *rest) {
+    size_t size = strcspn(argument + 2, "=");
+    const char *value = argument[2 + size] == '=' ? argument + 2 + size + 1 : NULL;
+    const Option *option = find_long(argument + 2, size);
+    if (!option) return unknown_long(settings, command, argument, size);
+    char typed[64];
+    snprintf(typed, sizeof typed, "--%s", option->name);
+    return apply_option(settings, command, option, typed, value, rest);
+}
+
+static int parse_short(Settings *settings, unsigned command, const char *argument, Arguments *rest) {
+    char typed[3] = {'-', argument[1], '\0'};
+    const Option *option = find_short(argument[1]);
+    if (!option) return complain_unknown(settings, "option", argument, NULL);
+    return apply_option(settings, command, option, typed, argument[2] ? argument + 2 : NULL, rest);
+}
+
+int options_parse(Settings *settings, unsigned command, int count, char *const *arguments) {
+    Arguments rest = {arguments, arguments + count};
+    bool only_files = false;
+    while (rest.at < rest.end) {
+        const char *argument = *rest.at++;
+        int status = 0;
+        if (only_files)
+            settings_add(&settings->scenes, argument);
+        else if (strcmp(argument, "--") == 0)
+            only_files = true;
+        else if (argument[0] == '-' && argument[1] == '-')
+            status = parse_long(settings, command, argument, &rest);
+        else if (argument[0] == '-' && argument[1])
+            status = parse_short(settings, command, argument, &rest);
+        else if (povray_recognizes(argument))
+            status = povray_apply(settings, argument);
+        else
+            settings_add(&settings->scenes, argument);
+        if (status != 0 || settings->help) return status;
+    }
+    const char *wrong = settings_finish(settings);
+    return wrong ? complain_usage(settings, "%s", wrong) : 0;
+}
+
+void options_print_help(FILE *stream, unsigned command) {
+    enum { COLUMN = 30 };
+    fputs("Options:\n", stream);
+    for (int i = 0; i < OPTION_COUNT; i++) {
+        const Option *option = &OPTIONS[i];
+        if (!option->apply || !(option->commands & command)) continue;
+        char left[80];
+        const char *argument = option->argument ? option->argument : "";
+        int length = option->letter ? snprintf(left, sizeof left, "  -%c, --%s %s", option->letter,
+                                               option->name, argument)
+                                    : snprintf(left, sizeof left, "      --%s %s", option->name, argument);
+        if (length > COLUMN)
+            fprintf(stream, "%s\n%*s %s\n", left, COLUMN, "", option->help);
+        else
+            fprintf(stream, "%-*s %s\n", COLUMN, left, option->help);
+    }
+    fputs("POV-Ray's spelling (+W640 +H480 +Ofile +Lfolder +K0.5 Declare=n=1 Width=640 scene.ini) is "
+          "understood too.\n",
+          stream);
+}

@@ -10,8 +10,7 @@ typedef struct Walk {
     ShapeRefusal *refusal;
 } Walk;
 
-/* The most that a transform lengthens a vector: the largest singular value of its matrix, rounded up. */
-static double largest_stretch(const Mat3 *m) {
+double tessellate_stretch(const Mat3 *m) {
     double largest = 0;
     for (int i = 0; i < 3; i++) {
         largest =
@@ -80,7 +79,7 @@ static bool push_tree(const Walk *walk, const Object *object, const Transform *o
         return true;
     }
     SoupMark since = soup_mark(walk->out);
-    double stretch = largest_stretch(&whole.linear);
+    double stretch = tessellate_stretch(&whole.linear);
     if (!push_shape(walk, object, stretch > 0 ? walk->options->tolerance / stretch : HUGE_VAL)) return false;
     soup_transform(walk->arena, walk->out, since, &whole);
     return true;

@@ -37,4 +37,7 @@ enum { TESSELLATE_MOST_PARTS = 256 }; /* per quarter turn; a tolerance that asks
 bool tessellate(const Object *object, const Transform *transform, const TessellateOptions *options,
                 Arena *arena, TriangleSoup *out, ShapeRefusal *refusal);
 
+/* The most that a matrix lengthens a vector: its largest singular value, rounded up a little. */
+double tessellate_stretch(const Mat3 *m);
+
 #endif

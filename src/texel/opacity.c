@@ -2,28 +2,41 @@
 
 #include <float.h>
 
-/* No segment is quite opaque, so that shares of it have a meaning. */
+/* The crossing law's: no voxel is quite opaque, so that shares of a crossing have a meaning. */
 #define LEAST_TRANSMITTANCE (1.0f / 512)
 
-/* Opacity of the voxel as stored in Neyret 1998: the same for all directions; its anisotropy scales optical depth (E16). */
-static float transmit_mean(float mean_tau, float ratio) {
-    float through = float_max(1 - mean_tau, LEAST_TRANSMITTANCE);
-    return powf(through, ratio);
+/* |step|·sqrt(dᵗ S d) for its direction d. */
+static float projected(const VoxelSample *v, Vec3f step) {
+    return sqrtf(float_max(0, sym3f_quadratic(&v->s, step)));
 }
 
-static float transmit_correlated(float tau, float gamma) {
-    return gamma * float_max(0, 1 - tau) + (1 - gamma) * expf(-tau);
+/* |step| in mean crossings h/(|dx| + |dy| + |dz|) of a voxel. */
+static float crossings(Vec3f step, float h) { return (fabsf(step.x) + fabsf(step.y) + fabsf(step.z)) / h; }
+
+static float attenuate(float tau) { return float_max(expf(-tau), FLT_MIN); }
+
+float opacity_transmittance_mean(const VoxelSample *v, float finest, float h, Vec3f step) {
+    if (!(v->density > 0)) return 1;
+    /* The anisotropy scales optical depth, not opacity (erratum E16). */
+    float through = float_max(1 - v->density * finest, LEAST_TRANSMITTANCE);
+    return attenuate(-logf(through) * projected(v, step) / h);
+}
+
+static float transmit_crossing(const VoxelSample *v, float h, Vec3f step) {
+    float n = crossings(step, h);
+    if (!(n > 0)) return 1;
+    float tau = v->density * projected(v, step) / n;
+    float through = v->gamma * float_max(0, 1 - tau) + (1 - v->gamma) * expf(-tau);
+    return attenuate(-n * logf(float_max(through, LEAST_TRANSMITTANCE)));
 }
 
 float opacity_transmittance(OpacityModel model, const VoxelSample *v, float h, Vec3f step) {
     if (!(v->density > 0)) return 1;
-    float projected = sqrtf(float_max(0, sym3f_quadratic(&v->s, step))); /* |step|·sigma(d) / density */
-    if (model == OPACITY_EXPONENTIAL) return float_max(expf(-v->density * projected), FLT_MIN);
-    /* |step| / l, l = h / (|dx| + |dy| + |dz|) the mean crossing of a voxel */
-    float crossings = (fabsf(step.x) + fabsf(step.y) + fabsf(step.z)) / h;
-    if (!(crossings > 0)) return 1;
-    float tau = v->density * projected / crossings;
-    float through = model == OPACITY_MEAN ? transmit_mean(v->density * h, tau / (v->density * h))
-                                          : transmit_correlated(tau, v->gamma);
-    return float_max(powf(float_max(through, LEAST_TRANSMITTANCE), crossings), FLT_MIN);
+    switch (model) {
+    case OPACITY_MEAN: return opacity_transmittance_mean(v, h, h, step);
+    case OPACITY_EXPONENTIAL: return attenuate(v->density * projected(v, step));
+    case OPACITY_CROSSING: return transmit_crossing(v, h, step);
+    case OPACITY_CORRELATED: break;
+    }
+    return attenuate(v->density * projected(v, step) * opacity_enhancement(v->gamma, v->density * h));
 }

@@ -35,7 +35,8 @@ bool bin_load_triangle(const TexelMesh *mesh, const VoxelLayer *layer, size_t tr
             if (out->at[i][k] > MAX_COPIES * size) return false;
         }
     }
-    return clip_projected_area(out, 0) != 0 || clip_projected_area(out, 1) != 0 || clip_projected_area(out, 2) != 0;
+    return clip_projected_area(out, 0) != 0 || clip_projected_area(out, 1) != 0 ||
+           clip_projected_area(out, 2) != 0;
 }
 
 typedef struct Binning {
@@ -54,7 +55,9 @@ static void add_reference(void *context, const int brick[3], const ClipPolygon *
     (void)piece;
     Sink *sink = context;
     Reference *r = grow_buffer_add(sink->buffer, 1, sizeof *r);
-    if (r) *r = (Reference){(uint32_t)voxel_level_brick_at(sink->level, brick[0], brick[1], brick[2]), sink->item};
+    if (r)
+        *r = (Reference){(uint32_t)voxel_level_brick_at(sink->level, brick[0], brick[1], brick[2]),
+                         sink->item};
 }
 
 /* The copy of the triangle that is moved down by `shift` extents, in bricks. */
@@ -93,8 +96,10 @@ static void bin_chunk(void *context, size_t chunk, int worker) {
 }
 
 /* Counting sort by brick, which keeps the mesh's order within a brick. */
-static bool sort_references(TriangleBins *bins, const GrowBuffer *chunks, size_t chunk_count, MemoryBudget *memory) {
-    size_t start_bytes = (bins->bricks + 1) * sizeof *bins->start, item_bytes = (bins->count + 1) * sizeof *bins->items;
+static bool sort_references(TriangleBins *bins, const GrowBuffer *chunks, size_t chunk_count,
+                            MemoryBudget *memory) {
+    size_t start_bytes = (bins->bricks + 1) * sizeof *bins->start,
+           item_bytes = (bins->count + 1) * sizeof *bins->items;
     if (bins->count >= UINT32_MAX || !memory_budget_take(memory, start_bytes + item_bytes)) return false;
     bins->start = calloc(1, start_bytes);
     bins->items = calloc(1, item_bytes);
@@ -120,7 +125,8 @@ static bool sort_references(TriangleBins *bins, const GrowBuffer *chunks, size_t
     return true;
 }
 
-bool triangle_bins_build(TriangleBins *bins, const TexelMesh *mesh, const VoxelLayer *layer, const TexelBuildOptions *options) {
+bool triangle_bins_build(TriangleBins *bins, const TexelMesh *mesh, const VoxelLayer *layer,
+                         const TexelBuildOptions *options) {
     *bins = (TriangleBins){.bricks = voxel_level_bricks(&layer->level[0])};
     size_t chunk_count = mesh->triangle_count / CHUNK + 1;
     Binning binning = {mesh, layer, calloc(chunk_count, sizeof(GrowBuffer))};
@@ -142,7 +148,8 @@ bool triangle_bins_build(TriangleBins *bins, const TexelMesh *mesh, const VoxelL
 
 void triangle_bins_free(TriangleBins *bins, MemoryBudget *memory) {
     if (bins->start)
-        memory_budget_give_back(memory, (bins->bricks + 1) * sizeof *bins->start + (bins->count + 1) * sizeof *bins->items);
+        memory_budget_give_back(memory, (bins->bricks + 1) * sizeof *bins->start +
+                                            (bins->count + 1) * sizeof *bins->items);
     free(bins->start);
     free(bins->items);
     *bins = (TriangleBins){0};

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { JOB_BRICKS_PER_AXIS = 8 };
+enum { JOB_BRICKS_PER_AXIS = 8, SCRATCH_CELLS = BRICK_VOXELS * (1 + PYRAMID_CHILDREN * TEXEL_MAX_LEVELS) };
 
 typedef struct Build {
     Pyramid pyramid;
@@ -41,8 +41,10 @@ static bool mark_present(Build *b) {
             voxel_layer_allocate(b->layer, voxel_level_bricks(&b->layer->level[i]), 1);
         if (!b->layer->level[i].reached) return false;
     }
-    for (size_t i = 0; i < b->bins.bricks; i++) b->pyramid.present[0][i] = b->bins.start[i + 1] > b->bins.start[i];
-    for (int i = 1; i < b->layer->levels; i++) mark_parents(b->layer, i, b->pyramid.present[i - 1], b->pyramid.present[i]);
+    for (size_t i = 0; i < b->bins.bricks; i++)
+        b->pyramid.present[0][i] = b->bins.start[i + 1] > b->bins.start[i];
+    for (int i = 1; i < b->layer->levels; i++)
+        mark_parents(b->layer, i, b->pyramid.present[i - 1], b->pyramid.present[i]);
     return true;
 }
 
@@ -50,13 +52,14 @@ static int choose_job_level(const VoxelLayer *layer) {
     int level = 0;
     while (level + 1 < layer->levels &&
            int_max(layer->level[level].brick_size[0],
-                   int_max(layer->level[level].brick_size[1], layer->level[level].brick_size[2])) > JOB_BRICKS_PER_AXIS)
+                   int_max(layer->level[level].brick_size[1], layer->level[level].brick_size[2])) >
+               JOB_BRICKS_PER_AXIS)
         level++;
     return level;
 }
 
 static bool take_scratch(Build *b) {
-    size_t workers = (size_t)pool_threads(b->options->pool), bytes = TEXEL_MAX_LEVELS * BRICK_VOXELS * sizeof(VoxelCell);
+    size_t workers = (size_t)pool_threads(b->options->pool), bytes = SCRATCH_CELLS * sizeof(VoxelCell);
     b->jobs = voxel_level_bricks(&b->layer->level[b->pyramid.job_level]);
     b->scratch = calloc(workers, sizeof *b->scratch);
     b->outputs = calloc(b->jobs + 1, sizeof *b->outputs);
@@ -84,7 +87,8 @@ static void release(Build *b) {
 
 static void tell_progress(Build *b) {
     size_t done = atomic_fetch_add(&b->done, 1) + 1;
-    if (atomic_flag_test_and_set(&b->telling)) return; /* another worker is telling; this step is told with the next */
+    if (atomic_flag_test_and_set(&b->telling))
+        return; /* another worker is telling; this step is told with the next */
     progress_update(b->options->progress, b->options->name ? b->options->name : "texel", done, b->jobs);
     atomic_flag_clear(&b->telling);
 }
@@ -97,20 +101,23 @@ static void run_job(void *context, size_t job, int worker) {
         size_t x = (size_t)level->brick_size[0], y = (size_t)level->brick_size[1];
         const int at[3] = {(int)(job % x), (int)(job / x % y), (int)(job / x / y)};
         VoxelCell *cells = p->job_cells[job] = calloc(BRICK_VOXELS, sizeof *cells);
-        if (cells) pyramid_build_brick(p, p->job_level, at, false, cells, b->scratch[worker], &b->outputs[job]);
-        else b->outputs[job].bricks.failed = true;
+        if (cells)
+            pyramid_build_brick(p, p->job_level, at, false, cells, b->scratch[worker], &b->outputs[job]);
+        else
+            b->outputs[job].bricks.failed = true;
     }
     tell_progress(b);
 }
 
-/* The levels above the jobs', if any. */
+/* The levels above the jobs', and the topmost brick itself, which has no parent. */
 static void build_top(Build *b) {
     const int origin[3] = {0, 0, 0};
     int top = b->layer->levels - 1;
-    if (top == b->pyramid.job_level || !b->pyramid.present[top][0]) return;
+    if (!b->pyramid.present[top][0]) return;
     VoxelCell *cells = b->scratch[0];
     memset(cells, 0, BRICK_VOXELS * sizeof *cells);
     pyramid_build_brick(&b->pyramid, top, origin, true, cells, cells + BRICK_VOXELS, &b->outputs[b->jobs]);
+    pyramid_code_brick(b->layer, top, origin, cells, NULL, &b->outputs[b->jobs]);
 }
 
 static bool allocate_level(VoxelLayer *layer, VoxelLevel *level) {
@@ -156,7 +163,8 @@ static bool assemble(Build *b) {
         }
     }
     for (int i = 0; i < layer->levels; i++)
-        if (layer->level[i].code_count >= UINT32_MAX || !allocate_level(layer, &layer->level[i])) return false;
+        if (layer->level[i].code_count >= UINT32_MAX || !allocate_level(layer, &layer->level[i]))
+            return false;
     for (size_t j = 0; j <= b->jobs; j++) {
         const BuiltBrick *built = b->outputs[j].bricks.data;
         for (size_t i = 0; i < b->outputs[j].bricks.count; i++)
@@ -169,7 +177,8 @@ static bool assemble(Build *b) {
 
 static bool build(Build *b, const TexelMesh *mesh) {
     if (!triangle_bins_build(&b->bins, mesh, b->layer, b->options)) return false;
-    b->pyramid = (Pyramid){.mesh = mesh, .layer = b->layer, .bins = &b->bins, .job_level = choose_job_level(b->layer)};
+    b->pyramid =
+        (Pyramid){.mesh = mesh, .layer = b->layer, .bins = &b->bins, .job_level = choose_job_level(b->layer)};
     if (!mark_present(b) || !take_scratch(b)) return false;
     if (!pool_run(b->options->pool, b->jobs, run_job, b)) return false;
     build_top(b);
@@ -182,7 +191,8 @@ static void fill_stats(const VoxelLayer *layer, double seconds, TexelBuildStats 
     for (int i = 0; i < layer->levels; i++) stats->voxels[i] = layer->level[i].code_count;
 }
 
-VoxelLayer *voxel_layer_build(const TexelMesh *mesh, const TexelBuildOptions *options, TexelBuildStats *stats) {
+VoxelLayer *voxel_layer_build(const TexelMesh *mesh, const TexelBuildOptions *options,
+                              TexelBuildStats *stats) {
     double start = stopwatch_wall();
     Build b = {.options = options, .layer = voxel_layer_create(options), .telling = ATOMIC_FLAG_INIT};
     if (!b.layer) return NULL;

@@ -1,5 +1,7 @@
 #include "texel/voxel_cell.h"
 
+#include "texel/opacity.h"
+
 #include <math.h>
 
 static int count_bits(uint64_t x) {
@@ -7,12 +9,6 @@ static int count_bits(uint64_t x) {
     x = (x & 0x3333333333333333u) + (x >> 2 & 0x3333333333333333u);
     x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0fu;
     return (int)(x * 0x0101010101010101u >> 56);
-}
-
-float voxel_cell_area(const VoxelCell *cell) {
-    /* Where no ray met a wall the solid is much thinner than the cell: both walls are here. */
-    float once = cell->walls > 0 ? cell->bodies / cell->walls : 0.5f;
-    return cell->sheet + cell->solid * once;
 }
 
 /* One of each two columns, by a pattern of one bit per pair; the result is the low nibble of each row. */
@@ -31,33 +27,56 @@ static uint64_t keep_rows(uint64_t rays, uint64_t pick) {
     return (rays | rays >> 16) & 0x00000000ffffffffu;
 }
 
-static uint64_t place_rays(uint64_t rays, bool halve_columns, bool halve_rows, int column, int row, int level) {
-    static const uint64_t columns[4] = {0x9a65a95a6a9556a9u, 0x59a6956a96a9a655u, 0xa6596a9559966a9au, 0x65a9569a5a6699a5u};
-    static const uint64_t rows[4] = {0xff0000ff00ffff00u, 0x00ff00ffff00ff00u, 0x00ffff0000ff00ffu, 0xff00ff00ff0000ffu};
+static uint64_t place_rays(uint64_t rays, bool halve_columns, bool halve_rows, int column, int row,
+                           int level) {
+    static const uint64_t columns[4] = {0x9a65a95a6a9556a9u, 0x59a6956a96a9a655u, 0xa6596a9559966a9au,
+                                        0x65a9569a5a6699a5u};
+    static const uint64_t rows[4] = {0xff0000ff00ffff00u, 0x00ff00ffff00ff00u, 0x00ffff0000ff00ffu,
+                                     0xff00ff00ff0000ffu};
     if (halve_columns) rays = keep_columns(rays, columns[level & 3]) << (4 * column);
     if (halve_rows) rays = keep_rows(rays, rows[level >> 1 & 3]) << (32 * row);
     return rays;
 }
 
-static void merge_rays(VoxelCell *parent, const VoxelCell *child, const VoxelMerge *step, const int corner[3], int axis) {
+static void merge_rays(VoxelCell *parent, const VoxelCell *child, const VoxelMerge *step, const int corner[3],
+                       int axis) {
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
     bool hu = step->halved[u], hv = step->halved[v];
     uint64_t cover = place_rays(child->cover[axis], hu, hv, corner[u], corner[v], step->level);
     uint64_t inside = place_rays(child->inside[axis], hu, hv, corner[u], corner[v], step->level);
-    /* A ray inside a solid in both halves: two walls that were alone are now a pair, one solid fewer. */
-    parent->bodies -= (float)count_bits(parent->inside[axis] & inside) * step->rays[axis];
+    parent->odd += (float)count_bits(inside) * step->rays[axis];
+    parent->joined += 2 * (float)count_bits(parent->inside[axis] & inside) * step->rays[axis];
     parent->cover[axis] |= cover;
     parent->inside[axis] ^= inside;
 }
 
-void voxel_cell_merge(VoxelCell *parent, const VoxelCell *child, const VoxelMerge *step, const int corner[3]) {
+void voxel_cell_merge(VoxelCell *parent, const VoxelCell *child, const VoxelMerge *step,
+                      const int corner[3]) {
     parent->sheet += child->sheet;
     parent->solid += child->solid;
     for (int i = 0; i < 6; i++) parent->normals[i] += child->normals[i];
     parent->walls += child->walls;
-    parent->bodies += child->bodies;
+    parent->apart += child->single;
     for (int axis = 0; axis < 3; axis++) merge_rays(parent, child, step, corner, axis);
-    parent->bodies = float_max(parent->bodies, parent->walls * 0.5f); /* the rays dropped may have had fewer pairs */
+}
+
+void voxel_cell_close_finest(VoxelCell *cell) {
+    for (int axis = 0; axis < 3; axis++) cell->single += (float)count_bits(cell->inside[axis]);
+    cell->apart = cell->walls;
+}
+
+void voxel_cell_close_merged(VoxelCell *cell) {
+    /* The share of rays that met their pair is applied to the exact count: few rays are kept at coarse levels. If none of
+     * them is left inside a solid, the walls here are slivers or very thin solids. */
+    cell->single = cell->odd > 0 ? cell->apart * (1 - cell->joined / cell->odd) : 0;
+}
+
+float voxel_cell_thinness(const VoxelCell *parent) {
+    if (!(parent->walls > 0)) return 1; /* met by no ray: very thin */
+    /* A pair at distance c is in the same cell of side h with probability 1 − c/h, in the same one of side 2h with
+     * 1 − c/2h: extrapolating gives 1 for all c < h. */
+    float small = 1 - parent->apart / parent->walls, large = 1 - parent->single / parent->walls;
+    return float_clamp(2 * large - small, 0, 1);
 }
 
 /* Eigenvalues of a symmetric matrix by the trigonometric solution of the cubic. */
@@ -65,7 +84,8 @@ static void eigenvalues(const double m[6], double out[3]) {
     double q = (m[0] + m[1] + m[2]) / 3;
     double a = m[0] - q, b = m[1] - q, c = m[2] - q;
     double p2 = (a * a + b * b + c * c + 2 * (m[3] * m[3] + m[4] * m[4] + m[5] * m[5])) / 6, p = sqrt(p2);
-    double det = a * (b * c - m[5] * m[5]) - m[3] * (m[3] * c - m[5] * m[4]) + m[4] * (m[3] * m[5] - b * m[4]);
+    double det =
+        a * (b * c - m[5] * m[5]) - m[3] * (m[3] * c - m[5] * m[4]) + m[4] * (m[3] * m[5] - b * m[4]);
     double r = p > 0 ? double_clamp(det / (2 * p2 * p), -1, 1) : 1;
     double phi = acos(r) / 3;
     out[0] = q + 2 * p * cos(phi);
@@ -73,9 +93,11 @@ static void eigenvalues(const double m[6], double out[3]) {
     out[1] = 3 * q - out[0] - out[2];
 }
 
-/* Mean over directions of sqrt(dᵗ S d), from the axis projections (Thomsen's formula; erratum of Neyret 1998 sec. IV-B). */
+/* Mean over directions of sqrt(dᵗ S d), from the axis projections, largest first: Thomsen's formula (erratum E15 of Neyret
+ * 1998 sec. IV-B), whose exponent 1.6075 we let go from ln 3 / ln 2, exact for discs, to ln 1.5 / ln(4/π), exact for
+ * needles: at most 0.54 % wrong instead of 1.06 %. */
 static double mean_projection(const double s[3]) {
-    const double p = 1.6075;
+    double middle = s[1] / s[0], p = 1.58496 + 0.0935 * middle * middle;
     return pow((pow(s[0], p) + pow(s[1], p) + pow(s[2], p)) / 3, 1 / p);
 }
 
@@ -106,29 +128,61 @@ static Sym3f unit_root(const VoxelCell *cell) {
     return square_root(m, s, 1 / mean_projection(s));
 }
 
-/* Least squares of T = gamma·max(0, 1 − τ) + (1 − gamma)·exp(−τ) to the rays' coverage along the three axes, for a
- * crossing of length `side` as rays are marched. */
-static float fit_gamma(const VoxelCell *cell, const Sym3f *root, float density, const float sides[3], float side) {
-    const float projected[3] = {
-        density * sqrtf(root->xx * root->xx + root->xy * root->xy + root->xz * root->xz),
-        density * sqrtf(root->xy * root->xy + root->yy * root->yy + root->yz * root->yz),
-        density * sqrtf(root->xz * root->xz + root->yz * root->yz + root->zz * root->zz),
+/* Per axis: τ of a crossing of length `side`, and what the rays say is let through over such a length. */
+typedef struct AxisLight {
+    float tau[3], through[3];
+} AxisLight;
+
+static AxisLight axis_light(const VoxelCell *cell, const Sym3f *root, float density, const float sides[3],
+                            float side) {
+    AxisLight light = {
+        .tau = {density * sqrtf(root->xx * root->xx + root->xy * root->xy + root->xz * root->xz),
+                density * sqrtf(root->xy * root->xy + root->yy * root->yy + root->yz * root->yz),
+                density * sqrtf(root->xz * root->xz + root->yz * root->yz + root->zz * root->zz)},
     };
-    float above = 0, below = 1e-9f;
     for (int axis = 0; axis < 3; axis++) {
         float through = 1 - (float)count_bits(cell->cover[axis]) / 64;
-        if (sides[axis] != side) through = powf(through, side / sides[axis]);
-        float tau = projected[axis], random = 1 - expf(-tau), sheet = float_min(1, tau);
-        above += (1 - through - random) * (sheet - random);
+        light.through[axis] = sides[axis] == side ? through : powf(through, side / sides[axis]);
+    }
+    return light;
+}
+
+/* How much of the matter is one sheet: least squares of T = gamma·max(0, 1 − τ) + (1 − gamma)·exp(−τ) along the axes. */
+static float fit_sheet(const AxisLight *light) {
+    float above = 0, below = 1e-9f;
+    for (int axis = 0; axis < 3; axis++) {
+        float random = 1 - expf(-light->tau[axis]), sheet = float_min(1, light->tau[axis]);
+        above += (1 - light->through[axis] - random) * (sheet - random);
         below += (sheet - random) * (sheet - random);
     }
     return float_clamp(above / below, 0, 1);
 }
 
-VoxelMatter voxel_cell_matter(const VoxelCell *cell, const float sides[3], float side) {
+/* The gamma by which the voxel by itself, without neighbours that continue it, lets through what the rays say: least squares
+ * of exp(−τ·enhancement), linearised. */
+static float fit_alone(const AxisLight *light, float density) {
+    float above = 0, below = 1e-9f;
+    for (int axis = 0; axis < 3; axis++) {
+        float t = float_max(light->through[axis], 1.0f / 64), weighted = t * t * light->tau[axis];
+        above -= weighted * logf(t);
+        below += weighted * light->tau[axis];
+    }
+    return opacity_gamma_for(above / below, density);
+}
+
+/* Thin solids end in the voxel; sheets and single walls go on into the next ones. */
+static float fit_gamma(const VoxelCell *cell, const AxisLight *light, float density, float thin) {
+    float sheet = fit_sheet(light), share = thin * cell->solid / (cell->solid + cell->sheet);
+    if (share <= 0) return sheet;
+    return sheet + share * (float_min(sheet, fit_alone(light, density)) - sheet);
+}
+
+VoxelMatter voxel_cell_matter(const VoxelCell *cell, const float sides[3], float side, float thin) {
     VoxelMatter matter = {.root = unit_root(cell)};
+    float area = cell->sheet + cell->solid * (1 - 0.5f * thin);
     /* Cauchy: an area is seen as half of itself, on the mean over directions. */
-    matter.density = voxel_cell_area(cell) / (2 * sides[0] * sides[1] * sides[2]) * side;
-    matter.gamma = fit_gamma(cell, &matter.root, matter.density, sides, side);
+    matter.density = area / (2 * sides[0] * sides[1] * sides[2]) * side;
+    AxisLight light = axis_light(cell, &matter.root, matter.density, sides, side);
+    matter.gamma = fit_gamma(cell, &light, matter.density, thin);
     return matter;
 }

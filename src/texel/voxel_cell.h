@@ -5,28 +5,33 @@
 #include "texel/texel.h"
 
 /* Coverage is known from 8 × 8 rays along each axis: bit 8·row + column, axis k's columns run along axis k + 1 and its
- * rows along k + 2 (cyclically). Merging keeps one ray in four, always the same ones, so that each bit stays a true ray. */
+ * rows along k + 2 (cyclically). Merging keeps one ray in four, always the same ones, so that each bit stays a true ray.
+ *
+ * Walls of solids come in pairs along a ray. How many walls are still without the other one of their pair, in cells and in
+ * cells twice as large, tells thin solids from walls that stand alone. */
 typedef struct VoxelCell {
-    float sheet, solid;   /* area of open sheets; of walls of solids, both walls counted */
-    float normals[6];     /* sum of area · n nᵗ: xx yy zz xy xz yz */
-    float walls, bodies;  /* walls of solids that the rays met, and solids: a pair of walls, or one wall alone */
-    uint64_t cover[3];    /* rays that met anything */
-    uint64_t inside[3];   /* rays that met an odd number of walls: they leave, or came, inside a solid */
+    float sheet, solid; /* area of open sheets; of walls of solids, both walls counted */
+    float normals[6];   /* sum of area · n nᵗ: xx yy zz xy xz yz */
+    float walls;        /* walls that the finest level's rays met in the cell */
+    float single;       /* of these, without the other one of their pair in the cell */
+    float
+        apart; /* the same while pairs had to be in the same child; both are valid once the cell is closed */
+    float odd, joined;  /* rays kept that left a child inside a solid, and those of them that met again */
+    uint64_t cover[3];  /* rays that met anything */
+    uint64_t inside[3]; /* rays that met an odd number of walls */
 } VoxelCell;
 
 /* The cell as it is drawn. */
 typedef struct VoxelMatter {
-    float density;  /* in units of 1/side */
+    float density; /* in units of 1/side */
     float gamma;
-    Sym3f root;     /* square root of S */
+    Sym3f root; /* square root of S */
 } VoxelMatter;
 
 /* Smallest ratio of axis projections, so that S can be inverted. */
-#define VOXEL_ROUGHNESS 0.02f
+#define VOXEL_ROUGHNESS 0.01f
 
 static inline bool voxel_cell_is_empty(const VoxelCell *cell) { return !(cell->sheet + cell->solid > 0); }
-/* Area with the two walls of a solid counted once where both are in the cell. */
-float voxel_cell_area(const VoxelCell *cell);
 
 /* The step from one level to the next. */
 typedef struct VoxelMerge {
@@ -35,11 +40,19 @@ typedef struct VoxelMerge {
     float rays[3];  /* per axis: rays of the finest level for which a ray of the parent stands */
 } VoxelMerge;
 
-/* Adds `child` to `parent`, in any order, each once. corner: which half of the parent along each axis (0 or 1; 0 where not
- * halved). */
+/* Adds `child` (closed) to `parent`, in any order, each once. corner: which half of the parent along each axis (0 or 1; 0
+ * where not halved). */
 void voxel_cell_merge(VoxelCell *parent, const VoxelCell *child, const VoxelMerge *step, const int corner[3]);
+/* To be called once all triangles or children are in. */
+void voxel_cell_close_finest(VoxelCell *cell);
+void voxel_cell_close_merged(VoxelCell *cell);
 
-/* sides: lengths of the cell; side: the length h by which rays will be marched (opacity.h). */
-VoxelMatter voxel_cell_matter(const VoxelCell *cell, const float sides[3], float side);
+/* How many of the walls in a closed cell's children are halves of solids thinner than a child, 0 … 1: all where solids are
+ * thinner than one side of a child, falling to none at two. */
+float voxel_cell_thinness(const VoxelCell *parent);
+
+/* sides: lengths of the cell; side: the length h that opacity.h is told; thin: the parent's thinness. The two walls of a
+ * thin solid count once. */
+VoxelMatter voxel_cell_matter(const VoxelCell *cell, const float sides[3], float side, float thin);
 
 #endif

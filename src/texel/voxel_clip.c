@@ -33,7 +33,8 @@ static void range(const ClipPolygon *p, int axis, double *lo, double *hi) {
 }
 
 /* Cuts along `axis` and passes each slab on to the next axis. */
-static void cut_axis(const ClipPolygon *polygon, int axis, int cell[3], const int size[3], ClipPiece *piece, void *context) {
+static void cut_axis(const ClipPolygon *polygon, int axis, int cell[3], const int size[3], ClipPiece *piece,
+                     void *context) {
     if (axis == 3) {
         piece(context, cell, polygon);
         return;

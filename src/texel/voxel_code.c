@@ -15,7 +15,8 @@ static uint32_t density_code(float density) {
 
 VoxelCode voxel_code_pack(float density, float gamma, const Sym3f *root) {
     return (VoxelCode){
-        .diagonal = diagonal(root->xx) | diagonal(root->yy) << 8 | diagonal(root->zz) << 16 | mixed(root->xy) << 24,
+        .diagonal =
+            diagonal(root->xx) | diagonal(root->yy) << 8 | diagonal(root->zz) << 16 | mixed(root->xy) << 24,
         .rest = mixed(root->xz) | mixed(root->yz) << 8 | density_code(density) << VOXEL_DENSITY_SHIFT |
                 whole(gamma * VOXEL_GAMMA_LARGEST, 0, VOXEL_GAMMA_LARGEST) << VOXEL_GAMMA_SHIFT,
     };
@@ -29,7 +30,8 @@ void voxel_code_unpack(VoxelCode code, VoxelSample *out) {
     *out = (VoxelSample){
         .density = voxel_code_density(code.rest),
         .gamma = voxel_code_gamma(code.rest),
-        .s = {k * (xx * xx + xy * xy + xz * xz), k * (xy * xy + yy * yy + yz * yz), k * (xz * xz + yz * yz + zz * zz),
-              k * (xx * xy + xy * yy + xz * yz), k * (xx * xz + xy * yz + xz * zz), k * (xy * xz + yy * yz + yz * zz)},
+        .s = {k * (xx * xx + xy * xy + xz * xz), k * (xy * xy + yy * yy + yz * yz),
+              k * (xz * xz + yz * yz + zz * zz), k * (xx * xy + xy * yy + xz * yz),
+              k * (xx * xz + xy * yz + xz * zz), k * (xy * xz + yy * yz + yz * zz)},
     };
 }

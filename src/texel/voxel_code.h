@@ -16,15 +16,24 @@ typedef struct VoxelCode {
     uint32_t rest;     /* bytes Bxz Byz; 11 bits density; 5 bits gamma */
 } VoxelCode;
 
-enum { VOXEL_DENSITY_SHIFT = 16, VOXEL_GAMMA_SHIFT = 27, VOXEL_DENSITY_LARGEST = 2047, VOXEL_GAMMA_LARGEST = 31 };
+enum {
+    VOXEL_DENSITY_SHIFT = 16,
+    VOXEL_GAMMA_SHIFT = 27,
+    VOXEL_DENSITY_LARGEST = 2047,
+    VOXEL_GAMMA_LARGEST = 31
+};
 
 /* `density` in units of 1/side (> 0), s of unit mean projected area and roughness at least VOXEL_ROUGHNESS. */
 VoxelCode voxel_code_pack(float density, float gamma, const Sym3f *root);
 void voxel_code_unpack(VoxelCode code, VoxelSample *out);
 
 /* The parts, for readers that decode several at once. Entries of B scaled by 255/2: whole numbers. */
-static inline float voxel_code_diagonal(uint32_t word, int byte) { return (float)(int32_t)(word >> (8 * byte) & 255u); }
-static inline float voxel_code_mixed(uint32_t word, int byte) { return (float)((int32_t)(word >> (8 * byte) & 255u) - 128); }
+static inline float voxel_code_diagonal(uint32_t word, int byte) {
+    return (float)(int32_t)(word >> (8 * byte) & 255u);
+}
+static inline float voxel_code_mixed(uint32_t word, int byte) {
+    return (float)((int32_t)(word >> (8 * byte) & 255u) - 128);
+}
 /* Squares of the scaled entries times this are S. */
 #define VOXEL_CODE_SQUARE (1.0f / (127.5f * 127.5f))
 

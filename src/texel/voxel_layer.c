@@ -7,8 +7,10 @@ void *voxel_layer_allocate(VoxelLayer *layer, size_t count, size_t size) {
     size_t bytes = count * size;
     if (!memory_budget_take(layer->memory, bytes)) return NULL;
     void *block = calloc(count ? count : 1, size ? size : 1);
-    if (block) layer->bytes += bytes;
-    else memory_budget_give_back(layer->memory, bytes);
+    if (block)
+        layer->bytes += bytes;
+    else
+        memory_budget_give_back(layer->memory, bytes);
     return block;
 }
 

@@ -16,13 +16,13 @@ typedef struct VoxelBrick {
 } VoxelBrick;
 
 typedef struct VoxelLevel {
-    int size[3];         /* voxels */
-    int brick_size[3];   /* bricks */
-    float sides[3];      /* of a voxel */
-    float per_side[3];   /* 1 / sides */
-    float density_unit;  /* 1 / the voxel's side along the longest axis of the extent */
-    int32_t *index;      /* per brick, x fastest; −1: nothing in it */
-    uint8_t *reached;    /* per brick: some point of it is within reach (interpolation) of an occupied voxel */
+    int size[3];        /* voxels */
+    int brick_size[3];  /* bricks */
+    float sides[3];     /* of a voxel */
+    float per_side[3];  /* 1 / sides */
+    float density_unit; /* 1 / the voxel's side along the longest axis of the extent */
+    int32_t *index;     /* per brick, x fastest; −1: nothing in it */
+    uint8_t *reached;   /* per brick: some point of it is within reach (interpolation) of an occupied voxel */
     VoxelBrick *bricks;
     VoxelCode *codes;
     size_t brick_count, code_count;

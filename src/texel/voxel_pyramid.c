@@ -16,12 +16,34 @@ static void build_finest(const Pyramid *p, const int at[3], VoxelCell *cells) {
         for (int v = 0; v < 3; v++)
             for (int k = 0; k < 3; k++)
                 triangle.at[v][k] -= (double)item->shift[k] * finest->size[k] + at[k] * BRICK_SIDE;
-        voxel_raster_add(cells, &triangle, p->mesh->solid && p->mesh->solid[item->triangle], size, finest->sides);
+        voxel_raster_add(cells, &triangle, p->mesh->solid && p->mesh->solid[item->triangle], size,
+                         finest->sides);
     }
 }
 
-/* Adds the cells of brick `at` of level − 1 to those of its parent. */
-static void merge_brick(const VoxelLayer *layer, int level, const int at[3], const VoxelCell *from, VoxelCell *to) {
+static void close_cells(VoxelCell *cells, int level) {
+    for (int i = 0; i < BRICK_VOXELS; i++) {
+        if (voxel_cell_is_empty(&cells[i])) continue;
+        if (level == 0)
+            voxel_cell_close_finest(&cells[i]);
+        else
+            voxel_cell_close_merged(&cells[i]);
+    }
+}
+
+/* Where voxel i of brick `at` of a level is in the brick above it; corner as voxel_cell_merge() wants it. */
+static int index_in_parent(const bool halved[3], const int at[3], int i, int corner[3]) {
+    const int voxel[3] = {at[0] * BRICK_SIDE + (i & 7), at[1] * BRICK_SIDE + (i >> 3 & 7),
+                          at[2] * BRICK_SIDE + (i >> 6)};
+    int parent[3];
+    for (int k = 0; k < 3; k++) {
+        parent[k] = (halved[k] ? voxel[k] >> 1 : voxel[k]) & (BRICK_SIDE - 1);
+        corner[k] = halved[k] ? voxel[k] & 1 : 0;
+    }
+    return (parent[2] * BRICK_SIDE + parent[1]) * BRICK_SIDE + parent[0];
+}
+
+static VoxelMerge step_to(const VoxelLayer *layer, int level) {
     const int *finest = layer->level[0].size, *size = layer->level[level].size;
     VoxelMerge step = {.level = level};
     for (int k = 0; k < 3; k++) {
@@ -29,43 +51,79 @@ static void merge_brick(const VoxelLayer *layer, int level, const int at[3], con
         step.halved[k] = voxel_layer_halves(layer, level - 1, k);
         step.rays[k] = (float)(finest[u] / size[u]) * (float)(finest[v] / size[v]);
     }
+    return step;
+}
+
+/* Adds the cells of brick `at` of level − 1 to those of its parent. */
+static void merge_brick(const VoxelLayer *layer, int level, const int at[3], const VoxelCell *from,
+                        VoxelCell *to) {
+    VoxelMerge step = step_to(layer, level);
     for (int i = 0; i < BRICK_VOXELS; i++) {
         if (voxel_cell_is_empty(&from[i])) continue;
-        const int voxel[3] = {at[0] * BRICK_SIDE + (i & 7), at[1] * BRICK_SIDE + (i >> 3 & 7), at[2] * BRICK_SIDE + (i >> 6)};
-        int parent[3], corner[3];
-        for (int k = 0; k < 3; k++) {
-            parent[k] = (step.halved[k] ? voxel[k] >> 1 : voxel[k]) & (BRICK_SIDE - 1);
-            corner[k] = step.halved[k] ? voxel[k] & 1 : 0;
-        }
-        voxel_cell_merge(&to[(parent[2] * BRICK_SIDE + parent[1]) * BRICK_SIDE + parent[0]], &from[i], &step, corner);
+        int corner[3], parent = index_in_parent(step.halved, at, i, corner);
+        voxel_cell_merge(&to[parent], &from[i], &step, corner);
     }
 }
 
-static void build_from_children(const Pyramid *p, int level, const int at[3], bool from_top, VoxelCell *cells,
-                                VoxelCell *scratch, PyramidOutput *out) {
+/* The bricks of level − 1 under brick `at` of level in which anything is. */
+static int list_children(const Pyramid *p, int level, const int at[3], int children[PYRAMID_CHILDREN][3]) {
     const VoxelLevel *below = &p->layer->level[level - 1];
-    int first[3], end[3], child[3];
+    int first[3], end[3], c[3], count = 0;
     for (int k = 0; k < 3; k++) {
         bool halved = voxel_layer_halves(p->layer, level - 1, k);
         first[k] = halved ? 2 * at[k] : at[k];
         end[k] = int_min(below->brick_size[k], first[k] + (halved ? 2 : 1));
     }
-    for (child[2] = first[2]; child[2] < end[2]; child[2]++)
-        for (child[1] = first[1]; child[1] < end[1]; child[1]++)
-            for (child[0] = first[0]; child[0] < end[0]; child[0]++) {
-                if (!p->present[level - 1][voxel_level_brick_at(below, child[0], child[1], child[2])]) continue;
-                memset(scratch, 0, BRICK_VOXELS * sizeof *scratch);
-                pyramid_build_brick(p, level - 1, child, from_top, scratch, scratch + BRICK_VOXELS, out);
-                merge_brick(p->layer, level, child, scratch, cells);
-            }
+    for (c[2] = first[2]; c[2] < end[2]; c[2]++)
+        for (c[1] = first[1]; c[1] < end[1]; c[1]++)
+            for (c[0] = first[0]; c[0] < end[0]; c[0]++)
+                if (p->present[level - 1][voxel_level_brick_at(below, c[0], c[1], c[2])])
+                    memcpy(children[count++], c, sizeof c);
+    return count;
 }
 
-static void code_brick(const VoxelLayer *layer, int level, const int at[3], const VoxelCell *cells, PyramidOutput *out) {
+static void build_from_children(const Pyramid *p, int level, const int at[3], bool from_top, VoxelCell *cells,
+                                VoxelCell *scratch, PyramidOutput *out) {
+    int children[PYRAMID_CHILDREN][3], count = list_children(p, level, at, children);
+    VoxelCell *deeper = scratch + PYRAMID_CHILDREN * BRICK_VOXELS;
+    memset(scratch, 0, (size_t)count * BRICK_VOXELS * sizeof *scratch);
+    for (int i = 0; i < count; i++) {
+        VoxelCell *child = scratch + i * BRICK_VOXELS;
+        pyramid_build_brick(p, level - 1, children[i], from_top, child, deeper, out);
+        merge_brick(p->layer, level, children[i], child, cells);
+    }
+    close_cells(cells, level);
+    for (int i = 0; i < count; i++)
+        pyramid_code_brick(p->layer, level - 1, children[i], scratch + i * BRICK_VOXELS, cells, out);
+}
+
+void pyramid_build_brick(const Pyramid *p, int level, const int at[3], bool from_top, VoxelCell *cells,
+                         VoxelCell *scratch, PyramidOutput *out) {
+    if (from_top && level == p->job_level) {
+        size_t place = voxel_level_brick_at(&p->layer->level[level], at[0], at[1], at[2]);
+        if (p->job_cells[place]) memcpy(cells, p->job_cells[place], BRICK_VOXELS * sizeof *cells);
+    } else if (level == 0) {
+        build_finest(p, at, cells);
+        close_cells(cells, 0);
+    } else {
+        build_from_children(p, level, at, from_top, cells, scratch, out);
+    }
+}
+
+void pyramid_code_brick(const VoxelLayer *layer, int level, const int at[3], const VoxelCell *cells,
+                        const VoxelCell *parent, PyramidOutput *out) {
     const VoxelLevel *l = &layer->level[level];
-    BuiltBrick brick = {.level = level, .place = (uint32_t)voxel_level_brick_at(l, at[0], at[1], at[2]), .first = out->codes.count};
+    BuiltBrick brick = {.level = level,
+                        .place = (uint32_t)voxel_level_brick_at(l, at[0], at[1], at[2]),
+                        .first = out->codes.count};
+    bool halved[3];
+    for (int k = 0; k < 3; k++) halved[k] = voxel_layer_halves(layer, level, k);
     for (int i = 0; i < BRICK_VOXELS; i++) {
         if (voxel_cell_is_empty(&cells[i])) continue;
-        VoxelMatter m = voxel_cell_matter(&cells[i], l->sides, 1 / l->density_unit);
+        int corner[3];
+        const VoxelCell *above = parent ? &parent[index_in_parent(halved, at, i, corner)] : &cells[i];
+        VoxelMatter m =
+            voxel_cell_matter(&cells[i], l->sides, 1 / l->density_unit, voxel_cell_thinness(above));
         VoxelCode *code = grow_buffer_add(&out->codes, 1, sizeof *code);
         if (!code) return;
         *code = voxel_code_pack(m.density, m.gamma, &m.root);
@@ -75,16 +133,4 @@ static void code_brick(const VoxelLayer *layer, int level, const int at[3], cons
     if (brick.count == 0) return;
     BuiltBrick *place = grow_buffer_add(&out->bricks, 1, sizeof *place);
     if (place) *place = brick;
-}
-
-void pyramid_build_brick(const Pyramid *p, int level, const int at[3], bool from_top, VoxelCell *cells, VoxelCell *scratch,
-                         PyramidOutput *out) {
-    if (from_top && level == p->job_level) {
-        const VoxelCell *kept = p->job_cells[voxel_level_brick_at(&p->layer->level[level], at[0], at[1], at[2])];
-        if (kept) memcpy(cells, kept, BRICK_VOXELS * sizeof *cells);
-        return; /* already coded by its job */
-    }
-    if (level == 0) build_finest(p, at, cells);
-    else build_from_children(p, level, at, from_top, cells, scratch, out);
-    code_brick(p->layer, level, at, cells, out);
 }

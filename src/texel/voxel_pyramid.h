@@ -19,8 +19,8 @@ typedef struct PyramidOutput {
     GrowBuffer codes;  /* VoxelCode */
 } PyramidOutput;
 
-/* A part of the pyramid is the tree under one brick: bricks are built from the finest up, and only one brick per level is
- * in memory as cells. */
+/* A part of the pyramid is the tree under one brick: bricks are built from the finest up, and coded when their parent is
+ * known; only the children of one brick per level are in memory as cells. */
 typedef struct Pyramid {
     const TexelMesh *mesh;
     const VoxelLayer *layer;
@@ -31,9 +31,15 @@ typedef struct Pyramid {
     VoxelCell **job_cells; /* per brick of job_level: BRICK_VOXELS cells, or NULL */
 } Pyramid;
 
-/* Builds brick `at` of `level` into cells (cleared by the caller) and codes it and all below it. scratch: BRICK_VOXELS
- * cells for each level below. At the job level of a run from the top, takes the kept cells instead. */
+enum { PYRAMID_CHILDREN = 8 };
+
+/* Builds the cells of brick `at` of `level` (cleared by the caller) and codes all bricks below it. scratch:
+ * PYRAMID_CHILDREN · BRICK_VOXELS cells for each level below. from_top: at the job level, takes the kept cells instead. */
 void pyramid_build_brick(const Pyramid *pyramid, int level, const int at[3], bool from_top, VoxelCell *cells,
                          VoxelCell *scratch, PyramidOutput *out);
+
+/* Codes a brick. parent: the cells of the brick above it, that of level + 1; NULL for the topmost. */
+void pyramid_code_brick(const VoxelLayer *layer, int level, const int at[3], const VoxelCell *cells,
+                        const VoxelCell *parent, PyramidOutput *out);
 
 #endif

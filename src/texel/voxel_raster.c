@@ -22,7 +22,8 @@ static void add_area(void *context, const int cell[3], const ClipPolygon *piece)
     for (int i = 0; i < 6; i++) c->normals[i] += (float)(area * squares[i]);
 }
 
-static void add_areas(VoxelCell *cells, const ClipPolygon *triangle, bool solid, const int size[3], const float sides[3]) {
+static void add_areas(VoxelCell *cells, const ClipPolygon *triangle, bool solid, const int size[3],
+                      const float sides[3]) {
     AreaSink sink = {.cells = cells, .solid = solid};
     double projected[3], area[3], length = 0; /* area: the vector of twice the area in texel space */
     for (int k = 0; k < 3; k++) {
@@ -40,7 +41,8 @@ static void add_areas(VoxelCell *cells, const ClipPolygon *triangle, bool solid,
 
 /* Where in its column's eighth the rays of each row stand: spread so that the 64 rays of a voxel differ. */
 static double ray_offset(int row) {
-    static const double offsets[8] = {1 / 16., 9 / 16., 5 / 16., 13 / 16., 3 / 16., 11 / 16., 7 / 16., 15 / 16.};
+    static const double offsets[8] = {1 / 16., 9 / 16.,  5 / 16., 13 / 16.,
+                                      3 / 16., 11 / 16., 7 / 16., 15 / 16.};
     return offsets[row & 7];
 }
 
@@ -68,7 +70,6 @@ static void meet(VoxelCell *cell, int axis, uint64_t ray, bool solid) {
     cell->cover[axis] |= ray;
     if (!solid) return;
     cell->walls += 1;
-    if (!(cell->inside[axis] & ray)) cell->bodies += 1;
     cell->inside[axis] ^= ray;
 }
 
@@ -77,17 +78,21 @@ static void add_rays(VoxelCell *cells, const ClipPolygon *t, bool solid, const i
     double facing = clip_projected_area(t, axis);
     if (facing == 0) return;
     double slope_u = -clip_projected_area(t, u) / facing, slope_v = -clip_projected_area(t, v) / facing;
-    double v_lo = fmin(t->at[0][v], fmin(t->at[1][v], t->at[2][v])), v_hi = fmax(t->at[0][v], fmax(t->at[1][v], t->at[2][v]));
+    double v_lo = fmin(t->at[0][v], fmin(t->at[1][v], t->at[2][v])),
+           v_hi = fmax(t->at[0][v], fmax(t->at[1][v], t->at[2][v]));
     int row_end = (int)ceil(double_min(8 * v_hi - 0.5, 8 * size[v]));
     for (int row = (int)ceil(double_max(8 * v_lo - 0.5, 0)); row < row_end; row++) {
         double at = (row + 0.5) / 8, lo, hi, offset = ray_offset(row);
         if (!cross_outline(t, u, v, at, &lo, &hi)) continue;
         int column_end = (int)ceil(double_min(8 * hi - offset, 8 * size[u]));
-        double depth_at = t->at[0][axis] + slope_v * (at - t->at[0][v]) + slope_u * (offset / 8 - t->at[0][u]);
+        double depth_at =
+            t->at[0][axis] + slope_v * (at - t->at[0][v]) + slope_u * (offset / 8 - t->at[0][u]);
         for (int column = (int)ceil(double_max(8 * lo - offset, 0)); column < column_end; column++) {
             double depth = depth_at + slope_u * (column / 8.0);
             /* What lies in the very last plane belongs to the last cell; what only touches it, to the next brick. */
-            if (!(depth >= 0 && (depth < size[axis] || (depth == size[axis] && slope_u == 0 && slope_v == 0)))) continue;
+            if (!(depth >= 0 &&
+                  (depth < size[axis] || (depth == size[axis] && slope_u == 0 && slope_v == 0))))
+                continue;
             int cell[3];
             cell[axis] = int_min((int)depth, size[axis] - 1);
             cell[u] = column >> 3;
@@ -97,8 +102,8 @@ static void add_rays(VoxelCell *cells, const ClipPolygon *t, bool solid, const i
     }
 }
 
-void voxel_raster_add(VoxelCell cells[BRICK_VOXELS], const ClipPolygon *triangle, bool solid, const int size[3],
-                      const float sides[3]) {
+void voxel_raster_add(VoxelCell cells[BRICK_VOXELS], const ClipPolygon *triangle, bool solid,
+                      const int size[3], const float sides[3]) {
     add_areas(cells, triangle, solid, size, sides);
     for (int axis = 0; axis < 3; axis++) add_rays(cells, triangle, solid, size, axis);
 }

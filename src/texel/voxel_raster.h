@@ -8,7 +8,7 @@
 
 /* Adds a triangle, given in voxels from the brick's corner, to the cells (x fastest) of the brick, of which `size` voxels
  * exist along each axis. sides: of a voxel, in texel space. */
-void voxel_raster_add(VoxelCell cells[BRICK_VOXELS], const ClipPolygon *triangle, bool solid, const int size[3],
-                      const float sides[3]);
+void voxel_raster_add(VoxelCell cells[BRICK_VOXELS], const ClipPolygon *triangle, bool solid,
+                      const int size[3], const float sides[3]);
 
 #endif

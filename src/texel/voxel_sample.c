@@ -35,10 +35,12 @@ static int bits_of_byte(uint32_t x) {
     return (int)((x + (x >> 4)) & 0x0fu);
 }
 
-static void add_corner(Corners *c, const VoxelLevel *level, const VoxelBrick *brick, int row, int place, float weight) {
+static void add_corner(Corners *c, const VoxelLevel *level, const VoxelBrick *brick, int row, int place,
+                       float weight) {
     uint32_t mask = brick->mask[row];
     if (!(mask >> place & 1) || weight <= 0) return;
-    VoxelCode code = level->codes[brick->first + brick->before[row] + (uint32_t)bits_of_byte(mask & ((1u << place) - 1))];
+    VoxelCode code =
+        level->codes[brick->first + brick->before[row] + (uint32_t)bits_of_byte(mask & ((1u << place) - 1))];
     c->diagonal[c->count] = code.diagonal;
     c->rest[c->count] = code.rest;
     c->weight[c->count++] = weight;
@@ -58,7 +60,8 @@ static void gather(const VoxelLevel *level, const bool cyclic[3], Vec3f p, Corne
             for (int i = 0; i < 2; i++) {
                 int32_t brick = x.brick[i] < 0 ? -1 : bricks[x.brick[i]];
                 if (brick >= 0)
-                    add_corner(c, level, &level->bricks[brick], row, x.place[i], x.weight[i] * y.weight[j] * z.weight[k]);
+                    add_corner(c, level, &level->bricks[brick], row, x.place[i],
+                               x.weight[i] * y.weight[j] * z.weight[k]);
             }
         }
     }
@@ -77,7 +80,8 @@ static void add_corners(const Corners *c, float factor, float sums[SUMS]) {
         for (int l = 0; l < 4; l++) {
             uint32_t d = c->diagonal[group + l], r = c->rest[group + l];
             float w = c->weight[group + l] * voxel_code_density(r);
-            float xx = voxel_code_diagonal(d, 0), yy = voxel_code_diagonal(d, 1), zz = voxel_code_diagonal(d, 2);
+            float xx = voxel_code_diagonal(d, 0), yy = voxel_code_diagonal(d, 1),
+                  zz = voxel_code_diagonal(d, 2);
             float xy = voxel_code_mixed(d, 3), xz = voxel_code_mixed(r, 0), yz = voxel_code_mixed(r, 1);
             lanes[SUM_DENSITY][l] += w;
             lanes[SUM_GAMMA][l] += w * voxel_code_gamma(r);
@@ -88,7 +92,8 @@ static void add_corners(const Corners *c, float factor, float sums[SUMS]) {
             lanes[SUM_XZ][l] += w * (xx * xz + xy * yz + xz * zz);
             lanes[SUM_YZ][l] += w * (xy * xz + yy * yz + yz * zz);
         }
-    for (int i = 0; i < SUMS; i++) sums[i] += factor * ((lanes[i][0] + lanes[i][1]) + (lanes[i][2] + lanes[i][3]));
+    for (int i = 0; i < SUMS; i++)
+        sums[i] += factor * ((lanes[i][0] + lanes[i][1]) + (lanes[i][2] + lanes[i][3]));
 }
 
 static bool finish(const float sums[SUMS], VoxelSample *out) {
@@ -100,7 +105,8 @@ static bool finish(const float sums[SUMS], VoxelSample *out) {
     *out = (VoxelSample){
         .density = sums[SUM_DENSITY],
         .gamma = k * sums[SUM_GAMMA],
-        .s = {s * sums[SUM_XX], s * sums[SUM_YY], s * sums[SUM_ZZ], s * sums[SUM_XY], s * sums[SUM_XZ], s * sums[SUM_YZ]},
+        .s = {s * sums[SUM_XX], s * sums[SUM_YY], s * sums[SUM_ZZ], s * sums[SUM_XY], s * sums[SUM_XZ],
+              s * sums[SUM_YZ]},
     };
     return true;
 }

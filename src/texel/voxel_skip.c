@@ -7,9 +7,11 @@
 static void reach(VoxelLevel *level, const bool cyclic[3], const int voxel[3]) {
     int bricks[3][2], counts[3];
     for (int k = 0; k < 3; k++) {
-        int brick = voxel[k] / BRICK_SIDE, place = voxel[k] % BRICK_SIDE, n = level->brick_size[k], next = brick;
+        int brick = voxel[k] / BRICK_SIDE, place = voxel[k] % BRICK_SIDE, n = level->brick_size[k],
+            next = brick;
         if (place == 0) next = brick - 1;
-        if (place == BRICK_SIDE - 1 || voxel[k] == level->size[k] - 1) next = place == 0 && n > 1 ? next : brick + 1;
+        if (place == BRICK_SIDE - 1 || voxel[k] == level->size[k] - 1)
+            next = place == 0 && n > 1 ? next : brick + 1;
         if (cyclic[k]) next = (next + n) % n;
         bricks[k][0] = brick;
         bricks[k][1] = next;
@@ -28,7 +30,8 @@ void voxel_level_mark_reached(VoxelLevel *level, const bool cyclic[3]) {
         if (level->index[i] < 0) continue;
         const VoxelBrick *brick = &level->bricks[level->index[i]];
         size_t nx = (size_t)level->brick_size[0], ny = (size_t)level->brick_size[1];
-        const int corner[3] = {(int)(i % nx) * BRICK_SIDE, (int)(i / nx % ny) * BRICK_SIDE, (int)(i / nx / ny) * BRICK_SIDE};
+        const int corner[3] = {(int)(i % nx) * BRICK_SIDE, (int)(i / nx % ny) * BRICK_SIDE,
+                               (int)(i / nx / ny) * BRICK_SIDE};
         for (int v = 0; v < BRICK_VOXELS; v++) {
             if (!(brick->mask[v >> 3] >> (v & 7) & 1)) continue;
             const int voxel[3] = {corner[0] + (v & 7), corner[1] + (v >> 3 & 7), corner[2] + (v >> 6)};
@@ -63,7 +66,8 @@ static float skip_level(const VoxelLayer *layer, int index, const float p[3], co
     if (!start_walk(level, p, d, &walk)) return 0;
     float t = 0;
     while (t < limit && !level->reached[voxel_level_brick_at(level, walk.at[0], walk.at[1], walk.at[2])]) {
-        int k = walk.next[0] <= walk.next[1] ? (walk.next[0] <= walk.next[2] ? 0 : 2) : (walk.next[1] <= walk.next[2] ? 1 : 2);
+        int k = walk.next[0] <= walk.next[1] ? (walk.next[0] <= walk.next[2] ? 0 : 2)
+                                             : (walk.next[1] <= walk.next[2] ? 1 : 2);
         t = walk.next[k];
         if (!(t < limit)) return limit;
         walk.next[k] += walk.per_brick[k];

@@ -1,0 +1,299 @@
+#!/usr/bin/env bash
+# cli.sh CASE VTS JSON_CHECK: one case of how the program behaves; says what differs, status 1.
+set -u
+case_name=$1 vts=$2 json_check=$3
+folder=$(mktemp -d) || exit 2
+trap 'chmod -R u+w "$folder"; rm -rf "$folder"' EXIT
+cd "$folder" || exit 2
+unset NO_COLOR VTS_MODULE_DIR
+differs=0
+
+fail() { printf '%s: %s\n' "$case_name" "$*"; differs=1; }
+
+# run ARGUMENTS…: leaves stdout in `out`, stderr in `err`, the status in $status.
+run() {
+  call="vts $*"
+  "$vts" "$@" >out 2>err </dev/null
+  status=$?
+}
+want_status() {
+  local s
+  for s in "$@"; do [ "$status" = "$s" ] && return; done
+  fail "'$call' ended with $status, not $*: $(head -c 300 err)"
+}
+want_in() { grep -qF -- "$2" "$1" || fail "'$call': no '$2' in std$1: $(head -c 300 "$1")"; }
+want_empty() { [ ! -s "$1" ] || fail "'$call': std$1 is not empty: $(head -c 300 "$1")"; }
+want_file() { [ -s "$1" ] || fail "'$call': no file $1"; }
+# Nothing but what is named here lies in the folder: no picture, no temporary file.
+want_only() {
+  local found
+  found=$(ls -A | grep -vxF -f <(printf '%s\n' out err "$@"))
+  [ -z "$found" ] || fail "'$call' left $found"
+}
+refused() { # ARGUMENTS…: a usage error that points to help
+  run "$@"
+  want_status 2
+  want_empty out
+  want_in err 'error:'
+}
+
+scene() {
+  cat >scene.vts <<'S'
+camera { location <0, 1.5, -4> look_at <0, 0.5, 0> }
+light_source { <5, 10, -5> rgb 1 }
+background { rgb <0.5, 0.7, 1> }
+sphere { <0, 0.5, 0>, 0.5 pigment { rgb <0.8, 0.2, 0.1> } }
+plane { y, 0 pigment { checker rgb 1, rgb 0.3 } }
+S
+}
+
+case_help() {
+  run; want_status 2; want_empty out; want_in err Usage
+  local command
+  for command in render check run; do
+    run $command --help; want_status 0; want_empty err; want_in out "Usage: vts $command"; want_in out --include
+    cp out first; run help $command; want_status 0; cmp -s first out || fail "help $command is not $command --help"
+    run $command -h; want_status 0
+  done
+  run --help; want_status 0; want_empty err; want_in out render
+  run help nonsense; want_status 2
+  # Every option that help lists is known: with a wrong value it is that which is complained about.
+  run render --help
+  local option
+  for option in $(grep -o -- '--[a-z-]*' out | sort -u); do
+    run render "$option"
+    grep -q 'unknown option\|not available' err && fail "help lists $option: $(cat err)"
+  done
+}
+
+case_version() {
+  run --version; want_status 0; want_empty err
+  grep -qE '^vts [0-9]+\.[0-9]+\.[0-9]+' out || fail "version is '$(cat out)'"
+}
+
+case_usage() {
+  scene
+  refused render scene.vts --treads 3; want_in err "vts render: error: unknown option '--treads' (did you mean '--threads'?)"; want_in err "vts render --help"
+  refused rendre scene.vts; want_in err "did you mean 'render'"
+  refused render; refused check; refused run
+  refused render scene.vts other.vts
+  refused render scene.vts -t
+  refused render scene.vts -y
+  refused check scene.vts --alpha
+  refused render scene.vts --alpha=1
+  local word
+  for word in chart farm texel reference compare info stitch; do refused $word scene.vts; want_in err 'not available in this version'; done
+  for word in --resume --preview=h:1 --aov=depth --frames=1-3 -f1-3 --cache=off; do refused render scene.vts $word; want_in err 'not available in this version'; done
+  want_only scene.vts
+}
+
+case_values() {
+  scene
+  local option
+  for option in -s64 -s0x3 -s6x -sx6 -s-1x4 -s1x2x3 -s99999999x2 --size= -t-1 -tx -t1.5 --clock=a --clock= --clock=nan -qfine \
+    --max-error=0 --max-error=2 --max-error=1/0 --samples=0 -Dn -D=3 --region=1,2,3 --region=5,0,3,9 --region=0,0,9999,9999 \
+    --progress=often --seed=-1 --set=x --exposure=inf --limit=loops --memory-limit=0 --memory-limit=3Q --memory-limit=-1G \
+    --float-type=double; do
+    refused render scene.vts "$option"
+  done
+  want_only scene.vts
+}
+
+case_povray() {
+  scene
+  run +Iscene.vts +W16 +H12 +Opicture +WT2 +A0.3 +P +FN
+  want_status 0; want_in err "'+A0.3'"; want_in err "'+P'"; want_file picture.png
+  run scene.vts Width=16 height=12 Output_File_Name=second.ppm Work_Threads=1 Antialias=On
+  want_status 0; want_in err Antialias; want_file second.ppm
+  [ "$(sed -n 2p second.ppm | head -c 5)" = "16 12" ] || fail "Width= and Height= were not obeyed"
+  printf '#debug concat("> ", str(image_width,0,0), " ", str(clock,0,2), " ", str(n,0,0), "\\n")\n' >program.pov
+  run run program.pov +W64 +H48 +K0.5 Declare=n=7
+  want_status 0; want_in err '> 64 0.50 7'
+  mkdir lib; echo '#declare N = 3;' >lib/n.inc
+  printf '#include "n.inc"\n#debug concat("> ", str(N,0,0), "\\n")\n' >library.pov
+  run run library.pov +Llib; want_status 0; want_in err '> 3'
+  run run library.pov Library_Path=lib; want_status 0
+  refused run program.pov Widht=3; want_in err "did you mean 'Width'"
+  refused run program.pov +Znonsense
+}
+
+case_ini() {
+  scene
+  printf '; a comment\n\nWidth = 20 ; pixels\nHeight=10\n+Oini.ppm\nInput_File_Name="scene.vts"\nDisplay=Off\n[other]\nWidth=40\n' >job.ini
+  run job.ini; want_status 0; want_in err Display; want_file ini.ppm
+  [ "$(sed -n 2p ini.ppm | head -c 5)" = "20 10" ] || fail "job.ini was not obeyed"
+  run none.ini; want_status 3
+}
+
+case_missing_scene() {
+  local command
+  for command in render check run; do run $command none.vts; want_status 3; want_empty out; want_in err none.vts; done
+  run none.vts; want_status 3
+  want_only
+}
+
+case_empty_scene() {
+  : >empty.vts
+  run check empty.vts; want_status 0; want_empty out
+  run render empty.vts -s 8x6 -o empty.ppm; want_status 0; want_in err warning; want_file empty.ppm
+}
+
+case_binary_scene() {
+  printf '\177ELF\0\1\2\377\376 sphere' >binary.vts
+  local command
+  for command in render check run; do run $command binary.vts; want_status 1 3; want_empty out; want_in err binary.vts; done
+  want_only binary.vts
+}
+
+case_missing_include() {
+  printf '\n#include "none.inc"\n' >scene.vts
+  run check scene.vts; want_status 1; want_empty out; want_in err 'scene.vts:2:'; want_in err none.inc
+  run render scene.vts -o a.png; want_status 1
+  want_only scene.vts
+}
+
+case_unknown_word() {
+  printf 'sphree { <0,0,0>, 1 }\n' >scene.vts
+  run check scene.vts; want_status 1; want_in err 'scene.vts:1:1'; want_in err "sphere"
+  grep -q "$(printf '\033')" err && fail "colours without a terminal"
+  run scene.vts; want_status 1
+  want_only scene.vts
+}
+
+case_streams() {
+  printf '#debug "one\\n"\n#warning "two\\n"\n#render "three\\n"\n' >program.vts
+  run run program.vts; want_status 0; want_empty out; want_in err one; want_in err two; want_in err three
+  printf '#debug "before\\n"\n#error "enough"\n' >program.vts
+  run run program.vts; want_status 1; want_in err before; want_in err enough
+}
+
+case_declares() {
+  printf '#debug concat("> ", str(n,0,2), " ", s, "\\n")\n' >program.vts
+  run run program.vts -D n=2.5 --declare s=word; want_status 0; want_in err '> 2.50 word'
+  run run -Dn=1 -Ds=x program.vts; want_status 0; want_in err '> 1.00 x'
+}
+
+case_unwritable() {
+  scene
+  run render scene.vts -s 8x6 -o no/such/picture.png; want_status 3; want_empty out; want_in err no/such
+  mkdir folder.png
+  run render scene.vts -s 8x6 -o folder.png; want_status 3
+  run render scene.vts -s 8x6 -o a.ppm --report no/such.json; want_status 3
+  want_only scene.vts folder.png
+}
+
+case_suffixes() {
+  scene
+  run render scene.vts -s 4096x4096 -o picture.xyz; want_status 2 3; want_in err xyz
+  run render scene.vts -s 4096x4096 -o picture; want_status 2 3
+  want_only scene.vts
+  local suffix
+  for suffix in png exr tif jpg hdr pfm ppm; do run render scene.vts -s 8x6 -o a.$suffix; want_status 0; want_file a.$suffix; done
+}
+
+case_default_output() {
+  scene
+  mkdir deep; mv scene.vts deep
+  run deep/scene.vts -s 8x6; want_status 0; want_empty out; want_file scene.png
+  want_only deep scene.png
+}
+
+case_threads() {
+  scene
+  local n
+  for n in 1 2 3; do run render scene.vts -s 61x47 -t $n -o $n.exr --float-type float; want_status 0; done
+  cmp -s 1.exr 2.exr && cmp -s 1.exr 3.exr || fail "the number of threads changes the picture"
+}
+
+case_repeatable() {
+  scene
+  run render scene.vts -s 31x17 -o a.png; want_status 0; cp a.png first.png; sleep 1.1
+  run render scene.vts -s 31x17 -o a.png; want_status 0
+  cmp -s a.png first.png || fail "the same command gave another file"
+}
+
+case_progress() {
+  scene
+  run render scene.vts -s 8x6; want_status 0; want_empty out; want_empty err
+  run render scene.vts -s 8x6 --progress none; want_empty err
+  run render scene.vts -s 8x6 --progress plain; want_in err '%'
+  grep -q "$(printf '\r')" err && fail "plain progress draws a bar"
+  run render scene.vts -s 8x6 -v; want_in err scene.png
+}
+
+case_report() {
+  scene
+  run render scene.vts -s 16x12 --report report.json; want_status 0; want_empty out
+  "$json_check" scene version frames output wall_s cpu_s render_s peak_rss_bytes rays <report.json || fail "report.json"
+  run render scene.vts -s 16x12 --report -; want_status 0
+  "$json_check" frames <out || fail "report on stdout"
+  # A name that JSON must escape.
+  cp scene.vts 'a "b\c.vts'
+  run render 'a "b\c.vts' -s 8x6 -o a.ppm --report -; want_status 0
+  "$json_check" frames <out || fail "report of a scene with a strange name"
+}
+
+interrupted_by() { # SIGNAL
+  scene
+  "$vts" render scene.vts -s 12000x8000 --samples 16 --max-error 1e-6 -o big.png >out 2>err &
+  local pid=$!
+  sleep 1
+  kill -s "$1" $pid 2>/dev/null || fail "the rendering ended before the signal"
+  wait $pid
+  status=$? call="vts with SIG$1"
+  want_status 130
+  want_only scene.vts
+}
+case_interrupt() {
+  interrupted_by INT
+  interrupted_by TERM
+  # A program that never ends by itself (but for the limit of loops).
+  printf '#declare i = 0;\n#while (1)\n#declare i = i + 1;\n#end\n' >loop.vts
+  "$vts" run loop.vts --limit loops=1000000000 >out 2>err &
+  local pid=$!
+  sleep 0.5
+  kill -s INT $pid
+  wait $pid
+  status=$? call="vts run with SIGINT"
+  want_status 130
+}
+
+case_memory_limit() {
+  printf '#declare A = array[1000000];\n#for (I, 0, 999999) #declare A[I] = <1,2,3,4>; #end\n' >big.vts
+  run run big.vts --memory-limit 1M --limit loops=2000000,array=2000000; want_status 4 2; want_in err memory
+  run run big.vts --memory-limit 1M; want_status 4; want_in err memory-limit
+}
+
+case_full_output() {
+  [ -w /dev/full ] || return
+  "$vts" --version >/dev/full 2>err </dev/null
+  status=$? call='vts --version >/dev/full'
+  want_status 3; want_in err 'standard output'
+  scene
+  "$vts" render scene.vts -s 8x6 --report - >/dev/full 2>err
+  status=$? call='vts render --report - >/dev/full'
+  want_status 3
+}
+
+case_dump() {
+  scene
+  local stage
+  for stage in tokens ast scene compiled; do
+    run run scene.vts --dump=$stage; want_status 0; want_empty err
+    [ -s out ] || fail "--dump=$stage printed nothing"
+  done
+  refused run scene.vts --dump=nonsense
+  refused render scene.vts --dump=ast
+}
+
+# A part is the same pixels as in the whole.
+case_region() {
+  scene
+  run render scene.vts -s 20x10 -o whole.ppm; want_status 0
+  run render scene.vts -s 20x10 --region 0,4,20,7 -o part.ppm; want_status 0
+  [ "$(sed -n 2p part.ppm | head -c 4)" = "20 3" ] || fail "the part's size is $(sed -n 2p part.ppm)"
+  cmp -s <(tail -c 180 part.ppm) <(tail -c 600 whole.ppm | head -c 420 | tail -c 180) || fail "the part differs from the whole"
+}
+
+"case_$case_name"
+exit $differs

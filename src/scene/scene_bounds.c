@@ -1,7 +1,7 @@
 #include "scene/scene_bounds.h"
 
 static Box3 everything(void) {
-    return (Box3){{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}};
+    return (Box3){{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL, HUGE_VAL}};
 }
 
 static bool is_bounded(Box3 b) { return vec3_is_finite(b.min) && vec3_is_finite(b.max); }

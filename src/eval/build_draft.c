@@ -1,0 +1,303 @@
+/* The scene under construction: takes what stands at top level, warns of what is used and not drawn. */
+#include "eval/build_parts.h"
+
+#include <string.h>
+
+struct SceneDraft {
+    const char *name;
+    struct { const Object **items; size_t count, capacity; } objects;
+    struct { Light *items; size_t count, capacity; } lights;
+    struct { const Skin **items; size_t count, capacity; } skins;
+    struct { const Pigment **items; size_t count, capacity; } sky;
+    struct { const char **items; size_t count, capacity; } warned; /* words named in a warning */
+    const void **visited;                                          /* nodes walked already: a set of pointers */
+    size_t visited_count, visited_slots;
+    const Texture *first_default;
+    const Camera *camera;
+    const Fog *fog;
+    Color background;
+    GlobalSettings settings;
+};
+
+SceneDraft *scene_draft_create(BuildContext *context, const char *scene_name) {
+    SceneDraft *draft = arena_new(context->arena, SceneDraft);
+    if (!context->default_texture) context->default_texture = texture_default(context);
+    *draft = (SceneDraft){.name = arena_strdup(context->arena, scene_name ? scene_name : "scene"),
+                          .first_default = context->default_texture, .settings = global_settings_default()};
+    return draft;
+}
+
+/* ---- what is used and not drawn ---- */
+
+static const void **visited_slot(const SceneDraft *draft, const void *node) {
+    size_t mask = draft->visited_slots - 1;
+    size_t i = (size_t)(((uintptr_t)node >> 4) * 0x9E3779B97F4A7C15u >> 32) & mask;
+    while (draft->visited[i] && draft->visited[i] != node) i = (i + 1) & mask;
+    return &draft->visited[i];
+}
+
+static void grow_visited(SceneDraft *draft, BuildContext *context) {
+    SceneDraft old = *draft;
+    draft->visited_slots = old.visited_slots ? 2 * old.visited_slots : 256;
+    draft->visited = arena_new_array(context->arena, const void *, draft->visited_slots);
+    for (size_t i = 0; i < old.visited_slots; i++)
+        if (old.visited[i]) *visited_slot(draft, old.visited[i]) = old.visited[i];
+}
+
+/* True the first time that a node is met. */
+static bool visit(SceneDraft *draft, BuildContext *context, const void *node) {
+    if (!node) return false;
+    if (2 * draft->visited_count >= draft->visited_slots) grow_visited(draft, context);
+    const void **slot = visited_slot(draft, node);
+    if (*slot) return false;
+    *slot = node;
+    draft->visited_count++;
+    return true;
+}
+
+static bool warn_first(SceneDraft *draft, BuildContext *context, const char *word) {
+    for (size_t i = 0; i < draft->warned.count; i++)
+        if (strcmp(draft->warned.items[i], word) == 0) return false;
+    *list_push(context->arena, &draft->warned) = word;
+    return true;
+}
+
+static const char *what_happens(const char *word) {
+    static const struct { const char *word, *text; } effects[] = {
+        {"area_light", "is drawn as a point light"}, {"fisheye", "is drawn as a perspective camera"},
+        {"ultra_wide_angle", "is drawn as a perspective camera"}, {"spherical", "is drawn as a perspective camera"},
+        {"panoramic", "is drawn as a perspective camera"}, {"omnimax", "is drawn as a perspective camera"},
+        {"tiling wang", "is drawn as 'tiling plain'"}, {"wind_field", "is not modelled yet: nothing moves"},
+    };
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(effects); i++)
+        if (strcmp(effects[i].word, word) == 0) return effects[i].text;
+    return "is not modelled yet: it has no effect";
+}
+
+static void warn_inert(SceneDraft *draft, BuildContext *context, const InertNote *notes) {
+    for (; notes; notes = notes->next)
+        if (warn_first(draft, context, notes->word))
+            diag_warning(context->diags, notes->span, "'%s' %s", notes->word, what_happens(notes->word));
+}
+
+static void walk_pigment(SceneDraft *draft, BuildContext *context, const Pigment *pigment) {
+    if (!visit(draft, context, pigment)) return;
+    warn_inert(draft, context, pigment->inert);
+    for (size_t i = 0; i < pigment->entry_count; i++) walk_pigment(draft, context, pigment->entries[i].pigment);
+}
+
+static void walk_texture(SceneDraft *draft, BuildContext *context, const Texture *texture) {
+    for (; visit(draft, context, texture); texture = texture->under) {
+        warn_inert(draft, context, texture->inert);
+        walk_pigment(draft, context, texture->pigment);
+    }
+}
+
+static void walk_object(SceneDraft *draft, BuildContext *context, const Object *object);
+
+static void walk_texel(SceneDraft *draft, BuildContext *context, const TexelDef *texel) {
+    if (!visit(draft, context, texel)) return;
+    warn_inert(draft, context, texel->inert);
+    for (size_t i = 0; i < texel->layer_count; i++) {
+        walk_texture(draft, context, texel->layers[i].texture);
+        for (size_t k = 0; k < texel->layers[i].content_count; k++) walk_object(draft, context, texel->layers[i].contents[k]);
+    }
+    for (size_t i = 0; i < texel->choice_count; i++) walk_texel(draft, context, texel->choices[i]);
+}
+
+static void walk_surface(SceneDraft *draft, BuildContext *context, const Surface *surface) {
+    if (!visit(draft, context, surface)) return;
+    warn_inert(draft, context, surface->inert);
+    walk_texture(draft, context, surface->texture);
+    if (surface->object) walk_object(draft, context, surface->object);
+}
+
+static bool has_children(const Object *o) {
+    return o->kind == OBJECT_UNION || o->kind == OBJECT_INTERSECTION || o->kind == OBJECT_DIFFERENCE || o->kind == OBJECT_MERGE;
+}
+
+static void walk_object(SceneDraft *draft, BuildContext *context, const Object *object) {
+    if (!visit(draft, context, object)) return;
+    warn_inert(draft, context, object->inert);
+    walk_texture(draft, context, object->texture);
+    if (has_children(object) && (object->as.children.count == 0 || visit(draft, context, object->as.children.items)))
+        for (size_t i = 0; i < object->as.children.count; i++) walk_object(draft, context, object->as.children.items[i]);
+    if (object->kind == OBJECT_TRIANGLES && visit(draft, context, object->as.mesh))
+        for (size_t i = 0; i < object->as.mesh->texture_count; i++) walk_texture(draft, context, object->as.mesh->textures[i]);
+    if (object->kind == OBJECT_SURFACE) walk_surface(draft, context, object->as.surface);
+    if (object->kind == OBJECT_TEXEL) walk_texel(draft, context, object->as.texel);
+}
+
+/* ---- adding ---- */
+
+static void add_light(SceneDraft *draft, BuildContext *context, const Light *light) {
+    warn_inert(draft, context, light->inert);
+    *list_push(context->arena, &draft->lights) = *light;
+}
+
+/* Lights in unions shine where the transforms of the unions around them put them. */
+static void add_lights_of(SceneDraft *draft, BuildContext *context, const Object *object, const Transform *outer) {
+    if (!has_children(object)) return;
+    Transform t = transform_then(&object->transform, outer);
+    for (size_t i = 0; i < object->as.children.light_count; i++)
+        add_light(draft, context, light_placed(context, object->as.children.lights[i], &t));
+    for (size_t i = 0; i < object->as.children.count; i++)
+        add_lights_of(draft, context, object->as.children.items[i], &t);
+}
+
+static bool surface_is_modelled(const Surface *surface) {
+    return surface->kind == SURFACE_PATCHES || surface->object->kind != OBJECT_UNMODELLED;
+}
+
+static bool texel_is_modelled(const TexelDef *texel) { return texel->layer_count || texel->choice_count; }
+
+static bool object_is_modelled(const Object *object) {
+    switch (object->kind) {
+    case OBJECT_UNMODELLED: return false;
+    case OBJECT_SURFACE: return surface_is_modelled(object->as.surface);
+    case OBJECT_TEXEL: return texel_is_modelled(object->as.texel);
+    default: return true;
+    }
+}
+
+/* An object without a texture takes the default of the moment when it enters the scene. */
+static void add_object(SceneDraft *draft, BuildContext *context, const Object *object) {
+    Transform identity = transform_identity();
+    walk_object(draft, context, object);
+    add_lights_of(draft, context, object, &identity);
+    if (!object_is_modelled(object)) return;
+    if (!object->texture && context->default_texture != draft->first_default) {
+        Object *colored = arena_copy(context->arena, object, sizeof *object);
+        colored->texture = context->default_texture;
+        object_rehash(colored);
+        object = colored;
+    }
+    *list_push(context->arena, &draft->objects) = object;
+}
+
+/* Texels and surfaces that are not drawn yet take their skins with them. */
+static void add_skin(SceneDraft *draft, BuildContext *context, const Skin *skin) {
+    warn_inert(draft, context, skin->inert);
+    walk_surface(draft, context, skin->surface);
+    walk_texture(draft, context, skin->texture);
+    if (skin->mapping.height_pigment) walk_pigment(draft, context, skin->mapping.height_pigment);
+    SkinTexel *texels = arena_new_array(context->arena, SkinTexel, skin->texel_count);
+    size_t count = 0;
+    for (size_t i = 0; i < skin->texel_count; i++) {
+        walk_texel(draft, context, skin->texels[i].texel);
+        walk_texture(draft, context, skin->texels[i].texture);
+        if (texel_is_modelled(skin->texels[i].texel)) texels[count++] = skin->texels[i];
+    }
+    if (count == 0 || !surface_is_modelled(skin->surface)) return;
+    Skin *kept = arena_copy(context->arena, skin, sizeof *skin);
+    kept->texels = texels;
+    kept->texel_count = count;
+    *list_push(context->arena, &draft->skins) = kept;
+}
+
+static void add_camera(SceneDraft *draft, BuildContext *context, const Camera *camera) {
+    warn_inert(draft, context, camera->inert);
+    if (draft->camera) {
+        Diagnostic *d = diag_warning(context->diags, camera->span, "a second camera: this one is used");
+        diag_note(context->diags, d, draft->camera->span, "instead of this one");
+    }
+    draft->camera = camera;
+}
+
+static void add_sky(SceneDraft *draft, BuildContext *context, const SkySphere *sky) {
+    draft->sky.count = 0; /* the last sky_sphere counts */
+    for (size_t i = 0; i < sky->count; i++) {
+        walk_pigment(draft, context, sky->layers[i]);
+        *list_push(context->arena, &draft->sky) = sky->layers[i];
+    }
+}
+
+static bool add_block(SceneDraft *draft, BuildContext *context, const EvalBlock *block, Span span) {
+    const char *word = block->word->text;
+    if (strcmp(word, "background") == 0) return background_read(context, block, &draft->background);
+    if (strcmp(word, "global_settings") == 0) return settings_read(context, block, &draft->settings);
+    if (strcmp(word, "animation") == 0 || strcmp(word, "rainbow") == 0 || strcmp(word, "radiosity") == 0 ||
+        strcmp(word, "photons") == 0) {
+        InertNote note = {word, block->word_span, NULL};
+        warn_inert(draft, context, &note);
+        return true;
+    }
+    diag_error(context->diags, span, "'%s' cannot stand at top level: it belongs into another block", word);
+    return false;
+}
+
+static bool refuse(BuildContext *context, const Value *value, Span span) {
+    if (value->kind == VALUE_ERROR) return false;
+    Diagnostic *d = diag_error(context->diags, span, "%s has no meaning at top level", value_kind_text(value->kind));
+    switch (value->kind) {
+    case VALUE_TEXEL: diag_hint(context->diags, d, "give it a name with #declare, then lay it on a surface by a skin"); break;
+    case VALUE_SURFACE: diag_hint(context->diags, d, "write object { surface { … } } to draw it"); break;
+    case VALUE_TEXTURE:
+    case VALUE_PIGMENT:
+    case VALUE_FINISH: diag_hint(context->diags, d, "it belongs into an object, or give it a name with #declare"); break;
+    default: break;
+    }
+    return false;
+}
+
+bool scene_draft_add(SceneDraft *draft, BuildContext *context, const Value *value, Span span) {
+    switch (value->kind) {
+    case VALUE_OBJECT: add_object(draft, context, value->as.object); return true;
+    case VALUE_LIGHT: add_light(draft, context, value->as.light); return true;
+    case VALUE_CAMERA: add_camera(draft, context, value->as.camera); return true;
+    case VALUE_SKIN: add_skin(draft, context, value->as.skin); return true;
+    case VALUE_SKY_SPHERE: add_sky(draft, context, value->as.sky_sphere); return true;
+    case VALUE_FOG:
+        warn_inert(draft, context, value->as.fog->inert);
+        draft->fog = value->as.fog;
+        return true;
+    case VALUE_BLOCK: return add_block(draft, context, value->as.block, span);
+    default: return refuse(context, value, span);
+    }
+}
+
+/* ---- #default ---- */
+
+static bool on_default_value(Reader *reader, const Argument *value, void *target) {
+    const Texture **texture = target;
+    static const Mat3 unit = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    const Transform here = {unit, {0, 0, 0}, unit};
+    const InertNote *ignored = NULL;
+    if (value->value.kind == VALUE_CAMERA) return true;
+    if (value->value.kind == VALUE_TEXTURE) {
+        *texture = value->value.as.texture;
+        return true;
+    }
+    return take_looks(reader->context, value, texture, &ignored, &here);
+}
+
+bool scene_draft_default(SceneDraft *draft, BuildContext *context, const EvalBlock *block) {
+    static const WordRule rules[] = {{"radiosity", WORD_IGNORED, 0, NULL, false}};
+    (void)draft;
+    const Texture *texture = context->default_texture;
+    Reader reader = reader_begin(context, block);
+    reader_add_table(&reader, rules, VTS_ARRAY_COUNT(rules), NULL);
+    reader.on_value = on_default_value;
+    reader.value_target = &texture;
+    if (!reader_run(&reader)) return false;
+    context->default_texture = texture;
+    return true;
+}
+
+/* ---- the finished scene ---- */
+
+const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context, double clock) {
+    Scene *scene = arena_new(context->arena, Scene);
+    if (!draft->objects.count && !draft->skins.count)
+        diag_warning(context->diags, (Span){0}, "the scene holds nothing to draw: the picture is its background");
+    double aspect = context->image_aspect > 0 ? context->image_aspect : 4.0 / 3;
+    *scene = (Scene){
+        .name = draft->name, .camera = draft->camera ? *draft->camera : camera_default(aspect),
+        .has_camera = draft->camera != NULL, .lights = draft->lights.items, .light_count = draft->lights.count,
+        .objects = draft->objects.items, .object_count = draft->objects.count, .skins = draft->skins.items,
+        .skin_count = draft->skins.count, .sky_layers = draft->sky.items, .sky_layer_count = draft->sky.count,
+        .background = draft->background, .has_fog = draft->fog != NULL, .default_texture = draft->first_default,
+        .settings = draft->settings, .clock = clock};
+    if (draft->fog) scene->fog = *draft->fog;
+    return scene;
+}

@@ -1,0 +1,105 @@
+/* global_settings { … }: POV-Ray's words, and the knobs of accuracy. */
+#include "eval/build_parts.h"
+
+#include <string.h>
+
+typedef struct SettingsDraft {
+    GlobalSettings settings;
+    const InertNote *inert;
+} SettingsDraft;
+
+/* A knob with named values: `detail auto` (two words) or `detail "auto"`. */
+static const struct Knob {
+    const char *word;
+    size_t offset;
+    const char *values[5];
+} knobs[] = {
+    {"opacity_model", offsetof(GlobalSettings, opacity_model), {"mean", "exponential", "correlated"}},
+    {"ray_path", offsetof(GlobalSettings, ray_path), {"straight", "box", "exact"}},
+    {"quadrature", offsetof(GlobalSettings, quadrature), {"grid16", "ring8", "ring16", "lune"}},
+    {"detail", offsetof(GlobalSettings, detail), {"auto", "exact", "voxels", "slab"}},
+};
+
+static bool knob_value(Reader *reader, const Word *word, const char **value, Span *span) {
+    const BlockItem *item = reader_peek(reader);
+    Word next;
+    if (word->count) {
+        *span = word->arguments[0].span;
+        return word_string(reader, word, 0, value);
+    }
+    if (!item || !item_as_word(item, &next) || next.count || next.body) {
+        reader_error(reader, word->span, "'%s' needs a name", word->text);
+        return false;
+    }
+    reader->next++;
+    *value = next.text;
+    *span = next.span;
+    return true;
+}
+
+static void read_knob(Reader *reader, const Word *word, void *target) {
+    const struct Knob *knob = knobs;
+    while (strcmp(knob->word, word->text) != 0) knob++;
+    const char *value;
+    Span span;
+    if (!knob_value(reader, word, &value, &span)) return;
+    size_t count = 0;
+    for (; count < VTS_ARRAY_COUNT(knob->values) && knob->values[count]; count++)
+        if (strcmp(knob->values[count], value) == 0) {
+            const char *kept = knob->values[count];
+            memcpy((char *)target + offsetof(SettingsDraft, settings) + knob->offset, &kept, sizeof kept);
+            return;
+        }
+    Diagnostic *d = reader_error(reader, span, "'%s' is no '%s'", value, word->text);
+    StrBuf list = {0};
+    for (size_t i = 0; i < count; i++) strbuf_addf(&list, "%s%s", i ? ", " : "", knob->values[i]);
+    diag_hint(reader->context->diags, d, "it is one of %s", list.data);
+    strbuf_free(&list);
+}
+
+static void read_samples(Reader *reader, const Word *word, void *target) {
+    int samples;
+    if (!word_arguments(reader, word, 1, 1) || !word_int(reader, word, 0, &samples)) return;
+    if (samples >= 1 && samples <= 65536)
+        ((SettingsDraft *)target)->settings.samples = samples;
+    else
+        reader_error(reader, word->arguments[0].span, "'samples' must lie between 1 and 65536, found %d", samples);
+}
+
+/* POV-Ray's `assumed_gamma srgb` is near enough to 2.2 to be named as such. */
+static void read_gamma(Reader *reader, const Word *word, void *target) {
+    SettingsDraft *draft = target;
+    Word next;
+    if (word->count == 0 && reader_take_word(reader, "srgb", &next))
+        draft->settings.assumed_gamma = 2.2;
+    else if (word_arguments(reader, word, 1, 1))
+        word_float(reader, word, 0, &draft->settings.assumed_gamma);
+}
+
+#define FIELD(name) offsetof(SettingsDraft, settings.name)
+#define KNOB(word) {word, WORD_CUSTOM, 0, read_knob, true}
+#define IGNORED(word) {word, WORD_IGNORED, 0, NULL, false}
+#define INERT(word) {word, WORD_INERT, offsetof(SettingsDraft, inert), NULL, false}
+static const WordRule rules[] = {
+    {"max_error", WORD_POSITIVE, FIELD(max_error), NULL, true},
+    {"ambient_light", WORD_COLOR, FIELD(ambient_light), NULL, false},
+    {"assumed_gamma", WORD_CUSTOM, 0, read_gamma, false},
+    {"max_trace_level", WORD_INT, FIELD(max_trace_level), NULL, false},
+    {"samples", WORD_CUSTOM, 0, read_samples, true},
+    {"shadow_aperture", WORD_POSITIVE, FIELD(shadow_aperture), NULL, true},
+    KNOB("opacity_model"), KNOB("ray_path"), KNOB("quadrature"), KNOB("detail"),
+    INERT("geo_origin"), INERT("radiosity"), INERT("photons"), INERT("subsurface"), INERT("mm_per_unit"),
+    IGNORED("adc_bailout"), IGNORED("hf_gray_16"), IGNORED("irid_wavelength"), IGNORED("charset"),
+    IGNORED("max_intersections"), IGNORED("noise_generator"), IGNORED("number_of_waves"),
+};
+
+bool settings_read(BuildContext *context, const EvalBlock *block, GlobalSettings *settings) {
+    SettingsDraft draft = {.settings = *settings};
+    Reader reader = reader_begin(context, block);
+    reader_add_table(&reader, rules, VTS_ARRAY_COUNT(rules), &draft);
+    if (!reader_run(&reader)) return false;
+    for (const InertNote *note = draft.inert; note; note = note->next)
+        diag_warning(context->diags, note->span, "'%s' is not modelled yet: it has no effect", note->word);
+    *settings = draft.settings;
+    return true;
+}

@@ -1,0 +1,63 @@
+/* Which word makes what: all blocks of the language. */
+#include "eval/build_parts.h"
+
+#include <string.h>
+
+static const struct BlockWord {
+    const char *word;
+    BlockBuilder *builder; /* NULL: stays a block, for the block around it or the scene */
+} block_words[] = {
+    /* solids */
+    {"sphere", build_sphere}, {"box", build_box}, {"cylinder", build_cone}, {"cone", build_cone}, {"plane", build_plane},
+    {"disc", build_disc}, {"torus", build_torus}, {"triangle", build_triangle}, {"smooth_triangle", build_triangle},
+    {"mesh", build_mesh}, {"mesh2", build_mesh2}, {"union", build_csg}, {"merge", build_csg}, {"intersection", build_csg},
+    {"difference", build_csg}, {"light_group", build_csg}, {"object", build_object}, {"particles", build_particles},
+    /* objects of the language that are not drawn yet */
+    {"bicubic_patch", build_unmodelled}, {"blob", build_unmodelled}, {"cubic", build_unmodelled},
+    {"height_field", build_unmodelled}, {"isosurface", build_unmodelled}, {"julia_fractal", build_unmodelled},
+    {"lathe", build_unmodelled}, {"lemon", build_unmodelled}, {"ovus", build_unmodelled}, {"parametric", build_unmodelled},
+    {"poly", build_unmodelled}, {"polygon", build_unmodelled}, {"polynomial", build_unmodelled}, {"prism", build_unmodelled},
+    {"quadric", build_unmodelled}, {"quartic", build_unmodelled}, {"sor", build_unmodelled}, {"sphere_sweep", build_unmodelled},
+    {"superellipsoid", build_unmodelled}, {"text", build_unmodelled}, {"lsystem", build_unmodelled},
+    {"volume", build_unmodelled}, {"terrain", build_unmodelled}, {"cloth", build_unmodelled},
+    /* looks */
+    {"texture", build_texture}, {"pigment", build_pigment}, {"finish", build_finish}, {"normal", build_inert_value},
+    {"interior", build_inert_value}, {"material", build_material}, {"color_map", build_color_map},
+    {"colour_map", build_color_map}, {"pigment_map", build_color_map}, {"transform", build_transform},
+    /* scene */
+    {"camera", build_camera}, {"light_source", build_light}, {"sky_sphere", build_sky_sphere}, {"fog", build_fog},
+    {"background", NULL}, {"global_settings", NULL}, {"animation", NULL}, {"rainbow", NULL}, {"radiosity", NULL},
+    {"photons", NULL}, {"subsurface", NULL},
+    /* volumetric textures */
+    {"texel", build_texel}, {"surface", build_surface}, {"skin", build_skin}, {"wind_field", build_inert_value},
+    {"layer", NULL}, {"phases", NULL}, {"count", NULL}, {"mapping", NULL}, {"jitter", NULL}, {"instance", NULL}, {"springs", NULL},
+    {"gust", NULL}, {"turbulence", NULL}, {"density", NULL}, {"fractal", NULL}, {"height_vectors", NULL}, {"w_vectors", NULL},
+    {"phase", NULL}, {"georeference", NULL}, {"symbol", NULL}, {"sum", NULL}, {"goniometric", NULL},
+    /* parts of others */
+    {"vertex_vectors", NULL}, {"normal_vectors", NULL}, {"uv_vectors", NULL}, {"texture_list", NULL}, {"face_indices", NULL},
+    {"normal_indices", NULL}, {"uv_indices", NULL}, {"reflection", NULL}, {"media", NULL}, {"bounded_by", NULL},
+    {"clipped_by", NULL}, {"contained_by", NULL}, {"looks_like", NULL}, {"projected_through", NULL}, {"interior_texture", NULL},
+    {"texture_map", NULL}, {"material_map", NULL}, {"normal_map", NULL}, {"slope_map", NULL}, {"density_map", NULL},
+    {"bump_map", NULL}, {"image_map", NULL}, {"image_pattern", NULL}, {"pigment_pattern", NULL}, {"warp", NULL}, {"slope", NULL},
+    {"aoi", NULL}, {"fade_color", NULL}, {"bokeh", NULL}, {"mesh_camera", NULL}, {"user_defined", NULL}, {"bounds", NULL},
+    {"scattering", NULL}, {"choose", NULL}, {"potential", NULL}, {"tiling", NULL},
+};
+
+static const struct BlockWord *find(const char *word) {
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(block_words); i++)
+        if (strcmp(block_words[i].word, word) == 0) return &block_words[i];
+    return NULL;
+}
+
+BlockBuilder *block_builder_find(const BuildContext *context, Name word, bool *known) {
+    (void)context;
+    const struct BlockWord *found = find(word->text);
+    *known = found != NULL;
+    return found ? found->builder : NULL;
+}
+
+const char *block_word_suggest(const char *word) {
+    const char *words[VTS_ARRAY_COUNT(block_words)];
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(block_words); i++) words[i] = block_words[i].word;
+    return closest_word(word, words, VTS_ARRAY_COUNT(words));
+}

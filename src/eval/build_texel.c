@@ -1,0 +1,198 @@
+#include "eval/build_parts.h"
+#include "scene/scene_bounds.h"
+
+#include <string.h>
+
+typedef struct TexelDraft {
+    TexelDef texel;
+    struct { TexelLayer *items; size_t count, capacity; } layers;
+    struct { const TexelDef **items; size_t count, capacity; } choices;
+} TexelDraft;
+
+enum { MAX_RESOLUTION = 1024 };
+
+static bool is_bounded(Box3 box) { return !box3_is_empty(box) && vec3_is_finite(box.min) && vec3_is_finite(box.max); }
+
+static void set_bounds(Reader *reader, TexelDraft *draft, Box3 box, Span span) {
+    Vec3 size = vec3_sub(box.max, box.min);
+    if (!is_bounded(box))
+        reader_error(reader, span, "the texel's bounds come from an object without bounds (or without anything in it)");
+    else if (size.x == 0 || size.y == 0 || size.z == 0)
+        reader_error(reader, span, "the texel's bounds have no volume: <%g, %g, %g> in size", size.x, size.y, size.z);
+    else
+        draft->texel.bounds = box;
+}
+
+/* `bounds A, B`, `bounds OBJECT`, or `bounds { OBJECT }` read as `bounds` and an object behind it. */
+static void read_bounds(Reader *reader, const Word *word, void *target) {
+    Vec3 a, b;
+    if (word->count == 2) {
+        if (word_vector(reader, word, 0, &a) && word_vector(reader, word, 1, &b))
+            set_bounds(reader, target, (Box3){vec3_min(a, b), vec3_max(a, b)}, word->arguments[1].span);
+        return;
+    }
+    Argument value;
+    if (word->count == 1)
+        value = word->arguments[0];
+    else if (word->count || !reader_take_value(reader, VALUE_OBJECT, &value)) {
+        reader_error(reader, word->span, "'bounds' takes two corners or an object");
+        return;
+    }
+    const Object *object = object_from_value(reader->context, &value);
+    if (object)
+        set_bounds(reader, target, object_bounds(object), value.span);
+    else
+        reader_mismatch(reader, value.span, "'bounds'", "two corners or an object", value.value.kind);
+}
+
+static void read_resolution(Reader *reader, const Word *word, void *target) {
+    TexelDraft *draft = target;
+    Word next;
+    int resolution;
+    if (word->count == 0 && reader_take_word(reader, "auto", &next)) {
+        draft->texel.resolution = 0;
+        return;
+    }
+    if (!word_arguments(reader, word, 1, 1) || !word_int(reader, word, 0, &resolution)) return;
+    if (resolution < 1 || resolution > MAX_RESOLUTION) {
+        Diagnostic *d = reader_error(reader, word->arguments[0].span, "'resolution' must lie between 1 and %d, found %d",
+                                     MAX_RESOLUTION, resolution);
+        diag_hint(reader->context->diags, d, "leave it out, or write 'resolution auto', to get what the frame needs");
+    } else {
+        draft->texel.resolution = resolution;
+    }
+}
+
+static void read_cyclic(Reader *reader, const Word *word, void *target) {
+    TexelDraft *draft = target;
+    Vec3 axes;
+    if (!word_arguments(reader, word, 1, 1) || !word_vector(reader, word, 0, &axes)) return;
+    draft->texel.cyclic = (axes.x != 0 ? 1u : 0u) | (axes.y != 0 ? 2u : 0u) | (axes.z != 0 ? 4u : 0u);
+}
+
+/* ---- layers ---- */
+
+typedef struct LayerDraft {
+    TexelLayer layer;
+    struct { const Object **items; size_t count, capacity; } contents;
+    Transform place;
+} LayerDraft;
+
+static bool on_layer_value(Reader *reader, const Argument *value, void *target) {
+    LayerDraft *draft = target;
+    const InertNote *ignored = NULL;
+    const Object *object = value->value.kind == VALUE_SURFACE || value->value.kind == VALUE_TEXEL
+                               ? NULL
+                               : object_from_value(reader->context, value);
+    if (!object) return take_looks(reader->context, value, &draft->layer.texture, &ignored, &draft->place);
+    if (object->kind == OBJECT_PLANE)
+        reader_error(reader, value->span, "a plane has no end: a layer's contents must have bounds");
+    *list_push(reader->context->arena, &draft->contents) = object;
+    return true;
+}
+
+static void read_density(Reader *reader, const Word *word, void *target) {
+    (void)target;
+    diag_warning(reader->context->diags, word->span, "'density' in a layer is not modelled yet: it stays empty");
+}
+
+/* A layer may stand empty (its note was given); what is missing is anything between its braces. */
+static void read_layer(Reader *reader, const Word *word, void *target) {
+    static const WordRule layer_rules[] = {{"density", WORD_CUSTOM, 0, read_density, false}};
+    TexelDraft *draft = target;
+    if (!word->body) {
+        reader_error(reader, word->span, "'layer' needs its contents { … }");
+        return;
+    }
+    LayerDraft layer = {.layer.span = word->whole, .place = transform_identity()};
+    Reader body = reader_nested(reader, word->body);
+    reader_add_table(&body, layer_rules, VTS_ARRAY_COUNT(layer_rules), &layer);
+    body.on_value = on_layer_value;
+    body.value_target = &layer;
+    reader_run(&body);
+    if (!reader_end_nested(reader, &body)) return;
+    if (layer.contents.count == 0 && body.met == 0) {
+        reader_error(reader, word->span, "this layer holds no object");
+        return;
+    }
+    layer.layer.contents = layer.contents.items;
+    layer.layer.content_count = layer.contents.count;
+    layer_rehash(&layer.layer);
+    *list_push(reader->context->arena, &draft->layers) = layer.layer;
+}
+
+/* ---- texel { choose A, B } and the rest ---- */
+
+static void add_choice(Reader *reader, TexelDraft *draft, const Argument *value) {
+    if (value->value.kind != VALUE_TEXEL)
+        reader_mismatch(reader, value->span, "'choose'", "texels", value->value.kind);
+    else
+        *list_push(reader->context->arena, &draft->choices) = value->value.as.texel;
+}
+
+static void read_choose(Reader *reader, const Word *word, void *target) {
+    Argument value;
+    for (size_t i = 0; i < word->count; i++) add_choice(reader, target, &word->arguments[i]);
+    while (reader_take_value(reader, VALUE_TEXEL, &value)) add_choice(reader, target, &value);
+    if (((TexelDraft *)target)->choices.count == 0 && !reader->failed)
+        reader_error(reader, word->span, "'choose' needs texels to choose from");
+}
+
+static void read_phases(Reader *reader, const Word *word, void *target) {
+    inert_add(reader->context, &((TexelDraft *)target)->texel.inert, "phases", word->span);
+}
+
+static const WordRule rules[] = {
+    {"bounds", WORD_CUSTOM, 0, read_bounds, true},     {"resolution", WORD_CUSTOM, 0, read_resolution, true},
+    {"cyclic", WORD_CUSTOM, 0, read_cyclic, true},     {"layer", WORD_CUSTOM, 0, read_layer, false},
+    {"choose", WORD_CUSTOM, 0, read_choose, true},     {"phases", WORD_CUSTOM, 0, read_phases, true},
+    {"period", WORD_IGNORED, 0, NULL, true},
+};
+
+static bool on_value(Reader *reader, const Argument *value, void *target) {
+    TexelDraft *draft = target;
+    if (value->value.kind == VALUE_STRING) {
+        inert_add(reader->context, &draft->texel.inert, "a texel from a file", value->span);
+        return true;
+    }
+    if (value->value.kind != VALUE_OBJECT) return false;
+    Diagnostic *d = reader_error(reader, value->span, "objects of a texel stand in its layers");
+    diag_hint(reader->context->diags, d, "write layer { … } around it");
+    return true;
+}
+
+/* `texel { Flower density 0.05 texture { Red } }` belongs to the skin around it: it stays a block. */
+static bool is_reference(const EvalBlock *block) {
+    return block->count && block->items[0].kind == ITEM_VALUE && block->items[0].value.kind == VALUE_TEXEL;
+}
+
+static bool check_content(Reader *reader, const TexelDraft *draft) {
+    if (draft->choices.count && draft->layers.count)
+        reader_error(reader, reader->block->word_span, "a texel has layers or choices, not both");
+    else if (!draft->layers.count && !draft->choices.count && !draft->texel.inert)
+        reader_error(reader, reader->block->word_span, "this texel has no content: it needs a layer { … }");
+    return !reader->failed;
+}
+
+bool build_texel(BuildContext *context, const EvalBlock *block, Value *out) {
+    if (is_reference(block)) {
+        *out = block->count == 1 ? block->items[0].value : (Value){.kind = VALUE_BLOCK, .as.block = block};
+        return true;
+    }
+    TexelDraft *draft = arena_new(context->arena, TexelDraft);
+    TexelDef *texel = &draft->texel;
+    *texel = (TexelDef){.span = block->span, .name = block->declared_as ? block->declared_as->text : "texel",
+                        .bounds = {{0, 0, 0}, {1, 1, 1}}};
+    Reader reader = reader_begin(context, block);
+    reader_add_table(&reader, rules, VTS_ARRAY_COUNT(rules), draft);
+    reader.on_value = on_value;
+    reader.value_target = draft;
+    if (!reader_run(&reader) || !check_content(&reader, draft)) return false;
+    texel->layers = draft->layers.items;
+    texel->layer_count = draft->layers.count;
+    texel->choices = draft->choices.items;
+    texel->choice_count = draft->choices.count;
+    texel_rehash(texel);
+    *out = (Value){.kind = VALUE_TEXEL, .as.texel = texel};
+    return true;
+}

@@ -4,7 +4,8 @@
 
 #include "base/vec.h"
 
-/* Perlin's improved noise of 2002 with its published permutation; in about [-1, 1], 0 at lattice points, period 256. */
+/* Perlin's improved noise of 2002 with its published permutation; in about [-1, 1], 0 at lattice points, period 256.
+ * Exact lattice arithmetic for coordinates of any size; NaN where a coordinate is not finite (as all noises here). */
 double noise_perlin(Vec3 p);
 /* Three independent Perlin noises, another for each `seed`: for jitter. */
 Vec3 noise_perlin3(Vec3 p, uint32_t seed);
@@ -12,5 +13,15 @@ Vec3 noise_perlin3(Vec3 p, uint32_t seed);
 double noise_perlin_seeded(Vec3 p, uint32_t seed);
 /* Σ gainᵏ · noise(lacunarityᵏ · p), k = 0 … octaves − 1; not normalised. */
 double noise_fbm(Vec3 p, int octaves, double lacunarity, double gain);
+
+/* POV-Ray's own noises, number for number (its noise_generator 2, the default of 3.7, and 1). In [0, 1], period 4096. */
+double noise_pov(Vec3 p);
+double noise_pov_original(Vec3 p);
+/* Its vector noise, which turbulence is made of: about [-1, 1] each. */
+Vec3 noise_pov_vector(Vec3 p);
+/* Of the unit cell that p is in, POV-Ray's random numbers: one in [0, 1) for `cells`, and the place of a point in the
+ * cell for `crackle`. The cell is given by its corner, whole numbers. */
+double noise_pov_cell(Vec3 corner);
+Vec3 noise_pov_cell_point(Vec3 corner);
 
 #endif

@@ -66,5 +66,6 @@ static inline double scalar_DEGREES(double a) { return a * (180.0 / VTS_PI); }
 static inline double scalar_RADIANS(double a) { return a * VTS_RADIANS; }
 
 static inline double scalar_PERLIN(double a, double b, double c) { return noise_perlin(vec3(a, b, c)); }
+static inline double scalar_POV_NOISE(double a, double b, double c) { return noise_pov(vec3(a, b, c)); }
 
 #endif

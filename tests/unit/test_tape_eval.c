@@ -84,6 +84,7 @@ static double reference(TapeOp op, double a, double b, double c) {
     case TAPE_DEGREES: return a * (180.0 / VTS_PI);
     case TAPE_RADIANS: return a * (VTS_PI / 180.0);
     case TAPE_PERLIN: return noise_perlin(vec3(a, b, c));
+    case TAPE_POV_NOISE: return noise_pov(vec3(a, b, c));
     default: fail_msg("no reference for %s", tape_op_text(op));
     }
     return 0;

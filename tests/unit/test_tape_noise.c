@@ -73,7 +73,7 @@ static void agrees_with_the_plain_implementation(void **state) {
     for (int n = 0; n < 50000; n++) {
         double size = sizes[n % 5];
         double x = span(&random, size), y = span(&random, size), z = span(&random, size);
-        long double expected = plain_noise(p, x, y, z);
+        long double expected = plain_noise(p, (long double)x, (long double)y, (long double)z);
         assert_true(fabsl((long double)noise_perlin(vec3(x, y, z)) - expected) < 4e-15L);
     }
 }

@@ -35,7 +35,7 @@ struct VtsSession {
 
 const char *vts_version(void) { return VTS_VERSION; }
 
-VtsOptions vts_options_default(void) { return (VtsOptions){.width = 768, .height = 576}; }
+VtsOptions vts_options_default(void) { return (VtsOptions){.width = 768, .height = 576, .frame = 1, .first_frame = 1, .last_frame = 1, .last_clock = 1, .clock_delta = 1}; }
 
 /* ---- sessions ---- */
 
@@ -268,6 +268,8 @@ static VtsStatus evaluate(VtsSession *session, const char *path, EvalMode mode) 
     EvalOptions options = {.include_dirs = o->include_dirs, .include_dir_count = o->include_dir_count,
                            .stdlib_dir = session->stdlib.size ? session->stdlib.data : NULL,
                            .declares = declares, .declare_count = o->declare_count, .clock = o->clock, .clock_on = o->clock_set,
+                           .clock_delta = o->clock_delta, .initial_clock = o->first_clock, .final_clock = o->last_clock,
+                           .frame_number = o->frame, .initial_frame = o->first_frame, .final_frame = o->last_frame,
                            .image_width = o->width, .image_height = o->height, .limits = eval_limits_default(),
                            .allow_read = o->allow_read, .allow_read_count = o->allow_read_count, .allow_write = o->allow_write,
                            .allow_write_count = o->allow_write_count, .keep_writes_in_memory = mode.writes_in_memory,
@@ -355,7 +357,7 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
     double rendered = stopwatch_wall();
     if ((status = save(session, scene_path, output_path)) != VTS_OK) return status;
     double written = stopwatch_wall();
-    FrameReport report = {.frame = 1, .clock = o->clock, .output = output_path, .wall_s = written - session->started_wall,
+    FrameReport report = {.frame = o->frame, .clock = o->clock, .output = output_path, .wall_s = written - session->started_wall,
                           .cpu_s = stopwatch_cpu() - session->started_cpu, .parse_s = parsed - session->started_wall,
                           .build_s = built - parsed, .render_s = rendered - built, .write_s = written - rendered,
                           .peak_rss_bytes = peak_resident_bytes(), .compiled = &session->compiled, .stats = &stats};

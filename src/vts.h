@@ -52,6 +52,9 @@ typedef struct VtsOptions {
     int threads;                     /* 0: all processors */
     double clock;                    /* the language's `clock`; default 0 */
     bool clock_set;                  /* clock was given (clock_on) */
+    int frame, first_frame, last_frame; /* `frame_number` and the like; default 1, 1, 1 */
+    double first_clock, last_clock;  /* `initial_clock`, `final_clock`; default 0, 1 */
+    double clock_delta;              /* from one frame to the next; default 1 */
     unsigned long long seed;         /* for sampling */
     double max_error;                /* RMSE a user accepts; 0: what the scene says, else 1/255 */
     int samples;                     /* sub-pixels per pixel side² where the picture needs several; 0: by max_error */

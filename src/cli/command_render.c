@@ -20,14 +20,9 @@ static VtsStatus render(VtsSession *session, const void *context) {
                                                                                           : VTS_ERROR_FILE;
 }
 
-int command_render(Settings *settings) {
-    if (settings->scenes.count == 0) return complain_usage(settings, "no scene given");
-    if (settings->scenes.count > 1)
-        return complain_usage(settings, "one scene at a time, not also '%s'", settings->scenes.items[1]);
-    if (settings->report && !report_file_possible(settings, settings->report)) return VTS_ERROR_FILE;
+static int render_frame(Settings *settings, const char *scene) {
     Console console;
     console_init(&console, settings);
-    const char *scene = settings->scenes.items[0];
     Rendering rendering = {scene, settings_output(settings, scene), settings->report, settings, &console};
     double start = console_now();
     int status = command_with_session(settings, &console, scene, render, &rendering);
@@ -37,4 +32,18 @@ int command_render(Settings *settings) {
         fprintf(stderr, "%s: %d x %d pixels in %.2f s\n", rendering.output, settings->options.width,
                 settings->options.height, console_now() - start);
     return VTS_OK;
+}
+
+int command_render(Settings *settings) {
+    if (settings->scenes.count == 0) return complain_usage(settings, "no scene given");
+    if (settings->scenes.count > 1)
+        return complain_usage(settings, "one scene at a time, not also '%s'", settings->scenes.items[1]);
+    if (settings->report && !report_file_possible(settings, settings->report)) return VTS_ERROR_FILE;
+    int first, last, status = VTS_OK;
+    settings_frames(settings, &first, &last);
+    for (int frame = first; frame <= last && status == VTS_OK; frame++) {
+        settings_enter_frame(settings, frame);
+        status = render_frame(settings, settings->scenes.items[0]);
+    }
+    return status;
 }

@@ -16,8 +16,14 @@ int command_run(Settings *settings) {
     if (settings->scenes.count == 0) return complain_usage(settings, "no program given");
     if (settings->scenes.count > 1)
         return complain_usage(settings, "one program at a time, not also '%s'", settings->scenes.items[1]);
-    Console console;
-    console_init(&console, settings);
     Program program = {settings->scenes.items[0], settings};
-    return command_with_session(settings, &console, program.path, run, &program);
+    int first, last, status = VTS_OK;
+    settings_frames(settings, &first, &last);
+    for (int frame = first; frame <= last && status == VTS_OK; frame++) {
+        Console console;
+        console_init(&console, settings);
+        settings_enter_frame(settings, frame);
+        status = command_with_session(settings, &console, program.path, run, &program);
+    }
+    return status;
 }

@@ -65,6 +65,36 @@ static const char *apply_end_row(Settings *s, const char *value) { return part(v
 static const char *apply_start_column(Settings *s, const char *value) { return part(value, &s->columns[0]); }
 static const char *apply_end_column(Settings *s, const char *value) { return part(value, &s->columns[1]); }
 
+static const char *frame_number(Settings *s, const char *value, int *out) {
+    s->animation.on = true;
+    return value_int(value, 0, 1000000000, out) ? NULL : "the number of a frame";
+}
+static const char *apply_first_frame(Settings *s, const char *value) {
+    return frame_number(s, value, &s->animation.first_frame);
+}
+static const char *apply_last_frame(Settings *s, const char *value) {
+    return frame_number(s, value, &s->animation.last_frame);
+}
+static const char *apply_subset_first(Settings *s, const char *value) {
+    return frame_number(s, value, &s->animation.subset_first);
+}
+static const char *apply_subset_last(Settings *s, const char *value) {
+    return frame_number(s, value, &s->animation.subset_last);
+}
+static const char *apply_first_clock(Settings *s, const char *value) {
+    return value_double(value, &s->animation.first_clock) ? NULL : "a number";
+}
+static const char *apply_last_clock(Settings *s, const char *value) {
+    return value_double(value, &s->animation.last_clock) ? NULL : "a number";
+}
+static const char *apply_cyclic(Settings *s, const char *value) {
+    return value_truth(value, &s->animation.cyclic) ? NULL : "on or off";
+}
+static const char *cyclic_on(Settings *s, const char *value) {
+    s->animation.cyclic = true;
+    return *value ? "nothing" : NULL;
+}
+
 /* A switch (+…) and the Name= that POV-Ray gives the same meaning; either may be NULL. */
 typedef struct PovrayOption {
     const char *plus, *name;
@@ -87,26 +117,20 @@ static const PovrayOption OPTIONS[] = {
     {"ER", "End_Row", apply_end_row},
     {"SC", "Start_Column", apply_start_column},
     {"EC", "End_Column", apply_end_column},
+    {"KFI", "Initial_Frame", apply_first_frame},
+    {"KFF", "Final_Frame", apply_last_frame},
+    {"KI", "Initial_Clock", apply_first_clock},
+    {"KF", "Final_Clock", apply_last_clock},
+    {"KC", NULL, cyclic_on},
+    {NULL, "Cyclic_Animation", apply_cyclic},
+    {"SF", "Subset_Start_Frame", apply_subset_first},
+    {"EF", "Subset_End_Frame", apply_subset_last},
 };
 
-/* Of animations, which are not available: rendering one frame for them would be wrong without a word. */
-static const char *const FRAME_SWITCHES[] = {"KFI", "KFF", "KI", "KF", "KC", "SF", "EF", "UF", "UO", NULL};
-static const char *const FRAME_NAMES[] = {"Initial_Frame",
-                                          "Final_Frame",
-                                          "Initial_Clock",
-                                          "Final_Clock",
-                                          "Cyclic_Animation",
-                                          "Subset_Start_Frame",
-                                          "Subset_End_Frame",
-                                          "Frame_Step",
-                                          "Field_Render",
-                                          "Odd_Field",
-                                          NULL};
-
 /* Without a meaning here. */
-static const char *const IDLE_SWITCHES[] = {"A",  "B",  "C",  "D",    "G", "HI", "HN", "HT",
-                                            "HS", "J",  "M",  "NR",   "P", "Q",  "R",  "SP",
-                                            "EP", "SS", "TH", "THFN", "U", "V",  "X",  NULL};
+static const char *const IDLE_SWITCHES[] = {"A",  "B",    "C",  "D",  "G",  "HI", "HN", "HT", "HS",
+                                            "J",  "M",    "NR", "P",  "Q",  "R",  "SP", "EP", "SS",
+                                            "TH", "THFN", "U",  "UF", "UO", "V",  "X",  NULL};
 static const char *const IDLE_NAMES[] = {"All_Console",
                                          "All_File",
                                          "Antialias",
@@ -190,8 +214,6 @@ static const char *const IDLE_NAMES[] = {"All_Console",
                                          "Warning_Level",
                                          NULL};
 
-static bool is_frame_name(const char *name) { return value_word(name, FRAME_NAMES) >= 0; }
-
 /* A name and '=' begin it: Declare=n=1. */
 static size_t assignment_name(const char *argument) {
     size_t size = 0;
@@ -227,20 +249,16 @@ static bool begins_longer(const char *text, const char *word, size_t *longest) {
     return true;
 }
 
-/* The longest word of any table that the switch begins with decides: +WT2 is not +W, +KFI1 not +K. */
+/* The longest word of both tables that the switch begins with decides: +WT2 is not +W, +KFI1 not +K. */
 static int apply_switch(Settings *settings, const char *argument) {
     const PovrayOption *option = NULL;
-    bool frames = false, idle = false;
+    bool idle = false;
     size_t longest = 0;
     for (size_t i = 0; i < sizeof OPTIONS / sizeof *OPTIONS; i++)
         if (begins_longer(argument + 1, OPTIONS[i].plus, &longest)) option = &OPTIONS[i];
-    for (size_t i = 0; FRAME_SWITCHES[i]; i++)
-        frames = begins_longer(argument + 1, FRAME_SWITCHES[i], &longest) || frames;
     for (size_t i = 0; IDLE_SWITCHES[i]; i++)
         idle = begins_longer(argument + 1, IDLE_SWITCHES[i], &longest) || idle;
     if (idle) return say_idle(settings, argument);
-    if (frames)
-        return complain_usage(settings, "'%s': animations are not available in this version", argument);
     if (!option) return complain_unknown(settings, "option", argument, NULL);
     return finish(settings, argument, option->apply(settings, argument + 1 + longest));
 }
@@ -259,8 +277,6 @@ static int apply_assignment(Settings *settings, const char *argument, size_t nam
         if (OPTIONS[i].name && strcasecmp(OPTIONS[i].name, name) == 0)
             return finish(settings, argument, OPTIONS[i].apply(settings, value));
     if (value_word(name, IDLE_NAMES) >= 0) return say_idle(settings, argument);
-    if (is_frame_name(name))
-        return complain_usage(settings, "'%s': animations are not available in this version", argument);
     return unknown_name(settings, name);
 }
 

@@ -16,7 +16,10 @@ static void *grown(void *items, size_t count, size_t item_size) {
 }
 
 void settings_init(Settings *settings, const char *program) {
-    *settings = (Settings){.program = program, .options = vts_options_default(), .suffix = ".png"};
+    *settings = (Settings){.program = program,
+                           .options = vts_options_default(),
+                           .suffix = ".png",
+                           .animation = {.first_frame = 1, .last_frame = 1, .last_clock = 1}};
 }
 
 void settings_free(Settings *settings) {
@@ -79,6 +82,39 @@ static const char *finish_region(Settings *settings) {
     return NULL;
 }
 
+static const char *finish_animation(const Settings *settings) {
+    const Animation *animation = &settings->animation;
+    int first, last;
+    settings_frames(settings, &first, &last);
+    if (!animation->on) return NULL;
+    if (animation->first_frame > animation->last_frame) return "the first frame comes after the last";
+    if (first < animation->first_frame || last > animation->last_frame || first > last)
+        return "the subset of frames is not within the animation";
+    if (settings->report) return "a report of an animation is not available in this version";
+    return NULL;
+}
+
+void settings_frames(const Settings *settings, int *first, int *last) {
+    const Animation *animation = &settings->animation;
+    *first = animation->subset_first > 0 ? animation->subset_first : animation->first_frame;
+    *last = animation->subset_last > 0 ? animation->subset_last : animation->last_frame;
+}
+
+void settings_enter_frame(Settings *settings, int frame) {
+    const Animation *animation = &settings->animation;
+    VtsOptions *options = &settings->options;
+    if (!animation->on) return;
+    int steps = animation->last_frame - animation->first_frame + animation->cyclic;
+    options->frame = frame;
+    options->first_frame = animation->first_frame;
+    options->last_frame = animation->last_frame;
+    options->first_clock = animation->first_clock;
+    options->last_clock = animation->last_clock;
+    options->clock_delta = steps > 0 ? (animation->last_clock - animation->first_clock) / steps : 0;
+    options->clock = animation->first_clock + (frame - animation->first_frame) * options->clock_delta;
+    options->clock_set = true;
+}
+
 const char *settings_finish(Settings *settings) {
     VtsOptions *options = &settings->options;
     options->declares = settings->declares.items;
@@ -94,7 +130,8 @@ const char *settings_finish(Settings *settings) {
     options->allow_write = settings->write_folders.items;
     options->allow_write_count = settings->write_folders.count;
     options->program_dir = program_folder(settings);
-    return finish_region(settings);
+    const char *wrong = finish_region(settings);
+    return wrong ? wrong : finish_animation(settings);
 }
 
 static const char *file_name(const char *path) {
@@ -111,7 +148,7 @@ static const char *named_after(Settings *settings, const char *folder, const cha
     return length > 0 && (size_t)length < sizeof path ? settings_copy(settings, path, (size_t)length) : "";
 }
 
-const char *settings_output(Settings *settings, const char *scene) {
+static const char *whole_output(Settings *settings, const char *scene) {
     const char *output = settings->output;
     if (!output) return named_after(settings, "", scene);
     if (!settings->output_as_povray || strrchr(file_name(output), '.')) return output;
@@ -120,4 +157,16 @@ const char *settings_output(Settings *settings, const char *scene) {
     int length = snprintf(path, sizeof path, "%s%s", output, settings->suffix);
     return length > 0 && (size_t)length < sizeof path ? settings_copy(settings, path, (size_t)length)
                                                       : output;
+}
+
+const char *settings_output(Settings *settings, const char *scene) {
+    const char *path = whole_output(settings, scene), *dot = strrchr(file_name(path), '.');
+    if (!settings->animation.on) return path;
+    int digits = snprintf(NULL, 0, "%d", settings->animation.last_frame);
+    int stem = dot ? (int)(dot - path) : (int)strlen(path);
+    char numbered[PATH_MAX + 32];
+    int length = snprintf(numbered, sizeof numbered, "%.*s%0*d%s", stem, path, digits,
+                          settings->options.frame, dot ? dot : "");
+    return length > 0 && (size_t)length < sizeof numbered ? settings_copy(settings, numbered, (size_t)length)
+                                                          : path;
 }

@@ -16,6 +16,15 @@ typedef struct TextList {
     size_t count;
 } TextList;
 
+/* POV-Ray's animation loop. */
+typedef struct Animation {
+    bool on;
+    int first_frame, last_frame;   /* that the clocks belong to */
+    int subset_first, subset_last; /* that are done; 0: all */
+    double first_clock, last_clock;
+    bool cyclic; /* the last clock is that of the frame after the last */
+} Animation;
+
 typedef struct Settings {
     const char *program; /* how errors call us: "vts render" */
     VtsOptions options;  /* pointers into the lists below are set by settings_finish() */
@@ -31,6 +40,7 @@ typedef struct Settings {
     bool output_as_povray; /* from +O: a folder or a name without suffix is completed */
     double rows[2],
         columns[2]; /* POV-Ray's partial picture: numbers from 1, or shares below 1; 0: not given */
+    Animation animation;
     PairList declares, limits, knobs;
     TextList includes, read_folders, write_folders;
     char **owned; /* texts that the settings free */
@@ -49,7 +59,13 @@ const char *settings_copy(Settings *settings, const char *text, size_t size);
 /* Makes `options` complete. NULL, or what is wrong. */
 const char *settings_finish(Settings *settings);
 
-/* Where the picture of a scene goes: what was asked for, else the scene's name in the working folder. */
+/* The frames to do: 1 to 1 without an animation. */
+void settings_frames(const Settings *settings, int *first, int *last);
+/* Sets the options for one of them. */
+void settings_enter_frame(Settings *settings, int frame);
+
+/* Where the picture of a scene goes: what was asked for, else the scene's name in the working folder; in an animation with
+ * the frame's number before the suffix, as wide as the last one's. */
 const char *settings_output(Settings *settings, const char *scene);
 
 #endif

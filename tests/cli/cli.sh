@@ -117,6 +117,18 @@ case_povray() {
   refused run program.pov +Znonsense
 }
 
+case_animation() {
+  printf '#debug concat("> ", str(frame_number,0,0), " ", str(clock,0,2), "\\n")\nbackground { rgb clock }\n' >film.pov
+  run run film.pov +KFI0 +KFF4 +KI-1 +KF3; want_status 0
+  [ "$(grep '^>' err | tr '\n' ' ')" = "> 0 -1.00 > 1 0.00 > 2 1.00 > 3 2.00 > 4 3.00 " ] || fail "clocks: $(cat err)"
+  run run film.pov Initial_Frame=1 Final_Frame=4 Cyclic_Animation=on +SF2 +EF3; want_status 0
+  [ "$(grep '^>' err | tr '\n' ' ')" = "> 2 0.25 > 3 0.50 " ] || fail "cyclic clocks: $(cat err)"
+  run render film.pov +KFF10 +SF9 -s 8x6 -o f.ppm; want_status 0; want_file f09.ppm; want_file f10.ppm
+  want_only film.pov f09.ppm f10.ppm
+  refused run film.pov +KFI5 +KFF2
+  refused run film.pov +KFF3 +EF4
+}
+
 case_ini() {
   scene
   printf '; a comment\n\nWidth = 20 ; pixels\nHeight=10\n+Oini.ppm\nInput_File_Name="scene.vts"\nDisplay=Off\n[other]\nWidth=40\n' >job.ini

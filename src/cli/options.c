@@ -3,7 +3,7 @@
 #include "cli/complaint.h"
 #include "cli/povray_options.h"
 #include "cli/spelling.h"
-#include "cli/values.h"
+#include "cli/option_value.h"
 
 #include <string.h>
 

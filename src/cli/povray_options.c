@@ -2,7 +2,7 @@
 
 #include "cli/complaint.h"
 #include "cli/spelling.h"
-#include "cli/values.h"
+#include "cli/option_value.h"
 
 #include <ctype.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "cli/values.h"
+#include "cli/option_value.h"
 
 #include <ctype.h>
 #include <errno.h>

@@ -1,6 +1,6 @@
 /* Values of options, read strictly: the whole text, within range, or false. */
-#ifndef VTS_CLI_VALUES_H
-#define VTS_CLI_VALUES_H
+#ifndef VTS_CLI_OPTION_VALUE_H
+#define VTS_CLI_OPTION_VALUE_H
 
 #include <stdbool.h>
 #include <stddef.h>

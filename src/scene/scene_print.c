@@ -1,0 +1,429 @@
+/* The graph as text: one node a line, two spaces of indent for what belongs to the node above, defaults left out. Numbers are
+ * printed with %g: enough to compare, short enough to read. */
+#include "scene/scene.h"
+
+typedef struct Printer {
+    StrBuf *out;
+    int depth;
+} Printer;
+
+static void begin_line(const Printer *p, const char *word) {
+    strbuf_repeat(p->out, ' ', 2 * (size_t)p->depth);
+    strbuf_adds(p->out, word);
+}
+
+static void end_line(const Printer *p) { strbuf_addc(p->out, '\n'); }
+static double plain(double x) { return x + 0.0; /* no "-0" */ }
+
+static void add_number(const Printer *p, const char *name, double x) { strbuf_addf(p->out, " %s %g", name, plain(x)); }
+
+static void add_unless(const Printer *p, const char *name, double x, double usual) {
+    if (x != usual) add_number(p, name, x);
+}
+
+static void add_vector(const Printer *p, const char *name, Vec3 v) {
+    strbuf_addf(p->out, " %s <%g, %g, %g>", name, plain(v.x), plain(v.y), plain(v.z));
+}
+
+static void add_color(const Printer *p, const char *name, Color c) {
+    if (c.filter != 0 || c.transmit != 0)
+        strbuf_addf(p->out, " %s rgbft <%g, %g, %g, %g, %g>", name, c.red, c.green, c.blue, c.filter, c.transmit);
+    else
+        strbuf_addf(p->out, " %s rgb <%g, %g, %g>", name, c.red, c.green, c.blue);
+}
+
+static bool is_black(Color c) { return c.red == 0 && c.green == 0 && c.blue == 0; }
+static void add_flag(const Printer *p, const char *name, bool on) {
+    if (on) strbuf_addf(p->out, " %s", name);
+}
+
+static bool is_unit(const Mat3 *m) {
+    const Mat3 unit = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    for (int i = 0; i < 3; i++)
+        if (vec3_length_squared(vec3_sub(m->c[i], unit.c[i])) != 0) return false;
+    return true;
+}
+
+static void add_transform(const Printer *p, const Transform *t) {
+    if (!is_unit(&t->linear)) {
+        const Vec3 *c = t->linear.c;
+        strbuf_addf(p->out, " matrix <%g, %g, %g, %g, %g, %g, %g, %g, %g, %g, %g, %g>", plain(c[0].x), plain(c[0].y),
+                    plain(c[0].z), plain(c[1].x), plain(c[1].y), plain(c[1].z), plain(c[2].x), plain(c[2].y), plain(c[2].z),
+                    plain(t->offset.x), plain(t->offset.y), plain(t->offset.z));
+    } else if (vec3_length_squared(t->offset) != 0) {
+        add_vector(p, "translate", t->offset);
+    }
+}
+
+static void add_inert(const Printer *p, const InertNote *note) {
+    for (; note; note = note->next) strbuf_addf(p->out, " (%s)", note->word);
+}
+
+/* ---- looks ---- */
+
+static const char *const pattern_names[] = {
+    "solid",   "gradient", "checker", "brick", "hexagon", "bozo",  "granite",     "wrinkles",  "agate",  "marble",   "wood", "crackle",
+    "leopard", "onion",    "radial",  "spotted", "cells", "boxed", "cylindrical", "spherical", "planar", "slope",    "function",
+};
+
+static void print_pigment(Printer *p, const char *word, const Pigment *pigment);
+
+static void print_entry(Printer *p, const ColorMapEntry *entry) {
+    strbuf_repeat(p->out, ' ', 2 * (size_t)p->depth);
+    strbuf_addf(p->out, "[%g", plain(entry->position));
+    if (!entry->pigment) add_color(p, "color", entry->color);
+    strbuf_adds(p->out, "]\n");
+    if (!entry->pigment) return;
+    p->depth++;
+    print_pigment(p, "pigment", entry->pigment);
+    p->depth--;
+}
+
+static void print_pigment(Printer *p, const char *word, const Pigment *pigment) {
+    begin_line(p, word);
+    strbuf_addf(p->out, " %s", pattern_names[pigment->kind]);
+    if (pigment->kind == PATTERN_SOLID) add_color(p, "color", pigment->color);
+    if (pigment->kind == PATTERN_GRADIENT || pigment->kind == PATTERN_SLOPE) add_vector(p, "direction", pigment->direction);
+    if (pigment->kind == PATTERN_BRICK) {
+        add_vector(p, "brick_size", pigment->brick_size);
+        add_number(p, "mortar", pigment->mortar);
+    }
+    add_unless(p, "frequency", pigment->frequency, 1);
+    add_unless(p, "phase", pigment->phase, 0);
+    if (vec3_length_squared(pigment->turbulence) != 0) {
+        add_vector(p, "turbulence", pigment->turbulence);
+        add_number(p, "octaves", pigment->octaves);
+        add_number(p, "lambda", pigment->lambda);
+        add_number(p, "omega", pigment->omega);
+    }
+    add_transform(p, &pigment->transform);
+    add_inert(p, pigment->inert);
+    end_line(p);
+    p->depth++;
+    for (size_t i = 0; i < pigment->entry_count; i++) print_entry(p, &pigment->entries[i]);
+    p->depth--;
+}
+
+static void print_finish(Printer *p, const Finish *f) {
+    begin_line(p, "finish");
+    add_color(p, "ambient", f->ambient);
+    add_number(p, "diffuse", f->diffuse);
+    add_unless(p, "transmission", f->transmission, 0);
+    add_unless(p, "brilliance", f->brilliance, 1);
+    if (f->specular != 0) {
+        add_number(p, "specular", f->specular);
+        add_number(p, "roughness", f->roughness);
+    }
+    if (f->phong != 0) {
+        add_number(p, "phong", f->phong);
+        add_number(p, "phong_size", f->phong_size);
+    }
+    add_unless(p, "metallic", f->metallic, 0);
+    if (!is_black(f->emission)) add_color(p, "emission", f->emission);
+    if (!is_black(f->reflection_max)) {
+        add_color(p, "reflection", f->reflection_min);
+        add_color(p, "to", f->reflection_max);
+    }
+    add_flag(p, "fresnel", f->fresnel);
+    end_line(p);
+}
+
+static void print_texture(Printer *p, const Texture *texture) {
+    for (; texture; texture = texture->under) {
+        begin_line(p, "texture");
+        add_transform(p, &texture->transform);
+        add_inert(p, texture->inert);
+        end_line(p);
+        p->depth++;
+        print_pigment(p, "pigment", texture->pigment);
+        print_finish(p, texture->finish);
+        p->depth--;
+    }
+}
+
+/* ---- objects ---- */
+
+static void print_object(Printer *p, const Object *object);
+static void print_surface(Printer *p, const Surface *surface);
+static void print_light(Printer *p, const Light *light);
+
+static void add_cone(const Printer *p, const Object *o) {
+    add_vector(p, "base", o->as.cone.base);
+    add_number(p, "radius", o->as.cone.base_radius);
+    add_vector(p, "cap", o->as.cone.cap);
+    add_number(p, "radius", o->as.cone.cap_radius);
+    add_flag(p, "open", o->as.cone.open);
+}
+
+static void add_mesh(const Printer *p, const MeshData *m) {
+    strbuf_addf(p->out, " vertices %zu triangles %zu", m->vertex_count, m->triangle_count);
+    if (m->normals) strbuf_addf(p->out, " normals %zu", m->normal_count);
+    if (m->uvs) strbuf_addf(p->out, " uvs %zu", m->uv_count);
+    if (m->triangle_textures) strbuf_addf(p->out, " textures %zu", m->texture_count);
+    add_flag(p, "height_vectors", m->height_vectors != NULL);
+    add_flag(p, "w_vectors", m->w_vectors != NULL);
+}
+
+static void add_shape(const Printer *p, const Object *o) {
+    switch (o->kind) {
+    case OBJECT_SPHERE:
+        add_vector(p, "center", o->as.sphere.center);
+        add_number(p, "radius", o->as.sphere.radius);
+        break;
+    case OBJECT_BOX:
+        add_vector(p, "from", o->as.box.corner1);
+        add_vector(p, "to", o->as.box.corner2);
+        break;
+    case OBJECT_CYLINDER:
+    case OBJECT_CONE: add_cone(p, o); break;
+    case OBJECT_PLANE:
+        add_vector(p, "normal", o->as.plane.normal);
+        add_number(p, "distance", o->as.plane.distance);
+        break;
+    case OBJECT_DISC:
+        add_vector(p, "center", o->as.disc.center);
+        add_vector(p, "normal", o->as.disc.normal);
+        add_number(p, "radius", o->as.disc.radius);
+        add_unless(p, "hole", o->as.disc.hole_radius, 0);
+        break;
+    case OBJECT_TORUS:
+        add_number(p, "major", o->as.torus.major_radius);
+        add_number(p, "minor", o->as.torus.minor_radius);
+        break;
+    case OBJECT_TRIANGLES: add_mesh(p, o->as.mesh); break;
+    case OBJECT_UNION:
+    case OBJECT_MERGE:
+    case OBJECT_INTERSECTION:
+    case OBJECT_DIFFERENCE: strbuf_addf(p->out, " of %zu", o->as.children.count); break;
+    case OBJECT_PARTICLES: strbuf_addf(p->out, " of %zu", o->as.particles.count); break;
+    case OBJECT_TEXEL: strbuf_addf(p->out, " %s", o->as.texel->name); break;
+    case OBJECT_SURFACE:
+    case OBJECT_UNMODELLED: break;
+    }
+}
+
+static void print_particles(Printer *p, const Object *o) {
+    static const char *const profiles[] = {"v", "round", "flat"};
+    for (size_t i = 0; i < o->as.particles.count; i++) {
+        const Particle *particle = &o->as.particles.items[i];
+        begin_line(p, "particle");
+        add_vector(p, "position", particle->position);
+        add_vector(p, "velocity", particle->velocity);
+        add_vector(p, "acceleration", particle->acceleration);
+        add_number(p, "life", particle->life);
+        strbuf_addf(p->out, " width %g, %g profile %s", particle->width_foot, particle->width_tip, profiles[particle->profile]);
+        add_unless(p, "twist", particle->twist, 0);
+        end_line(p);
+    }
+}
+
+static bool has_children(const Object *o) {
+    return o->kind == OBJECT_UNION || o->kind == OBJECT_INTERSECTION || o->kind == OBJECT_DIFFERENCE || o->kind == OBJECT_MERGE;
+}
+
+static const char *kind_name(const Object *o) {
+    static const char *const names[] = {"sphere",       "box",        "cylinder", "cone",      "plane",   "disc",  "torus",     "mesh",
+                                        "union",        "intersection", "difference", "merge", "particles", "surface", "texel", "unmodelled"};
+    return names[o->kind];
+}
+
+static void print_object(Printer *p, const Object *o) {
+    begin_line(p, kind_name(o));
+    add_shape(p, o);
+    add_transform(p, &o->transform);
+    add_flag(p, "no_shadow", o->no_shadow);
+    add_flag(p, "no_image", o->no_image);
+    add_flag(p, "inverse", o->inverse);
+    add_inert(p, o->inert);
+    end_line(p);
+    p->depth++;
+    print_texture(p, o->texture);
+    if (o->kind == OBJECT_PARTICLES) print_particles(p, o);
+    if (o->kind == OBJECT_SURFACE) print_surface(p, o->as.surface);
+    if (has_children(o)) {
+        for (size_t i = 0; i < o->as.children.count; i++) print_object(p, o->as.children.items[i]);
+        for (size_t i = 0; i < o->as.children.light_count; i++) print_light(p, o->as.children.lights[i]);
+    }
+    p->depth--;
+}
+
+/* ---- volumetric textures ---- */
+
+static void print_texel(Printer *p, const TexelDef *texel) {
+    begin_line(p, "texel");
+    strbuf_addf(p->out, " %s", texel->name);
+    add_vector(p, "bounds", texel->bounds.min);
+    add_vector(p, "to", texel->bounds.max);
+    if (texel->resolution) add_number(p, "resolution", texel->resolution);
+    if (texel->cyclic)
+        strbuf_addf(p->out, " cyclic %s%s%s", texel->cyclic & 1 ? "x" : "", texel->cyclic & 2 ? "y" : "",
+                    texel->cyclic & 4 ? "z" : "");
+    add_inert(p, texel->inert);
+    end_line(p);
+    p->depth++;
+    for (size_t i = 0; i < texel->layer_count; i++) {
+        begin_line(p, "layer");
+        end_line(p);
+        p->depth++;
+        for (size_t k = 0; k < texel->layers[i].content_count; k++) print_object(p, texel->layers[i].contents[k]);
+        print_texture(p, texel->layers[i].texture);
+        p->depth--;
+    }
+    for (size_t i = 0; i < texel->choice_count; i++) print_texel(p, texel->choices[i]);
+    p->depth--;
+}
+
+static void print_surface(Printer *p, const Surface *s) {
+    static const char *const uv_names[] = {"mesh", "planar", "cylindrical", "spherical"};
+    begin_line(p, "surface");
+    if (s->kind == SURFACE_PATCHES) {
+        strbuf_addf(p->out, " patches %d x %d", s->nu, s->nv);
+        add_vector(p, "from", s->points[0]);
+        add_vector(p, "to", s->points[((size_t)s->nu + 1) * ((size_t)s->nv + 1) - 1]);
+        add_flag(p, "height_vectors", s->height_vectors != NULL);
+    } else {
+        strbuf_addf(p->out, " uv %s", uv_names[s->uv]);
+        if (s->uv == SURFACE_UV_PLANAR || s->uv == SURFACE_UV_CYLINDRICAL) add_vector(p, "axis", s->uv_axis);
+        if (s->subdivide) add_number(p, "subdivide", s->subdivide);
+        add_flag(p, "deform", s->deform != NULL);
+        add_flag(p, "height_vectors", s->object_height_vectors != NULL);
+    }
+    add_transform(p, &s->transform);
+    add_inert(p, s->inert);
+    end_line(p);
+    p->depth++;
+    if (s->object) print_object(p, s->object);
+    print_texture(p, s->texture);
+    p->depth--;
+}
+
+static void print_mapping(Printer *p, const SkinMapping *m) {
+    begin_line(p, "mapping");
+    if (m->by_tile_size)
+        add_number(p, "tile", m->tile_size);
+    else
+        strbuf_addf(p->out, " repeat <%g, %g>", m->repeat_u, m->repeat_v);
+    add_number(p, "height", m->height);
+    add_flag(p, "function", m->height_function != NULL);
+    if (vec3_length_squared(m->comb) != 0) add_vector(p, "comb", m->comb);
+    add_flag(p, "comb function", m->comb_function != NULL);
+    if (m->w_foot != 0 || m->w_tip != 1) strbuf_addf(p->out, " w %g, %g", m->w_foot, m->w_tip);
+    add_flag(p, "w function", m->w_function != NULL);
+    end_line(p);
+    if (!m->height_pigment) return;
+    p->depth++;
+    print_pigment(p, "pigment", m->height_pigment);
+    p->depth--;
+}
+
+static void add_noise(const Printer *p, const char *name, const NoiseJitter *noise) {
+    if (noise->amplitude != 0) strbuf_addf(p->out, " %s %g scale %g", name, noise->amplitude, noise->scale);
+}
+
+static void print_jitter(Printer *p, const SkinJitter *j) {
+    const InstanceJitter *c = &j->instance;
+    begin_line(p, "jitter");
+    add_noise(p, "coordinates", &j->coordinates);
+    add_noise(p, "height", &j->height);
+    add_noise(p, "direction", &j->direction);
+    add_unless(p, "seed", j->seed, 0);
+    if (c->present) {
+        strbuf_adds(p->out, " instance");
+        add_unless(p, "displace", c->displace, 0);
+        add_unless(p, "rotate", c->rotate, 0);
+        add_unless(p, "scale", c->scale, 0);
+        add_flag(p, "mirror", c->mirror);
+        add_unless(p, "density", c->density, 1);
+        if (c->tinted) {
+            add_color(p, "tint", c->tint_a);
+            add_color(p, "to", c->tint_b);
+        }
+    }
+    end_line(p);
+}
+
+static void print_skin(Printer *p, const Skin *skin) {
+    begin_line(p, "skin");
+    add_inert(p, skin->inert);
+    end_line(p);
+    p->depth++;
+    print_surface(p, skin->surface);
+    for (size_t i = 0; i < skin->texel_count; i++) {
+        const SkinTexel *t = &skin->texels[i];
+        begin_line(p, "copies");
+        add_number(p, "density", t->density);
+        end_line(p);
+        p->depth++;
+        print_texel(p, t->texel);
+        print_texture(p, t->texture);
+        p->depth--;
+    }
+    print_mapping(p, &skin->mapping);
+    print_jitter(p, &skin->jitter);
+    print_texture(p, skin->texture);
+    p->depth--;
+}
+
+/* ---- the scene ---- */
+
+static void print_camera(Printer *p, const Camera *c) {
+    begin_line(p, c->kind == CAMERA_ORTHOGRAPHIC ? "camera orthographic" : "camera");
+    add_vector(p, "location", c->location);
+    add_vector(p, "direction", c->direction);
+    add_vector(p, "right", c->right);
+    add_vector(p, "up", c->up);
+    end_line(p);
+}
+
+static void print_light(Printer *p, const Light *light) {
+    static const char *const names[] = {"light", "light parallel", "light spot"};
+    begin_line(p, names[light->kind]);
+    if (light->kind == LIGHT_PARALLEL)
+        add_vector(p, "towards", light->to_light);
+    else
+        add_vector(p, "location", light->location);
+    add_color(p, "color", light->color);
+    if (light->kind == LIGHT_SPOT) {
+        add_vector(p, "point_at", light->point_at);
+        strbuf_addf(p->out, " radius %g falloff %g tightness %g", light->radius, light->falloff, light->tightness);
+    }
+    if (light->fade_power != 0) strbuf_addf(p->out, " fade %g ^ %g", light->fade_distance, light->fade_power);
+    add_flag(p, "shadowless", light->shadowless);
+    add_inert(p, light->inert);
+    end_line(p);
+}
+
+static void print_settings(Printer *p, const GlobalSettings *s) {
+    const char *const texts[][2] = {{"opacity_model", s->opacity_model}, {"quadrature", s->quadrature}, {"ray_path", s->ray_path},
+                                    {"detail", s->detail}};
+    begin_line(p, "settings");
+    add_color(p, "ambient_light", s->ambient_light);
+    add_number(p, "assumed_gamma", s->assumed_gamma);
+    add_number(p, "max_trace_level", s->max_trace_level);
+    add_unless(p, "max_error", s->max_error, 0);
+    add_unless(p, "samples", s->samples, 0);
+    add_unless(p, "shadow_aperture", s->shadow_aperture, 2);
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(texts); i++)
+        if (texts[i][1]) strbuf_addf(p->out, " %s %s", texts[i][0], texts[i][1]);
+    end_line(p);
+}
+
+void scene_print(const Scene *scene, StrBuf *out) {
+    Printer printer = {out, 1}, *p = &printer;
+    strbuf_addf(out, "scene %s clock %g\n", scene->name, scene->clock);
+    print_settings(p, &scene->settings);
+    print_camera(p, &scene->camera);
+    begin_line(p, "background");
+    add_color(p, "color", scene->background);
+    end_line(p);
+    for (size_t i = 0; i < scene->sky_layer_count; i++) print_pigment(p, "sky", scene->sky_layers[i]);
+    if (scene->has_fog) {
+        begin_line(p, "fog");
+        add_number(p, "distance", scene->fog.distance);
+        add_color(p, "color", scene->fog.color);
+        end_line(p);
+    }
+    for (size_t i = 0; i < scene->light_count; i++) print_light(p, &scene->lights[i]);
+    for (size_t i = 0; i < scene->object_count; i++) print_object(p, scene->objects[i]);
+    for (size_t i = 0; i < scene->skin_count; i++) print_skin(p, scene->skins[i]);
+}

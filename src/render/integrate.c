@@ -10,7 +10,7 @@ struct ShadeRecord {
     double t;
     float voxel_world;
     uint32_t skin;
-    SkinPoint point;
+    SkinPoint point;  /* where shadows start: a guess */
     Vec3f ambient;    /* light that no shadow takes away */
 };
 
@@ -79,8 +79,7 @@ static float skin_transmittance(Tracer *tr, const Cone *cone, double t_max, int 
     for (size_t i = 0; i < scene->skin_count && transmittance > OPAQUE_BELOW; i++) {
         SkinMarch *march = &tr->shadow_marches[i];
         if ((int)i == own) {
-            skin_march_begin_at(march, &scene->skins[i], cone, point, 0, t_max, &scene->shadow_march, &tr->counters, false);
-            skin_march_skip(march, offset);
+            skin_march_begin_at(march, &scene->skins[i], cone, point, offset, t_max, &scene->shadow_march, &tr->counters, false);
         } else {
             skin_march_begin(march, &scene->skins[i], cone, 0, t_max, &scene->shadow_march, &tr->counters, false);
         }
@@ -154,7 +153,8 @@ static size_t gather(Tracer *tr, const Cone *cone, double t_max, float *transmit
         Vec3 point = cone_point(cone, t);
         for (size_t l = 0; l < lights && l < VTS_ARRAY_COUNT(rays); l++) rays[l] = light_ray(&scene->scene->lights[l], point);
         *record = (ShadeRecord){.weight = *transmittance * (1 - segment->transmittance), .t = t, .voxel_world = segment->voxel_world,
-                                .skin = (uint32_t)nearest, .point = segment->point};
+                                .skin = (uint32_t)nearest,
+                                .point = skin_march_guess(&tr->marches[nearest], t)};
         record->ambient = shade_segment(tr, cone, segment, rays, &tr->direct[count * (lights + 1)]);
         *transmittance *= segment->transmittance;
         count++;
@@ -165,6 +165,18 @@ static size_t gather(Tracer *tr, const Cone *cone, double t_max, float *transmit
 }
 
 static float luminance(Vec3f c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+
+static float record_visibility(Tracer *tr, const Light *light, const Cone *cone, const ShadeRecord *r) {
+    Vec3 point = cone_point(cone, r->t);
+    LightRay ray = light_ray(light, point);
+    SkinPoint place = r->point;
+    bool seam = false;
+    SkinSide side = skin_locate(&tr->compiled->skins[r->skin], point, 0.02 * (double)r->voxel_world, &place, &seam);
+    place.w = double_clamp(place.w, 0, 1);
+    int own = side == SKIN_LOST || side == SKIN_BORDER ? -1 : (int)r->skin;
+    return visibility(tr, light, &ray, point, cone_diameter(cone, r->t), cone->spread, own, &place, (double)r->voxel_world,
+                      (double)r->voxel_world);
+}
 
 /* Light of one source over the records with shadows. Visibility is found at a few records, at equal shares of the light
  * that is to be tested, and interpolated over that share in between: neighbours along a cone have nearly the same shadow. */
@@ -188,10 +200,8 @@ static Vec3f add_shadowed(Tracer *tr, const Cone *cone, size_t count, size_t lig
         float target = total * ((float)next + 0.5f) / (float)points;
         if (passed + light_here >= target) {
             Vec3 point = cone_point(cone, r->t);
-            LightRay ray = light_ray(light, point);
             at[next] = passed + light_here / 2;
-            seen[next] = visibility(tr, light, &ray, point, cone_diameter(cone, r->t), cone->spread, (int)r->skin, &r->point,
-                                    (double)r->voxel_world, (double)r->voxel_world);
+            seen[next] = record_visibility(tr, light, cone, r);
             next++;
             while (next < points && passed + light_here >= total * ((float)next + 0.5f) / (float)points) { /* one record, two targets */
                 at[next] = at[next - 1];
@@ -247,9 +257,9 @@ static Vec3f shade_surface(Tracer *tr, const Cone *cone, const SurfaceHit *hit) 
 }
 
 static Vec3f background(const Scene *scene, const Cone *cone) {
-    if (scene->sky_layer_count)
-        return vec3f_from_color(sky_color(scene->sky_layers, scene->sky_layer_count, cone->direction, cone->spread, scene->background));
-    return vec3f_from_color(scene->background);
+    if (!scene->sky_layer_count) return vec3f_from_color(scene->background);
+    Color sky = sky_color(scene->sky_layers, scene->sky_layer_count, cone->direction, cone->spread);
+    return vec3f_from_color(color_over(sky, scene->background));
 }
 
 /* POV-Ray's constant fog: exp(−t / distance). */

@@ -22,5 +22,5 @@ Look look_from_texture(const Texture *texture, const GlobalSettings *settings) {
 
 Vec3f look_color(const Look *look, Vec3 point, Vec3 normal, double footprint) {
     if (look->uniform) return look->color;
-    return vec3f_from_color(texture_color(look->texture, point, normal, footprint));
+    return vec3f_from_color(texture_look(look->texture, point, normal, footprint).color);
 }

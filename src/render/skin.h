@@ -60,6 +60,7 @@ typedef struct PlacedTexel {
     const Look *look;    /* over the layers' own; NULL */
     uint64_t seed;
     InstanceJitter jitter; /* all zero for cyclic texels but for the tint */
+    bool alike;          /* every tile holds the same: one copy, cyclic, without tint or gaps */
     int reach;           /* how many tiles away a copy may still cover a point: 0 when copies stay in their tile */
 } PlacedTexel;
 
@@ -116,8 +117,9 @@ typedef struct TexelCopy {
     double xu, xv, x0, zu, zv, z0, inverse_scale;
     Vec3f tint; /* 1, 1, 1: none */
 } TexelCopy;
-enum { MOST_COPIES = 25 };
-/* The copies whose unit squares may cover some point of tile (iu, iv). */
-int texel_copies(const PlacedTexel *placed, int64_t iu, int64_t iv, TexelCopy copies[MOST_COPIES]);
+enum { MOST_REACH = 2, MOST_COPIES = 25 };
+/* Candidate k, 0 … (2·reach + 1)² − 1, of the copies whose unit squares may cover some point of tile (iu, iv); false when
+ * there is none there. */
+bool texel_copy_near(const PlacedTexel *placed, int64_t iu, int64_t iv, int k, TexelCopy *copy);
 
 #endif

@@ -287,7 +287,7 @@ static double needed_resolution(const CompiledSkin *skin, const View *view, Vec3
 
 static int copy_reach(const InstanceJitter *jitter) {
     double largest = 1 + jitter->scale / 2, half = jitter->rotate != 0 ? 0.70711 : 0.5;
-    return int_clamp((int)ceil(jitter->displace / 2 + half * largest - 0.5 - 1e-9), 0, 2);
+    return int_clamp((int)ceil(jitter->displace / 2 + half * largest - 0.5 - 1e-9), 0, MOST_REACH);
 }
 
 static bool place_texel(const Skin *skin, size_t index, const CompileOptions *options, CompiledScene *compiled, DiagList *diags,
@@ -314,6 +314,8 @@ static bool place_texel(const Skin *skin, size_t index, const CompileOptions *op
     }
     placed->jitter = skin->jitter.instance;
     placed->reach = placed->cyclic || !placed->jitter.present ? 0 : copy_reach(&placed->jitter);
+    placed->alike = placed->cyclic && placed->family_size == 1 && placed->density >= 1 &&
+                    !(placed->jitter.present && placed->jitter.tinted);
     const Texture *texture = in->texture ? in->texture : skin->texture;
     if (texture) {
         Look *look = arena_new(compiled->arena, Look);

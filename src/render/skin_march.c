@@ -1,11 +1,14 @@
 #include "render/skin_march.h"
 
-enum { MOST_ENTRIES = 64 };
+enum { MOST_ENTRIES = 64, MOST_HALVINGS = 6, SPAN_STEPS = 24, BORDER_BISECTIONS = 12 };
 /* A step crosses at most this share of the layer, so that what is homogeneous on the large is not stepped over. */
 static const double LAYER_STEP = 0.3;
+/* A span crosses at most this many tiles, and bends at most this many voxels from its chord: the quadratic through its
+ * middle takes the bend along, what it misses is of third order. */
+static const double SPAN_TILES = 1.0, SPAN_BEND_VOXELS = 4;
 
-static void init(SkinMarch *m, const CompiledSkin *skin, const Cone *cone, double t_min, double t_max,
-                 const MarchSettings *settings, TraceCounters *counters, bool shade) {
+static void begin(SkinMarch *m, const CompiledSkin *skin, const Cone *cone, double t_min, double t_max,
+                  const MarchSettings *settings, TraceCounters *counters, bool shade) {
     m->skin = skin;
     m->cone = cone;
     m->settings = settings;
@@ -15,21 +18,148 @@ static void init(SkinMarch *m, const CompiledSkin *skin, const Cone *cone, doubl
     m->t = t_min;
     m->t_max = t_max;
     m->entries = 0;
-    for (size_t i = 0; i < skin->texel_count; i++) m->caches[i].count = -1;
+    m->span.t1 = -VTS_INFINITY;
+    m->span.leaves = true;
+    for (size_t i = 0; i < skin->texel_count; i++)
+        for (int k = 0; k < TILES_KEPT; k++) m->tiles[i][k].count = -1;
 }
 
-void skin_march_begin(SkinMarch *m, const CompiledSkin *skin, const Cone *cone, double t_min, double t_max,
-                      const MarchSettings *settings, TraceCounters *counters, bool shade) {
-    init(m, skin, cone, t_min, t_max, settings, counters, shade);
+/* ---- spans ---- */
+
+static VoxelFit fit_voxels(const TexturePlace *place, Vec3f extent, float finest_voxel, Vec3 d, double width, float *speed) {
+    Vec3 row[3] = {vec3_scale(place->grad_u, (double)extent.x), vec3_scale(place->grad_w, (double)extent.y),
+                   vec3_scale(place->grad_v, (double)extent.z)};
+    *speed = (float)vec3_length(vec3(vec3_dot(row[0], d), vec3_dot(row[1], d), vec3_dot(row[2], d)));
+    /* An area across the cone is magnified by |cof(T) d|; its root is the mean scale of the footprint. */
+    Vec3 area = vec3(vec3_dot(vec3_cross(row[1], row[2]), d), vec3_dot(vec3_cross(row[2], row[0]), d),
+                     vec3_dot(vec3_cross(row[0], row[1]), d));
+    float side = (float)(width * sqrt(vec3_length(area)));
+    return (VoxelFit){.lod = side > finest_voxel ? log2f(side / finest_voxel) : 0, .voxel = float_max(side, finest_voxel)};
 }
 
-void skin_march_begin_at(SkinMarch *m, const CompiledSkin *skin, const Cone *cone, const SkinPoint *point, double t_min,
-                         double t_max, const MarchSettings *settings, TraceCounters *counters, bool shade) {
-    init(m, skin, cone, t_min, t_max, settings, counters, shade);
-    m->point = *point;
-    m->place = skin_texture_place(&skin->cells[point->cell], point);
-    m->inside = true;
+/* Chooses voxels and the length of steps for all texels at `place`. */
+static void fit_span(const SkinMarch *m, const TexturePlace *place, double t, MarchSpan *span) {
+    Vec3 d = m->cone->direction;
+    double width = cone_diameter(m->cone, t) * (double)m->settings->voxel_width;
+    float side = INFINITY;
+    for (size_t i = 0; i < m->skin->texel_count; i++) {
+        const PlacedTexel *placed = &m->skin->texels[i];
+        float speed;
+        span->fits[i] = fit_voxels(place, placed->finest_extent, placed->finest_voxel, d, width, &speed);
+        if (speed > 0) side = float_min(side, span->fits[i].voxel / speed);
+    }
+    double layer_rate = fabs(vec3_dot(place->grad_layer, d));
+    span->voxel_world = side;
+    span->step = double_min((double)(side * m->settings->step), layer_rate > 0 ? LAYER_STEP / layer_rate : VTS_INFINITY);
+    if (!isfinite(span->step)) span->step = double_max(1e-6, width); /* no extent along the cone: a degenerate box */
 }
+
+static Vec3 coordinates(const TexturePlace *p) { return vec3(p->u, p->v, p->w); }
+
+static SkinPoint guess(const SkinPoint *from, const TexturePlace *place, Vec3 d, double dt) {
+    return (SkinPoint){from->cell, from->a + vec3_dot(place->grad_a, d) * dt, from->b + vec3_dot(place->grad_b, d) * dt,
+                       from->w + vec3_dot(place->grad_layer, d) * dt};
+}
+
+/* Where in (0, 1] the quadratic through w0, wm (at 1/2) and w1 first passes the limit. */
+static double crossing(double w0, double wm, double w1, double limit) {
+    double c = w0 - limit, b = -3 * w0 + 4 * wm - w1, a = 2 * (w0 - 2 * wm + w1);
+    double disc = b * b - 4 * a * c;
+    if (disc >= 0 && (a != 0 || b != 0)) {
+        double q = -0.5 * (b + copysign(sqrt(disc), b));
+        double roots[2] = {a != 0 ? q / a : -1, q != 0 ? c / q : -1}, best = 2;
+        for (int i = 0; i < 2; i++)
+            if (roots[i] > 0 && roots[i] <= 1) best = double_min(best, roots[i]);
+        if (best <= 1) return best;
+    }
+    return w1 != w0 ? double_clamp((limit - w0) / (w1 - w0), 0, 1) : 1;
+}
+
+/* The largest share of the way to t1 that is still over the surface. */
+static double border(const SkinMarch *m, const SkinPoint *start, double t0, double t1, double tolerance) {
+    double lo = 0, hi = 1;
+    for (int i = 0; i < BORDER_BISECTIONS; i++) {
+        double f = (lo + hi) / 2, t = t0 + f * (t1 - t0);
+        SkinPoint p = guess(start, &m->place, m->cone->direction, t - t0);
+        bool seam = false;
+        SkinSide side = skin_locate(m->skin, cone_point(m->cone, t), tolerance, &p, &seam);
+        if (side == SKIN_BORDER || side == SKIN_LOST) hi = f;
+        else lo = f;
+    }
+    return lo;
+}
+
+static void lay_quadratic(MarchSpan *span, Vec3 x0, Vec3 xm, Vec3 x1, double length) {
+    Vec3 bend = vec3_sub(vec3_add(x0, x1), vec3_scale(xm, 2));
+    span->c0 = x0;
+    span->c1 = vec3_scale(vec3_sub(vec3_sub(x1, x0), bend), 1 / length);
+    span->c1 = vec3_madd(span->c1, bend, -1 / length);
+    span->c2 = vec3_scale(bend, 2 / (length * length));
+}
+
+/* Tries a span of this length from the current point. False: take a shorter one. */
+static bool try_span(SkinMarch *m, double length, bool shortest) {
+    MarchSpan *span = &m->span;
+    Vec3 d = m->cone->direction;
+    double t0 = m->t, t1 = t0 + length, tm = t0 + length / 2;
+    double tolerance = 0.02 * double_max(cone_diameter(m->cone, t0), 1e-4 * length) + 1e-9 * length;
+    SkinPoint middle = guess(&m->point, &m->place, d, length / 2);
+    bool seam = false;
+    SkinSide side_m = skin_locate(m->skin, cone_point(m->cone, tm), tolerance, &middle, &seam);
+    if (side_m != SKIN_INSIDE && !shortest) return false;
+    if (side_m == SKIN_LOST) return false;
+    TexturePlace place_m = skin_texture_place(&m->skin->cells[middle.cell], &middle);
+    SkinPoint end = guess(&middle, &place_m, d, length / 2);
+    SkinSide side = skin_locate(m->skin, cone_point(m->cone, t1), tolerance, &end, &seam);
+    if (side == SKIN_LOST) return false;
+    if (seam && !shortest) return false;
+    TexturePlace place_e = skin_texture_place(&m->skin->cells[end.cell], &end);
+    Vec3 x0 = coordinates(&m->place), xm = coordinates(&place_m), x1 = coordinates(&place_e);
+    if (seam || side_m == SKIN_BORDER) { /* coordinates jump or end: the rate at the start, over one short step */
+        Vec3 rate = vec3(vec3_dot(m->place.grad_u, d), vec3_dot(m->place.grad_v, d), vec3_dot(m->place.grad_w, d));
+        xm = vec3_madd(x0, rate, length / 2);
+        x1 = vec3_madd(x0, rate, length);
+        place_m = m->place;
+        middle = m->point;
+    }
+    double bend = vec3_length(vec3_scale(vec3_sub(vec3_add(x0, x1), vec3_scale(xm, 2)), 0.25));
+    if (!shortest && bend > SPAN_BEND_VOXELS * (double)m->span.voxel_world * vec3_length(vec3_sub(x1, x0)) / length) return false;
+    double part = 1;
+    if (side == SKIN_ABOVE || side == SKIN_BELOW) part = crossing(m->point.w, middle.w, end.w, side == SKIN_ABOVE ? 1 : 0);
+    if (side == SKIN_BORDER) part = border(m, &m->point, t0, t1, tolerance);
+    lay_quadratic(span, x0, xm, x1, length);
+    span->t0 = t0;
+    span->t1 = t0 + part * length;
+    span->place = place_m;
+    span->middle = middle;
+    span->leaves = side != SKIN_INSIDE;
+    fit_span(m, &place_m, tm, span);
+    m->point = end;
+    m->place = place_e;
+    m->inside = !span->leaves;
+    return true;
+}
+
+/* The next span from the current point. False where the mapping is lost: the march then looks for another entry. */
+static bool next_span(SkinMarch *m) {
+    fit_span(m, &m->place, m->t, &m->span);
+    Vec3 d = m->cone->direction;
+    double rate = fmax(fabs(vec3_dot(m->place.grad_u, d)), fabs(vec3_dot(m->place.grad_v, d)));
+    double cells = fmax(fabs(vec3_dot(m->place.grad_a, d)), fabs(vec3_dot(m->place.grad_b, d)));
+    double length = SPAN_STEPS * m->span.step;
+    if (rate > 0) length = double_min(length, SPAN_TILES / rate);
+    if (cells > 0) length = double_min(length, 2 / cells);
+    length = double_max(length, m->span.step);
+    length = double_min(length, m->t_max - m->t);
+    for (int i = 0; i <= MOST_HALVINGS; i++, length /= 2)
+        if (try_span(m, length, i == MOST_HALVINGS || length <= m->span.step)) return true;
+    m->inside = false;
+    m->span.leaves = true;
+    m->t += double_max(length, 1e-9);
+    return false;
+}
+
+/* ---- entering ---- */
 
 static bool enter(SkinMarch *m) {
     if (m->t >= m->t_max || m->entries++ >= MOST_ENTRIES) return false;
@@ -46,46 +176,61 @@ static bool enter(SkinMarch *m) {
     return true;
 }
 
-/* The voxels that fit the cone's footprint in the space of one texel. */
-typedef struct Fit {
-    Vec3 row[3];      /* ∂(texel space)/∂world */
-    Vec3f velocity;   /* texel space per unit of t */
-    float speed;
-    float lod;        /* unclamped above */
-    float voxel;      /* side of the voxels of that lod, texel space */
-} Fit;
-
-static Fit fit_voxels(const TexturePlace *place, Vec3f extent, float finest_voxel, int levels, Vec3 d, double width) {
-    Fit fit;
-    fit.row[0] = vec3_scale(place->grad_u, (double)extent.x);
-    fit.row[1] = vec3_scale(place->grad_w, (double)extent.y);
-    fit.row[2] = vec3_scale(place->grad_v, (double)extent.z);
-    fit.velocity = vec3f((float)vec3_dot(fit.row[0], d), (float)vec3_dot(fit.row[1], d), (float)vec3_dot(fit.row[2], d));
-    fit.speed = vec3f_length(fit.velocity);
-    /* An area across the cone is magnified by |cof(T) d|; its root is the mean scale of the footprint. */
-    Vec3 area = vec3(vec3_dot(vec3_cross(fit.row[1], fit.row[2]), d), vec3_dot(vec3_cross(fit.row[2], fit.row[0]), d),
-                     vec3_dot(vec3_cross(fit.row[0], fit.row[1]), d));
-    float side = (float)(width * sqrt(vec3_length(area)));
-    fit.lod = side > finest_voxel ? log2f(side / finest_voxel) : 0;
-    (void)levels;
-    fit.voxel = float_max(side, finest_voxel);
-    return fit;
+void skin_march_begin(SkinMarch *m, const CompiledSkin *skin, const Cone *cone, double t_min, double t_max,
+                      const MarchSettings *settings, TraceCounters *counters, bool shade) {
+    begin(m, skin, cone, t_min, t_max, settings, counters, shade);
 }
 
-/* A copy seen from the march: position and velocity in its own texel space. */
-typedef struct Local {
-    Vec3f position, velocity;
-} Local;
+void skin_march_begin_at(SkinMarch *m, const CompiledSkin *skin, const Cone *cone, const SkinPoint *point, double t_min,
+                         double t_max, const MarchSettings *settings, TraceCounters *counters, bool shade) {
+    begin(m, skin, cone, 0, t_max, settings, counters, shade);
+    m->point = *point;
+    m->place = skin_texture_place(&skin->cells[point->cell], point);
+    m->inside = true;
+    if (next_span(m)) m->t = double_max(m->t, t_min);
+}
 
-static Local to_copy(const TexelCopy *copy, const TexturePlace *place, Vec3 rate) {
+/* ---- copies ---- */
+
+static Vec3f to_copy(const TexelCopy *copy, Vec3 x) {
     Vec3f e = copy->texel->extent;
-    Local out;
-    out.position = vec3f((float)(copy->xu * place->u + copy->xv * place->v + copy->x0) * e.x,
-                         (float)(place->w * copy->inverse_scale) * e.y,
-                         (float)(copy->zu * place->u + copy->zv * place->v + copy->z0) * e.z);
-    out.velocity = vec3f((float)(copy->xu * rate.x + copy->xv * rate.y) * e.x, (float)(rate.z * copy->inverse_scale) * e.y,
-                         (float)(copy->zu * rate.x + copy->zv * rate.y) * e.z);
-    return out;
+    return vec3f((float)(copy->xu * x.x + copy->xv * x.y + copy->x0) * e.x, (float)(x.z * copy->inverse_scale) * e.y,
+                 (float)(copy->zu * x.x + copy->zv * x.y + copy->z0) * e.z);
+}
+
+static Vec3f rate_to_copy(const TexelCopy *copy, Vec3 rate) {
+    Vec3f e = copy->texel->extent;
+    return vec3f((float)(copy->xu * rate.x + copy->xv * rate.y) * e.x, (float)(rate.z * copy->inverse_scale) * e.y,
+                 (float)(copy->zu * rate.x + copy->zv * rate.y) * e.z);
+}
+
+static float wrapped(float x, float size) {
+    float turns = x / size;
+    return (turns - floorf(turns)) * size;
+}
+
+/* Wrapped on cyclic axes. */
+static Vec3f wrap(const BuiltTexel *texel, Vec3f p) {
+    unsigned cyclic = texel->def->cyclic;
+    if (cyclic & TEXEL_CYCLIC_X) p.x = wrapped(p.x, texel->extent.x);
+    if (cyclic & TEXEL_CYCLIC_Y) p.y = wrapped(p.y, texel->extent.y);
+    if (cyclic & TEXEL_CYCLIC_Z) p.z = wrapped(p.z, texel->extent.z);
+    return p;
+}
+
+static TileCopies *copies_at(SkinMarch *m, size_t i, int64_t iu, int64_t iv) {
+    const PlacedTexel *placed = &m->skin->texels[i];
+    if (placed->alike) iu = iv = 0;
+    TileCopies *tile = &m->tiles[i][(iu & 1) | (iv & 1) << 1];
+    if (tile->count >= 0 && tile->iu == iu && tile->iv == iv) return tile;
+    *tile = (TileCopies){.iu = iu, .iv = iv};
+    int candidates = (2 * placed->reach + 1) * (2 * placed->reach + 1);
+    for (int k = 0; k < candidates; k++)
+        if (texel_copy_near(placed, iu, iv, k, &tile->copies[tile->count].copy)) {
+            tile->copies[tile->count].clear_until = -VTS_INFINITY;
+            tile->count++;
+        }
+    return tile;
 }
 
 /* When the path p + t·v is within [0, size] along an axis. */
@@ -100,220 +245,147 @@ static void clip_slab(float p, float v, float size, float *t0, float *t1) {
 }
 
 /* How far in t a copy is certainly empty from here, at most `limit`. */
-static float copy_gap(const TexelCopy *copy, const Local *local, float lod, float voxel, bool cyclic, float limit) {
+static float copy_gap(const TexelCopy *copy, Vec3f p, Vec3f velocity, const VoxelFit *fit, bool cyclic, float limit) {
     const BuiltTexel *texel = copy->texel;
-    float speed = vec3f_length(local->velocity);
-    if (speed <= 0) return 0;
-    Vec3f p = local->position;
+    float speed = vec3f_length(velocity);
+    if (!(speed > 0)) return 0;
     if (!cyclic) {
-        float t0 = 0, t1 = limit, margin = voxel; /* interpolation reaches half a voxel out */
-        Vec3f grown = {p.x + margin, p.y + margin, p.z + margin};
-        clip_slab(grown.x, local->velocity.x, texel->extent.x + 2 * margin, &t0, &t1);
-        clip_slab(grown.y, local->velocity.y, texel->extent.y + 2 * margin, &t0, &t1);
-        clip_slab(grown.z, local->velocity.z, texel->extent.z + 2 * margin, &t0, &t1);
+        float t0 = 0, t1 = limit, margin = float_min(fit->voxel, 1); /* interpolation reaches half a voxel out */
+        clip_slab(p.x + margin, velocity.x, texel->extent.x + 2 * margin, &t0, &t1);
+        clip_slab(p.y + margin, velocity.y, texel->extent.y + 2 * margin, &t0, &t1);
+        clip_slab(p.z + margin, velocity.z, texel->extent.z + 2 * margin, &t0, &t1);
         if (t0 > t1) return limit;
-        if (t0 > 0) return float_min(t0, limit);
+        if (t0 > 0) return t0;
     }
     float gap = limit * speed;
-    Vec3f direction = vec3f_scale(local->velocity, 1 / speed);
+    Vec3f direction = vec3f_scale(velocity, 1 / speed), at = wrap(texel, p);
     for (size_t i = 0; i < texel->matter_count && gap > 0; i++)
-        gap = float_min(gap, voxel_layer_skip(texel->matter[i].voxels, lod, p, direction, gap));
+        gap = float_min(gap, voxel_layer_skip(texel->matter[i].voxels, fit->lod, at, direction, gap));
     return gap / speed;
 }
 
-static CopyCache *copies_here(SkinMarch *m, size_t i, int64_t iu, int64_t iv) {
-    CopyCache *cache = &m->caches[i];
-    if (cache->count < 0 || cache->iu != iu || cache->iv != iv) {
-        cache->iu = iu;
-        cache->iv = iv;
-        cache->count = texel_copies(&m->skin->texels[i], iu, iv, cache->copies);
-    }
-    return cache;
-}
-
-/* t until the path leaves the tile of (u, v). */
-static double tile_exit(const TexturePlace *place, Vec3 rate, int64_t iu, int64_t iv) {
+/* t until the path leaves the tile of x. */
+static double tile_exit(Vec3 x, Vec3 rate) {
     double exit = VTS_INFINITY;
-    if (rate.x != 0) exit = double_min(exit, ((double)(iu + (rate.x > 0)) - place->u) / rate.x);
-    if (rate.y != 0) exit = double_min(exit, ((double)(iv + (rate.y > 0)) - place->v) / rate.y);
+    if (rate.x != 0) exit = double_min(exit, (floor(x.x) + (rate.x > 0) - x.x) / rate.x);
+    if (rate.y != 0) exit = double_min(exit, (floor(x.y) + (rate.y > 0) - x.y) / rate.y);
     return double_max(exit, 0);
 }
 
-typedef struct Step {
-    Fit fits[MOST_PLACED_TEXELS];
-    Vec3 rate;      /* of (u, v, w') per unit of t */
-    double length;  /* of the step in t */
-    double gap;     /* of certainly empty skin from here, in t */
-    float voxel_world;
-} Step;
+static Vec3 span_at(const MarchSpan *span, double t) {
+    double s = t - span->t0;
+    return vec3_madd(vec3_madd(span->c0, span->c1, s), span->c2, s * s);
+}
 
-/* Chooses voxels and the length of the next step for all texels of the skin, and how far nothing is. */
-static Step plan(SkinMarch *m) {
-    const TexturePlace *place = &m->place;
-    Vec3 d = m->cone->direction;
-    Step step = {.rate = vec3(vec3_dot(place->grad_u, d), vec3_dot(place->grad_v, d), vec3_dot(place->grad_w, d)),
-                 .length = VTS_INFINITY, .voxel_world = INFINITY};
-    double width = cone_diameter(m->cone, m->t) * (double)m->settings->voxel_width;
-    int64_t iu = (int64_t)floor(place->u), iv = (int64_t)floor(place->v);
-    double layer_rate = fabs(vec3_dot(place->grad_layer, d));
-    double longest = layer_rate > 0 ? LAYER_STEP / layer_rate : VTS_INFINITY;
-    double leave = tile_exit(place, step.rate, iu, iv);
-    step.gap = VTS_INFINITY;
-    for (size_t i = 0; i < m->skin->texel_count; i++) {
+static Vec3 span_rate(const MarchSpan *span, double t) { return vec3_madd(span->c1, span->c2, 2 * (t - span->t0)); }
+
+/* The length of empty way from t in all copies of all texels, within the span. */
+static double empty_way(SkinMarch *m, double t) {
+    const MarchSpan *span = &m->span;
+    Vec3 x = span_at(span, t), rate = span_rate(span, t);
+    int64_t iu = (int64_t)floor(x.x), iv = (int64_t)floor(x.y);
+    double rest = span->t1 - t, gap = rest;
+    for (size_t i = 0; i < m->skin->texel_count && gap > 0; i++) {
         const PlacedTexel *placed = &m->skin->texels[i];
-        Fit *fit = &step.fits[i];
-        *fit = fit_voxels(place, placed->finest_extent, placed->finest_voxel, placed->levels, d, width);
-        if (fit->speed > 0) {
-            float side = fit->voxel / fit->speed;
-            step.length = double_min(step.length, (double)(side * m->settings->step));
-            step.voxel_world = float_min(step.voxel_world, side);
+        if (!placed->alike) gap = double_min(gap, double_max(tile_exit(x, rate), 1e-3 * span->step));
+        TileCopies *tile = copies_at(m, i, iu, iv);
+        for (int c = 0; c < tile->count && gap > 0; c++) {
+            CopyOnWay *on_way = &tile->copies[c];
+            if (on_way->clear_until <= t) {
+                const TexelCopy *copy = &on_way->copy;
+                float free_way = copy_gap(copy, to_copy(copy, x), rate_to_copy(copy, rate), &span->fits[i], placed->cyclic, (float)rest);
+                on_way->clear_until = t + (double)free_way;
+            }
+            gap = double_min(gap, on_way->clear_until - t);
         }
-        const CopyCache *cache = copies_here(m, i, iu, iv);
-        double limit = double_min(longest, fit->speed > 0 ? 0.25 / (double)fit->speed : longest);
-        if (!placed->cyclic) limit = double_min(limit, leave);
-        double gap = cache->count == 0 ? (placed->density > 0 ? leave : VTS_INFINITY) : limit;
-        for (int c = 0; c < cache->count && gap > 0; c++) {
-            Local local = to_copy(&cache->copies[c], place, step.rate);
-            gap = double_min(gap, (double)copy_gap(&cache->copies[c], &local, fit->lod, fit->voxel, placed->cyclic, (float)gap));
-        }
-        step.gap = double_min(step.gap, gap);
     }
-    step.length = double_min(step.length, longest);
-    if (!isfinite(step.length)) step.length = m->t_max - m->t;
-    return step;
+    return gap;
 }
 
-/* Moves to t1; *exit is set when the layer ends on the way, and m->t is then where. False when the way is lost. */
-static bool advance(SkinMarch *m, double t1, double tolerance, bool *exit) {
-    double dt = t1 - m->t;
-    Vec3 d = m->cone->direction;
-    SkinPoint next = {m->point.cell, m->point.a + vec3_dot(m->place.grad_a, d) * dt,
-                      m->point.b + vec3_dot(m->place.grad_b, d) * dt, m->point.w + vec3_dot(m->place.grad_layer, d) * dt};
-    bool seam = false;
-    SkinSide side = skin_locate(m->skin, cone_point(m->cone, t1), tolerance, &next, &seam);
-    *exit = side != SKIN_INSIDE;
-    if (side == SKIN_LOST) {
-        m->t = t1;
-        m->inside = false;
-        return false;
-    }
-    if (*exit) {
-        /* Where w passes the limit, by the chord; one inversion there takes the curve into account. */
-        double limit = side == SKIN_ABOVE ? 1 : 0;
-        double f = side == SKIN_BORDER || next.w == m->point.w ? 1 : double_clamp((limit - m->point.w) / (next.w - m->point.w), 0, 1);
-        m->t += f * dt;
-        m->inside = false;
-        return true;
-    }
-    m->point = next;
-    m->t = t1;
-    m->place = skin_texture_place(&m->skin->cells[next.cell], &next);
-    return true;
+SkinPoint skin_march_guess(const SkinMarch *m, double t) {
+    const MarchSpan *span = &m->span;
+    return guess(&span->middle, &span->place, m->cone->direction, t - (span->t0 + span->t1) / 2);
 }
+
+/* ---- sampling ---- */
 
 /* S of the texel in world space: normals transform by the transposed map world → texel. */
-static Sym3f to_world(const Sym3f *s, const Fit *fit, const TexelCopy *copy, const TexturePlace *place) {
+static Sym3f to_world(const Sym3f *s, const TexelCopy *copy, const TexturePlace *place) {
     Vec3f e = copy->texel->extent;
     Vec3 x = vec3_scale(vec3_madd(vec3_scale(place->grad_u, copy->xu), place->grad_v, copy->xv), (double)e.x);
     Vec3 y = vec3_scale(place->grad_w, copy->inverse_scale * (double)e.y);
     Vec3 z = vec3_scale(vec3_madd(vec3_scale(place->grad_u, copy->zu), place->grad_v, copy->zv), (double)e.z);
-    (void)fit;
-    Mat3 transposed = {{x, y, z}}; /* columns: gradients */
-    return sym3f_congruence(s, &transposed);
+    Mat3 gradients = {{x, y, z}};
+    return sym3f_congruence(s, &gradients);
 }
 
-static float fraction(float x) { return x - floorf(x); }
+typedef struct StepSample {
+    double t0, t1;
+    Vec3 middle, difference; /* texture coordinates */
+    float depth;
+} StepSample;
 
-/* Position to sample at: wrapped on cyclic axes. */
-static Vec3f wrap(const BuiltTexel *texel, Vec3f p) {
-    unsigned cyclic = texel->def->cyclic;
-    if (cyclic & TEXEL_CYCLIC_X) p.x = fraction(p.x / texel->extent.x) * texel->extent.x;
-    if (cyclic & TEXEL_CYCLIC_Y) p.y = fraction(p.y / texel->extent.y) * texel->extent.y;
-    if (cyclic & TEXEL_CYCLIC_Z) p.z = fraction(p.z / texel->extent.z) * texel->extent.z;
-    return p;
-}
-
-/* Samples all matter at the middle of the step from `before`; fills the segment. */
-static void sample(SkinMarch *m, const Step *step, const TexturePlace *before, double dt, SkinSegment *out) {
-    Vec3 middle_rate = step->rate;
-    TexturePlace middle = *before;
-    middle.u += middle_rate.x * dt / 2;
-    middle.v += middle_rate.y * dt / 2;
-    middle.w += middle_rate.z * dt / 2;
-    int64_t iu = (int64_t)floor(middle.u), iv = (int64_t)floor(middle.v);
-    float depth = 0;
-    for (size_t i = 0; i < m->skin->texel_count; i++) {
-        const PlacedTexel *placed = &m->skin->texels[i];
-        const Fit *fit = &step->fits[i];
-        const CopyCache *cache = copies_here(m, i, iu, iv);
-        for (int c = 0; c < cache->count; c++) {
-            const TexelCopy *copy = &cache->copies[c];
-            const BuiltTexel *texel = copy->texel;
-            Local local = to_copy(copy, &middle, middle_rate);
-            Vec3f at = wrap(texel, local.position), along = vec3f_scale(local.velocity, (float)dt);
-            float lod = float_min(fit->lod, (float)(texel->levels - 1));
-            float h = texel->voxel * exp2f(lod);
-            for (size_t k = 0; k < texel->matter_count; k++) {
-                VoxelSample v;
-                m->counters->voxels_visited++;
-                if (!voxel_layer_sample_lod(texel->matter[k].voxels, lod, at, &v)) continue;
-                float transmittance = opacity_transmittance(m->settings->opacity, &v, h, along);
-                if (transmittance >= 1) continue;
-                float tau = -logf(float_max(transmittance, 1e-12f));
-                depth += tau;
-                if (!m->shade || out->hit_count == MOST_MATTER_HITS) continue;
-                MatterHit *hit = &out->hits[out->hit_count++];
-                *hit = (MatterHit){.matter = &texel->matter[k], .look = placed->look ? placed->look : &texel->matter[k].look,
-                                   .tint = copy->tint, .share = tau, .texel = texel,
-                                   .place = {at.x / texel->extent.x, at.y / texel->extent.y, at.z / texel->extent.z}};
-                hit->s = to_world(&v.s, fit, copy, before);
-            }
-        }
+static void sample_copy(SkinMarch *m, size_t i, const TexelCopy *copy, StepSample *step, SkinSegment *out) {
+    const PlacedTexel *placed = &m->skin->texels[i];
+    const BuiltTexel *texel = copy->texel;
+    Vec3f at = wrap(texel, to_copy(copy, step->middle)), along = rate_to_copy(copy, step->difference);
+    /* Members of a family may be built to different resolutions. */
+    float lod = float_clamp(m->span.fits[i].lod - log2f(texel->voxel / placed->finest_voxel), 0, (float)(texel->levels - 1));
+    float h = texel->voxel * exp2f(lod);
+    for (size_t k = 0; k < texel->matter_count; k++) {
+        VoxelSample v;
+        m->counters->voxels_visited++;
+        if (!voxel_layer_sample_lod(texel->matter[k].voxels, lod, at, &v)) continue;
+        float transmittance = opacity_transmittance(m->settings->opacity, &v, h, along);
+        if (transmittance >= 1) continue;
+        float tau = -logf(float_max(transmittance, 1e-12f));
+        step->depth += tau;
+        if (!m->shade || out->hit_count == MOST_MATTER_HITS) continue;
+        MatterHit *hit = &out->hits[out->hit_count++];
+        *hit = (MatterHit){.matter = &texel->matter[k], .look = placed->look ? placed->look : &texel->matter[k].look,
+                           .tint = copy->tint, .share = tau, .texel = texel,
+                           .place = {at.x / texel->extent.x, at.y / texel->extent.y, at.z / texel->extent.z}};
+        hit->s = to_world(&v.s, copy, &m->span.place);
     }
-    for (int i = 0; i < out->hit_count; i++) out->hits[i].share /= depth;
-    out->transmittance = expf(-depth);
 }
 
-void skin_march_skip(SkinMarch *m, double dt) {
-    bool exit;
-    if (dt > 0) advance(m, m->t + dt, 0.01 * dt, &exit);
+/* Samples all matter at the middle of a step; fills the segment. */
+static void sample(SkinMarch *m, double t0, double t1, SkinSegment *out) {
+    const MarchSpan *span = &m->span;
+    double tm = (t0 + t1) / 2;
+    StepSample step = {.t0 = t0, .t1 = t1, .middle = span_at(span, tm)};
+    step.difference = vec3_sub(span_at(span, t1), span_at(span, t0));
+    int64_t iu = (int64_t)floor(step.middle.x), iv = (int64_t)floor(step.middle.y);
+    out->hit_count = 0;
+    for (size_t i = 0; i < m->skin->texel_count; i++) {
+        TileCopies *tile = copies_at(m, i, iu, iv);
+        for (int c = 0; c < tile->count; c++)
+            if (tile->copies[c].clear_until < t1) sample_copy(m, i, &tile->copies[c].copy, &step, out);
+    }
+    for (int i = 0; i < out->hit_count; i++) out->hits[i].share /= step.depth;
+    out->t0 = t0;
+    out->t1 = t1;
+    out->transmittance = expf(-step.depth);
+    out->voxel_world = span->voxel_world;
 }
 
 bool skin_march_next(SkinMarch *m, SkinSegment *segment) {
     for (;;) {
-        if (!m->inside && !enter(m)) return false;
-        if (m->t >= m->t_max) return false;
-        Step step = plan(m);
-        double world = cone_diameter(m->cone, m->t) + 1e-6 * step.length;
-        double tolerance = 0.05 * double_max(world, 1e-3 * step.length);
-        bool exit;
-        if (step.gap > step.length) { /* nothing here: go to where something may be */
-            double t1 = double_min(m->t + step.gap, m->t_max);
-            double before = m->t;
+        if (m->t >= m->span.t1) {
+            if (m->span.leaves) m->t = double_max(m->t, m->span.t1) + (isfinite(m->span.t1) ? 1e-6 * m->span.step : 0);
+            if (!m->inside && !enter(m)) return false;
+            if (m->t >= m->t_max) return false;
             m->counters->steps++;
-            advance(m, t1, tolerance, &exit);
-            if (!m->inside) m->t = double_max(m->t, before) + 1e-6 * (step.length + 1e-9);
-            continue;
+            if (!next_span(m)) continue;
         }
-        TexturePlace before = m->place;
-        double t0 = m->t, t1 = double_min(t0 + step.length, m->t_max);
-        segment->point = m->point;
-        segment->hit_count = 0;
+        double gap = empty_way(m, m->t);
+        if (gap > 0) m->t += gap;
+        if (m->t >= m->span.t1) continue;
+        double t0 = m->t, t1 = double_min(t0 + m->span.step, m->span.t1);
+        m->t = t1;
         m->counters->steps++;
-        if (advance(m, t1, tolerance, &exit) && !exit) {
-            /* The mean of the rates at both ends: the segment's own difference of texture coordinates. */
-            Vec3 d = m->cone->direction, end = vec3(vec3_dot(m->place.grad_u, d), vec3_dot(m->place.grad_v, d), vec3_dot(m->place.grad_w, d));
-            step.rate = vec3_scale(vec3_add(step.rate, end), 0.5);
-            segment->point = m->point;
-        }
-        double dt = m->t - t0;
-        if (!m->inside) m->t += 1e-6 * (step.length + 1e-9);
-        if (dt <= 0) continue;
-        sample(m, &step, &before, dt, segment);
+        sample(m, t0, t1, segment);
         if (segment->transmittance >= 1) continue;
-        segment->t0 = t0;
-        segment->t1 = t0 + dt;
-        segment->voxel_world = step.voxel_world;
         return true;
     }
 }

@@ -30,17 +30,43 @@ typedef struct MatterHit {
 typedef struct SkinSegment {
     double t0, t1;
     float transmittance;  /* of the whole segment, < 1 */
-    SkinPoint point;      /* at its middle */
     float voxel_world;    /* side of the voxels used, in scene units, along the cone */
     MatterHit hits[MOST_MATTER_HITS];
     int hit_count;
 } SkinSegment;
 
-typedef struct CopyCache {
+/* A copy met on the way, and up to which t nothing of it can be met. */
+typedef struct CopyOnWay {
+    TexelCopy copy;
+    double clear_until;
+} CopyOnWay;
+
+/* The copies around one tile. */
+typedef struct TileCopies {
     int64_t iu, iv;
-    int count; /* -1: nothing cached */
-    TexelCopy copies[MOST_COPIES];
-} CopyCache;
+    int count; /* -1: nothing kept */
+    CopyOnWay copies[MOST_COPIES];
+} TileCopies;
+enum { TILES_KEPT = 4 }; /* by the parity of iu and iv: a step may lie on both sides of a tile's border */
+
+/* The voxels that fit the cone in the space of one texel. */
+typedef struct VoxelFit {
+    float lod;   /* not clamped above */
+    float voxel; /* side of the voxels wanted, texel space */
+} VoxelFit;
+
+/* A piece of the way on which texture coordinates are a quadratic of t, through the exact ones at both ends and in the
+ * middle: "one more inversion at the chord's midpoint" (texels.md). */
+typedef struct MarchSpan {
+    double t0, t1;
+    Vec3 c0, c1, c2;   /* (u, v, w') = c0 + c1·s + c2·s², s = t − t0 */
+    TexturePlace place; /* in the middle: gradients for shading and opacity */
+    SkinPoint middle;
+    VoxelFit fits[MOST_PLACED_TEXELS];
+    double step;       /* length of a step in t */
+    float voxel_world; /* side of the finest voxels wanted along the cone, scene units */
+    bool leaves;       /* the layer ends at t1 */
+} MarchSpan;
 
 typedef struct SkinMarch {
     const CompiledSkin *skin;
@@ -48,22 +74,23 @@ typedef struct SkinMarch {
     const MarchSettings *settings;
     TraceCounters *counters;
     bool shade;           /* fill MatterHit.s and .place */
-    bool inside;
+    bool inside;          /* point and place are those at span.t1, where the next span begins */
     double t, t_max;
     SkinPoint point;
-    TexturePlace place;   /* at t, when inside */
+    TexturePlace place;
+    MarchSpan span;       /* holds for t in [span.t0, span.t1] */
     int entries;
-    CopyCache caches[MOST_PLACED_TEXELS];
+    TileCopies tiles[MOST_PLACED_TEXELS][TILES_KEPT];
 } SkinMarch;
 
 /* Start outside or anywhere: looks for the first entry in [t_min, t_max]. */
 void skin_march_begin(SkinMarch *march, const CompiledSkin *skin, const Cone *cone, double t_min, double t_max,
                       const MarchSettings *settings, TraceCounters *counters, bool shade);
-/* Start at a known point of the skin, which is the cone's place at t_min. */
+/* Start at a known point of the skin, which is the cone's place at t = 0; matter before t_min is passed over. */
 void skin_march_begin_at(SkinMarch *march, const CompiledSkin *skin, const Cone *cone, const SkinPoint *point, double t_min,
                          double t_max, const MarchSettings *settings, TraceCounters *counters, bool shade);
-/* Goes on by dt without looking at what is there: past the matter that the cone starts in. */
-void skin_march_skip(SkinMarch *march, double dt);
+/* A guess of the place in the skin at t of the current segment, for skin_locate(): where shadows start. */
+SkinPoint skin_march_guess(const SkinMarch *march, double t);
 /* The next segment that holds matter, in order of t; false when there is none before t_max. */
 bool skin_march_next(SkinMarch *march, SkinSegment *segment);
 

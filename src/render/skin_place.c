@@ -76,12 +76,8 @@ static bool may_cover(const TexelCopy *copy, int64_t iu, int64_t iv) {
     return fabs(x - 0.5) <= half && fabs(z - 0.5) <= half;
 }
 
-int texel_copies(const PlacedTexel *placed, int64_t iu, int64_t iv, TexelCopy copies[MOST_COPIES]) {
-    int count = 0, reach = placed->reach;
-    for (int64_t dv = -reach; dv <= reach; dv++)
-        for (int64_t du = -reach; du <= reach && count < MOST_COPIES; du++)
-            if (make_copy(placed, iu + du, iv + dv, &copies[count]) &&
-                (reach == 0 || may_cover(&copies[count], iu, iv)))
-                count++;
-    return count;
+bool texel_copy_near(const PlacedTexel *placed, int64_t iu, int64_t iv, int k, TexelCopy *copy) {
+    int reach = placed->reach, side = 2 * reach + 1;
+    int64_t du = k % side - reach, dv = k / side - reach;
+    return make_copy(placed, iu + du, iv + dv, copy) && (reach == 0 || may_cover(copy, iu, iv));
 }

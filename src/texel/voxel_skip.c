@@ -2,88 +2,151 @@
 
 #include <math.h>
 
-/* Marks the bricks from which interpolation reaches the occupied voxel at the end of the walk: its own brick and, where it
- * lies at a face, edge or corner, those beyond. */
-static void reach(VoxelLevel *level, const bool cyclic[3], const int voxel[3]) {
-    int bricks[3][2], counts[3];
-    for (int k = 0; k < 3; k++) {
-        int brick = voxel[k] / BRICK_SIDE, place = voxel[k] % BRICK_SIDE, n = level->brick_size[k],
-            next = brick;
-        if (place == 0) next = brick - 1;
-        if (place == BRICK_SIDE - 1 || voxel[k] == level->size[k] - 1)
-            next = place == 0 && n > 1 ? next : brick + 1;
-        if (cyclic[k]) next = (next + n) % n;
-        bricks[k][0] = brick;
-        bricks[k][1] = next;
-        counts[k] = next != brick && next >= 0 && next < n ? 2 : 1;
-    }
-    for (int z = 0; z < counts[2]; z++)
-        for (int y = 0; y < counts[1]; y++)
-            for (int x = 0; x < counts[0]; x++)
-                level->reached[voxel_level_brick_at(level, bricks[0][x], bricks[1][y], bricks[2][z])] = 1;
+/* ---- marking ---- */
+
+/* The cells that have the voxel at a corner, per axis: its own number and the next; on cyclic axes the first cell is the last. */
+static int cells_of(const VoxelLevel *level, const bool cyclic[3], int axis, int voxel, int out[4]) {
+    int count = 0, size = level->size[axis];
+    out[count++] = voxel;
+    out[count++] = voxel + 1;
+    if (cyclic[axis] && voxel == size - 1) out[count++] = 0;
+    if (cyclic[axis] && voxel == 0) out[count++] = size;
+    return count;
 }
 
-void voxel_level_mark_reached(VoxelLevel *level, const bool cyclic[3]) {
-    size_t count = voxel_level_bricks(level);
-    for (size_t i = 0; i < count; i++) level->reached[i] = 0;
-    for (size_t i = 0; i < count; i++) {
+static size_t cell_brick(const VoxelCells *cells, int x, int y, int z) {
+    return ((size_t)(z / BRICK_SIDE) * (size_t)cells->brick_size[1] + (size_t)(y / BRICK_SIDE)) *
+               (size_t)cells->brick_size[0] +
+           (size_t)(x / BRICK_SIDE);
+}
+
+/* One pass over all occupied voxels: numbers the bricks of cells (no bits yet), or sets the bits. */
+static void visit_cells(const VoxelLayer *layer, VoxelLevel *level, bool set) {
+    VoxelCells *cells = &level->cells;
+    size_t nx = (size_t)level->brick_size[0], ny = (size_t)level->brick_size[1];
+    for (size_t i = 0; i < voxel_level_bricks(level); i++) {
         if (level->index[i] < 0) continue;
         const VoxelBrick *brick = &level->bricks[level->index[i]];
-        size_t nx = (size_t)level->brick_size[0], ny = (size_t)level->brick_size[1];
-        const int corner[3] = {(int)(i % nx) * BRICK_SIDE, (int)(i / nx % ny) * BRICK_SIDE,
-                               (int)(i / nx / ny) * BRICK_SIDE};
+        int corner[3] = {(int)(i % nx) * BRICK_SIDE, (int)(i / nx % ny) * BRICK_SIDE,
+                         (int)(i / nx / ny) * BRICK_SIDE};
         for (int v = 0; v < BRICK_VOXELS; v++) {
-            if (!(brick->mask[v >> 3] >> (v & 7) & 1)) continue;
-            const int voxel[3] = {corner[0] + (v & 7), corner[1] + (v >> 3 & 7), corner[2] + (v >> 6)};
-            reach(level, cyclic, voxel);
+            if (!(brick->slice[v >> 6] >> (v & 63) & 1)) continue;
+            int at[3][4], count[3],
+                voxel[3] = {corner[0] + (v & 7), corner[1] + (v >> 3 & 7), corner[2] + (v >> 6)};
+            for (int k = 0; k < 3; k++) count[k] = cells_of(level, layer->cyclic, k, voxel[k], at[k]);
+            for (int c = 0; c < count[0] * count[1] * count[2]; c++) {
+                int x = at[0][c % count[0]], y = at[1][c / count[0] % count[1]],
+                    z = at[2][c / count[0] / count[1]];
+                int32_t *index = &cells->index[cell_brick(cells, x, y, z)];
+                if (*index < 0) *index = (int32_t)cells->count++;
+                if (set) cells->bits[*index][z & 7] |= (uint64_t)1 << (8 * (y & 7) + (x & 7));
+            }
         }
     }
 }
 
-/* A walk through a level's bricks along a ray. */
-typedef struct BrickWalk {
-    int at[3], step[3];
-    float next[3], per_brick[3]; /* where the ray leaves the brick along each axis; length between two such */
-} BrickWalk;
-
-static bool start_walk(const VoxelLevel *level, const float p[3], const float d[3], BrickWalk *walk) {
+bool voxel_level_mark_cells(VoxelLayer *layer, VoxelLevel *level) {
+    VoxelCells *cells = &level->cells;
+    size_t bricks = 1;
     for (int k = 0; k < 3; k++) {
-        float per_brick = level->per_side[k] / BRICK_SIDE, x = p[k] * per_brick, speed = d[k] * per_brick;
-        if (!(x >= 0 && x <= (float)level->brick_size[k])) return false;
-        walk->at[k] = int_min((int)x, level->brick_size[k] - 1);
-        walk->step[k] = speed > 0 ? 1 : -1;
-        float edge = speed > 0 ? (float)(walk->at[k] + 1) : (float)walk->at[k];
-        walk->per_brick[k] = speed != 0 ? fabsf(1 / speed) : INFINITY;
-        walk->next[k] = speed != 0 ? float_max(0, (edge - x) / speed) : INFINITY;
+        cells->brick_size[k] = level->size[k] / BRICK_SIDE + 1;
+        bricks *= (size_t)cells->brick_size[k];
     }
+    cells->index = voxel_layer_allocate(layer, bricks, sizeof *cells->index);
+    if (!cells->index) return false;
+    for (size_t i = 0; i < bricks; i++) cells->index[i] = -1;
+    visit_cells(layer, level, false);
+    cells->bits = voxel_layer_allocate(layer, cells->count, sizeof *cells->bits);
+    if (!cells->bits) return false;
+    visit_cells(layer, level, true);
     return true;
 }
 
-/* To where the first brick is entered from which anything is within reach, at most limit. */
-static float skip_level(const VoxelLayer *layer, int index, const float p[3], const float d[3], float limit) {
-    const VoxelLevel *level = &layer->level[index];
-    BrickWalk walk;
-    if (!start_walk(level, p, d, &walk)) return 0;
-    float t = 0;
-    while (t < limit && !level->reached[voxel_level_brick_at(level, walk.at[0], walk.at[1], walk.at[2])]) {
-        int k = walk.next[0] <= walk.next[1] ? (walk.next[0] <= walk.next[2] ? 0 : 2)
-                                             : (walk.next[1] <= walk.next[2] ? 1 : 2);
-        t = walk.next[k];
-        if (!(t < limit)) return limit;
-        walk.next[k] += walk.per_brick[k];
-        walk.at[k] += walk.step[k];
-        if (walk.at[k] >= 0 && walk.at[k] < level->brick_size[k]) continue;
-        if (!layer->cyclic[k]) return t;
-        walk.at[k] = walk.at[k] < 0 ? level->brick_size[k] - 1 : 0;
+/* ---- walking ---- */
+
+/* A walk through a grid along a ray (Amanatides & Woo 1987). */
+typedef struct GridWalk {
+    int at[3], step[3];
+    float next[3],
+        pace[3]; /* where the ray leaves the current box along each axis; length between two such */
+} GridWalk;
+
+/* Position x and speed v in units of the grid; boxes [lo, hi). */
+static void start_walk(GridWalk *walk, const float x[3], const float v[3], const int lo[3], const int hi[3],
+                       float t) {
+    for (int k = 0; k < 3; k++) {
+        float here = x[k] + t * v[k];
+        walk->at[k] = int_clamp((int)floorf(here), lo[k], hi[k] - 1);
+        walk->step[k] = v[k] > 0 ? 1 : -1;
+        float edge = (float)(walk->at[k] + (v[k] > 0));
+        walk->pace[k] = v[k] != 0 ? fabsf(1 / v[k]) : INFINITY;
+        walk->next[k] = v[k] != 0 ? float_max(t, (edge - x[k]) / v[k]) : INFINITY;
     }
-    return float_min(t, limit);
+}
+
+static int nearest_axis(const GridWalk *walk) {
+    return walk->next[0] <= walk->next[1] ? (walk->next[0] <= walk->next[2] ? 0 : 2)
+                                          : (walk->next[1] <= walk->next[2] ? 1 : 2);
+}
+
+/* Within one brick of cells, from t to t_end: to the first cell whose bit is set. */
+static float skip_in_brick(const uint64_t bits[8], const int brick[3], const float x[3], const float v[3],
+                           float t, float t_end) {
+    int lo[3], hi[3];
+    for (int k = 0; k < 3; k++) lo[k] = brick[k] * BRICK_SIDE, hi[k] = lo[k] + BRICK_SIDE;
+    GridWalk walk;
+    start_walk(&walk, x, v, lo, hi, t);
+    while (t < t_end) {
+        if (bits[walk.at[2] & 7] >> (8 * (walk.at[1] & 7) + (walk.at[0] & 7)) & 1) return t;
+        int k = nearest_axis(&walk);
+        t = walk.next[k];
+        walk.next[k] += walk.pace[k];
+        walk.at[k] += walk.step[k];
+        if (walk.at[k] < lo[k] || walk.at[k] >= hi[k]) break;
+    }
+    return t_end;
+}
+
+/* To the first cell in which anything is, at most limit. */
+static float skip_level(const VoxelLevel *level, const bool cyclic[3], const float p[3], const float d[3],
+                        float limit) {
+    const VoxelCells *cells = &level->cells;
+    const int zero[3] = {0, 0, 0};
+    float x[3], v[3], brick_x[3], brick_v[3];
+    for (int k = 0; k < 3; k++) {
+        x[k] = p[k] * level->per_side[k] + 0.5f; /* cell 0 begins half a voxel before voxel 0's centre … */
+        v[k] = d[k] * level->per_side[k];
+        if (!(x[k] >= 0 && x[k] <= (float)(level->size[k] + 1))) return 0;
+        /* … and where a cyclic axis ends the caller wraps and asks again. */
+        if (cyclic[k] && v[k] != 0)
+            limit = float_min(limit, ((v[k] > 0 ? (float)level->size[k] + 0.5f : 0.5f) - x[k]) / v[k]);
+        brick_x[k] = x[k] / BRICK_SIDE;
+        brick_v[k] = v[k] / BRICK_SIDE;
+    }
+    GridWalk walk;
+    start_walk(&walk, brick_x, brick_v, zero, cells->brick_size, 0);
+    for (float t = 0; t < limit;) {
+        int k = nearest_axis(&walk);
+        float leave = walk.next[k];
+        size_t at = ((size_t)walk.at[2] * (size_t)cells->brick_size[1] + (size_t)walk.at[1]) *
+                        (size_t)cells->brick_size[0] +
+                    (size_t)walk.at[0];
+        if (cells->index[at] >= 0) {
+            float end = float_min(leave, limit),
+                  found = skip_in_brick(cells->bits[cells->index[at]], walk.at, x, v, t, end);
+            if (found < end) return found;
+        }
+        t = leave;
+        walk.next[k] += walk.pace[k];
+        walk.at[k] += walk.step[k];
+        if (walk.at[k] < 0 || walk.at[k] >= cells->brick_size[k]) return limit; /* outside of all matter */
+    }
+    return float_max(limit, 0);
 }
 
 float voxel_layer_skip(const VoxelLayer *layer, float lod, Vec3f p, Vec3f d, float limit) {
     const float at[3] = {p.x, p.y, p.z}, along[3] = {d.x, d.y, d.z};
     lod = lod > 0 ? float_min(lod, (float)(layer->levels - 1)) : 0;
-    int level = (int)lod;
-    float skip = skip_level(layer, level, at, along, float_max(limit, 0));
-    if (lod > (float)level && skip > 0) skip = skip_level(layer, level + 1, at, along, skip);
-    return skip;
+    /* Where the coarser of both levels is empty, so is the finer: its voxels' support lies within their parents'. */
+    return skip_level(&layer->level[(int)ceilf(lod)], layer->cyclic, at, along, float_max(limit, 0));
 }

@@ -37,9 +37,9 @@ static void mark_parents(const VoxelLayer *layer, int level, const uint8_t *belo
 static bool mark_present(Build *b) {
     for (int i = 0; i < b->layer->levels; i++) {
         /* The layer's own flags, needed for something else only at the end. */
-        b->pyramid.present[i] = b->layer->level[i].reached =
+        b->pyramid.present[i] = b->layer->level[i].present =
             voxel_layer_allocate(b->layer, voxel_level_bricks(&b->layer->level[i]), 1);
-        if (!b->layer->level[i].reached) return false;
+        if (!b->layer->level[i].present) return false;
     }
     for (size_t i = 0; i < b->bins.bricks; i++)
         b->pyramid.present[0][i] = b->bins.start[i + 1] > b->bins.start[i];
@@ -131,24 +131,15 @@ static bool allocate_level(VoxelLayer *layer, VoxelLevel *level) {
     return true;
 }
 
-static uint16_t row_count(uint8_t mask) {
-    int count = 0;
-    for (; mask; mask = (uint8_t)(mask & (mask - 1))) count++;
-    return (uint16_t)count;
-}
-
 static void place_brick(VoxelLevel *level, const BuiltBrick *built, const VoxelCode *codes) {
     VoxelBrick *brick = &level->bricks[level->brick_count];
     level->index[built->place] = (int32_t)level->brick_count++;
-    brick->first = (uint32_t)level->code_count;
-    uint16_t before = 0;
-    for (int row = 0; row < BRICK_ROWS; row++) {
-        brick->mask[row] = built->mask[row];
-        brick->before[row] = before;
-        before = (uint16_t)(before + row_count(built->mask[row]));
-    }
     memcpy(level->codes + level->code_count, codes + built->first, built->count * sizeof *codes);
-    level->code_count += built->count;
+    for (int z = 0; z < BRICK_SIDE; z++) {
+        brick->slice[z] = built->slice[z];
+        brick->first[z] = (uint32_t)level->code_count;
+        level->code_count += count_bits(built->slice[z]);
+    }
 }
 
 /* Puts the jobs' bricks into the layer, in the order of the jobs, whoever ran them. */
@@ -171,7 +162,8 @@ static bool assemble(Build *b) {
             place_brick(&layer->level[built[i].level], &built[i], b->outputs[j].codes.data);
         grow_buffer_free(&b->outputs[j].codes);
     }
-    for (int i = 0; i < layer->levels; i++) voxel_level_mark_reached(&layer->level[i], layer->cyclic);
+    for (int i = 0; i < layer->levels; i++)
+        if (!voxel_level_mark_cells(layer, &layer->level[i])) return false;
     return true;
 }
 

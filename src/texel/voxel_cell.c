@@ -1,15 +1,9 @@
 #include "texel/voxel_cell.h"
 
 #include "texel/opacity.h"
+#include "texel/voxel_layer.h"
 
 #include <math.h>
-
-static int count_bits(uint64_t x) {
-    x -= x >> 1 & 0x5555555555555555u;
-    x = (x & 0x3333333333333333u) + (x >> 2 & 0x3333333333333333u);
-    x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0fu;
-    return (int)(x * 0x0101010101010101u >> 56);
-}
 
 /* One of each two columns, by a pattern of one bit per pair; the result is the low nibble of each row. */
 static uint64_t keep_columns(uint64_t rays, uint64_t pick) {

@@ -5,15 +5,30 @@
 #include "texel/texel.h"
 #include "texel/voxel_code.h"
 
-enum { BRICK_SIDE = 8, BRICK_ROWS = 64, BRICK_VOXELS = 512 };
+enum { BRICK_SIDE = 8, BRICK_VOXELS = 512 };
 
-/* A row is 8 voxels along x; row 8·z + y. Voxel (x, y, z) is stored if bit x of its row is set; its code is then
- * codes[first + before[row] + number of lower bits set in the row]. */
+/* Voxel (x, y, z) is stored if bit 8·y + x of slice[z] is set; its code is then
+ * codes[first[z] + number of lower bits set in the slice]. */
 typedef struct VoxelBrick {
-    uint32_t first;
-    uint16_t before[BRICK_ROWS];
-    uint8_t mask[BRICK_ROWS];
+    uint64_t slice[BRICK_SIDE];
+    uint32_t first[BRICK_SIDE];
 } VoxelBrick;
+
+static inline uint32_t count_bits(uint64_t x) {
+    x -= x >> 1 & 0x5555555555555555u;
+    x = (x & 0x3333333333333333u) + (x >> 2 & 0x3333333333333333u);
+    x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+    return (uint32_t)(x * 0x0101010101010101u >> 56);
+}
+
+/* Where interpolation can find anything, one bit for each cell of eight voxel centres. Cell (x, y, z) lies between the centres
+ * of voxels x − 1 and x, …: there is one more of them than voxels. Only bricks of 8³ cells with a set bit are kept. */
+typedef struct VoxelCells {
+    int brick_size[3];   /* bricks of cells */
+    int32_t *index;      /* per brick, x fastest; −1: all empty */
+    uint64_t (*bits)[8]; /* [z] bit 8·y + x */
+    size_t count;
+} VoxelCells;
 
 typedef struct VoxelLevel {
     int size[3];        /* voxels */
@@ -22,7 +37,8 @@ typedef struct VoxelLevel {
     float per_side[3];  /* 1 / sides */
     float density_unit; /* 1 / the voxel's side along the longest axis of the extent */
     int32_t *index;     /* per brick, x fastest; −1: nothing in it */
-    uint8_t *reached;   /* per brick: some point of it is within reach (interpolation) of an occupied voxel */
+    uint8_t *present;   /* while building, per brick: something is in it */
+    VoxelCells cells;
     VoxelBrick *bricks;
     VoxelCode *codes;
     size_t brick_count, code_count;
@@ -51,8 +67,8 @@ static inline bool voxel_layer_halves(const VoxelLayer *layer, int level, int ax
 VoxelLayer *voxel_layer_create(const TexelBuildOptions *options);
 /* Zeroed memory that belongs to the layer; NULL when there is none left. */
 void *voxel_layer_allocate(VoxelLayer *layer, size_t count, size_t size);
-/* Fills `reached` of a level from its bricks. */
-void voxel_level_mark_reached(VoxelLevel *level, const bool cyclic[3]);
+/* Fills `cells` of a level from its bricks; false when memory ran out. */
+bool voxel_level_mark_cells(VoxelLayer *layer, VoxelLevel *level);
 /* Of every byte that reading depends on. */
 Hash128 voxel_layer_hash(const VoxelLayer *layer);
 

@@ -127,7 +127,7 @@ void pyramid_code_brick(const VoxelLayer *layer, int level, const int at[3], con
         VoxelCode *code = grow_buffer_add(&out->codes, 1, sizeof *code);
         if (!code) return;
         *code = voxel_code_pack(m.density, m.gamma, &m.root);
-        brick.mask[i >> 3] |= (uint8_t)(1u << (i & 7));
+        brick.slice[i >> 6] |= (uint64_t)1 << (i & 63);
     }
     brick.count = out->codes.count - brick.first;
     if (brick.count == 0) return;

@@ -11,7 +11,7 @@ typedef struct BuiltBrick {
     int level;
     uint32_t place; /* in the level's index */
     size_t first, count;
-    uint8_t mask[BRICK_ROWS];
+    uint64_t slice[BRICK_SIDE];
 } BuiltBrick;
 
 typedef struct PyramidOutput {

@@ -22,7 +22,8 @@
  * of that pass. A count of zero gives no item. A count that is negative, no whole number or past the limit of loops is the
  * evaluator's error. Everywhere else `word N { … }` is one ITEM_WORD with one body (phases 8 { … }).
  *
- * Blocks, items, arguments and components live until the evaluation ends: builders and values may point into them. */
+ * Blocks, items, arguments and components live until the builder returns; what stays VALUE_BLOCK is copied by the evaluator.
+ * Builders copy what their nodes keep. */
 #ifndef VTS_EVAL_BLOCK_H
 #define VTS_EVAL_BLOCK_H
 

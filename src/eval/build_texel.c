@@ -174,9 +174,20 @@ static bool check_content(Reader *reader, const TexelDraft *draft) {
     return !reader->failed;
 }
 
+/* The block itself does not outlive its builder. Numbers and nodes are all that a reference holds. */
+static Value keep_reference(BuildContext *context, const EvalBlock *block) {
+    EvalBlock *kept = arena_copy(context->arena, block, sizeof *block);
+    BlockItem *items = arena_copy(context->arena, block->items, block->count * sizeof *items);
+    for (size_t i = 0; i < block->count; i++)
+        items[i].arguments = arena_copy(context->arena, items[i].arguments ? (const void *)items[i].arguments : "",
+                                        items[i].argument_count * sizeof(Argument));
+    kept->items = items;
+    return (Value){.kind = VALUE_BLOCK, .as.block = kept};
+}
+
 bool build_texel(BuildContext *context, const EvalBlock *block, Value *out) {
     if (is_reference(block)) {
-        *out = block->count == 1 ? block->items[0].value : (Value){.kind = VALUE_BLOCK, .as.block = block};
+        *out = block->count == 1 ? block->items[0].value : keep_reference(context, block);
         return true;
     }
     TexelDraft *draft = arena_new(context->arena, TexelDraft);

@@ -1,5 +1,6 @@
 #include "shape/tessellate_solids.h"
 
+#include "shape/frame.h"
 #include "shape/tessellate.h"
 
 enum { FEWEST_SIDES = 5, MOST_SIDES = 4 * TESSELLATE_MOST_PARTS - 1 };
@@ -29,12 +30,6 @@ void tessellate_turn(int i, int n, double *cosine, double *sine) {
     double side = (octant & 1) ? -s : s; /* turning away from the nearest axis, backwards in odd octants */
     *cosine = along[0] * c - along[1] * side;
     *sine = along[1] * c + along[0] * side;
-}
-
-/* Two unit vectors with a × b = axis. */
-static void axis_frame(Vec3 axis, Vec3 *a, Vec3 *b) {
-    vec3_frame(axis, a, b);
-    if (vec3_dot(vec3_cross(*a, *b), axis) < 0) *b = vec3_negate(*b);
 }
 
 /* ---- sphere: an octahedron whose faces are cut and blown up ---- */
@@ -211,7 +206,7 @@ void tessellate_cone(const Object *object, double tolerance, int parts, Arena *a
                        .r1 = cap_radius * factor,
                        .rows = parts > 0 ? parts : 1,
                        .columns = sides};
-    axis_frame(vec3_scale(axis, 1 / length), &wall.side, &wall.other);
+    shape_axis_frame(vec3_scale(axis, 1 / length), &wall.side, &wall.other);
     wall.normal_axis = vec3_scale(axis, (base_radius - cap_radius) / length);
     wall.normal_side = vec3_splat(length);
     bool closed = !object->as.cone.open;
@@ -236,53 +231,73 @@ void tessellate_disc(const Object *object, double tolerance, int parts, Arena *a
                           .rows = parts > 0 ? parts : 1,
                           .normal_axis = normal,
                           .uv_radius = radius * factor};
-    axis_frame(normal, &circles.side, &circles.other);
+    shape_axis_frame(normal, &circles.side, &circles.other);
     circle_grid(arena, out, &circles, false);
 }
 
 /* ---- torus ---- */
 
+/* Rows run round the tube backwards, columns round the axis. Of a spindle (minor > major) only the outside is there: a
+ * profile from pole to pole. */
 typedef struct TorusGrid {
     double major, minor, factor; /* factor: of the polygon about the axis */
     int turns, around;
+    bool spindle;
 } TorusGrid;
 
 static SoupVertex torus_point(const void *context, int i, int j) {
     const TorusGrid *torus = context;
-    double c, s, ct, st;
-    tessellate_turn(i, torus->turns, &c, &s);
-    tessellate_turn(j, torus->around, &ct, &st);
-    double from_axis = (torus->major - torus->minor * ct) * torus->factor;
+    int back = torus->around - i;
+    double c, s, ct, st, share = (double)back / torus->around;
+    tessellate_turn(j, torus->turns, &c, &s);
+    tessellate_turn(back, torus->around, &ct, &st);
+    if (torus->spindle) {
+        double pole = acos(double_min(torus->major / torus->minor, 1)),
+               angle = pole + 2 * (VTS_PI - pole) * share;
+        ct = cos(angle), st = sin(angle);
+        share = angle / (2 * VTS_PI);
+    }
+    bool on_axis = torus->spindle && (i == 0 || back == 0);
+    double from_axis = on_axis ? 0 : (torus->major - torus->minor * ct) * torus->factor;
     return (SoupVertex){vec3(-c * from_axis, torus->minor * st, s * from_axis),
                         vec3(c * ct, st, -s * ct),
-                        {(double)i / torus->turns, (double)j / torus->around},
+                        {(double)j / torus->turns, share},
                         NULL,
                         NULL};
 }
 
 /* Of all turns: they are alike. */
-static double torus_area(const TorusGrid *torus) {
+static double torus_grid_area(const TorusGrid *torus) {
     double twice = 0;
-    for (int j = 0; j < torus->around; j++) {
-        Vec3 a = torus_point(torus, 0, j).position, b = torus_point(torus, 0, j + 1).position;
-        Vec3 c = torus_point(torus, 1, j + 1).position, d = torus_point(torus, 1, j).position;
+    for (int i = 0; i < torus->around; i++) {
+        Vec3 a = torus_point(torus, i, 0).position, b = torus_point(torus, i, 1).position;
+        Vec3 c = torus_point(torus, i + 1, 1).position, d = torus_point(torus, i + 1, 0).position;
         twice += vec3_length(vec3_cross(vec3_sub(b, a), vec3_sub(c, a)));
         twice += vec3_length(vec3_cross(vec3_sub(c, a), vec3_sub(d, a)));
     }
     return torus->turns * twice / 2;
 }
 
+static double torus_area(double major, double minor) {
+    if (minor <= major) return 4 * VTS_PI * VTS_PI * major * minor;
+    double pole = acos(major / minor);
+    return 4 * VTS_PI * minor * (major * (VTS_PI - pole) + minor * sin(pole));
+}
+
 void tessellate_torus(const Object *object, double tolerance, int parts, Arena *arena, TriangleSoup *out) {
     double major = fabs(object->as.torus.major_radius), minor = fabs(object->as.torus.minor_radius);
     TorusGrid torus = {.major = major,
+                       .minor = minor,
+                       .spindle = minor > major,
                        .turns = parts > 0 ? 4 * parts : tessellate_sides(major + minor, tolerance / 2),
                        .around = parts > 0 ? 4 * parts : tessellate_sides(minor, tolerance / 2)};
+    if (minor == 0) return; /* a thread */
     /* The axis keeps its length; the tube makes up for the rest of the area, nearly in proportion to its radius. */
     torus.factor = tessellate_perimeter_factor(torus.turns);
-    torus.minor = minor;
-    for (int i = 0; i < 4 && major > 0 && minor > 0; i++) {
-        torus.minor *= 4 * VTS_PI * VTS_PI * major * minor / torus_area(&torus);
+    for (int i = 0; i < 6; i++) {
+        double ratio = torus_area(major, minor) / torus_grid_area(&torus);
+        torus.minor *= torus.spindle ? sqrt(ratio) : ratio;
     }
-    const SoupGrid grid = {torus.turns, torus.around, false, false, true};
+    const SoupGrid grid = {torus.around, torus.turns, torus.spindle, torus.spindle, true};
     soup_grid(arena, out, &grid, torus_point, &torus);
 }

@@ -212,6 +212,17 @@ static void tori_and_discs_have_their_area(void **state) {
         assert_true(is_watertight(arena, &soup));
         assert_near(soup_area(&soup) / (4 * VTS_PI * VTS_PI), 1, 1e-6);
         assert_near(soup_volume(&soup) / (2 * VTS_PI * VTS_PI * 0.5), 1, 0.5 / (parts * parts));
+        Object spindle = torus(0.5, 2), point = torus(0, 1);
+        Object barely = torus(1, 1.0000001);
+        TriangleSoup almost = soup_of(arena, &barely, 1, parts);
+        assert_near(soup_area(&almost) / (4 * VTS_PI * VTS_PI), 1, 0.01);
+        TriangleSoup lemonless = soup_of(arena, &spindle, 1, parts), round = soup_of(arena, &point, 1, parts);
+        double pole = acos(0.25);
+        assert_true(is_watertight(arena, &lemonless) && is_watertight(arena, &round));
+        assert_true(soup_volume(&lemonless) > 0);
+        assert_near(soup_area(&lemonless) / (4 * VTS_PI * 2 * (0.5 * (VTS_PI - pole) + 2 * sin(pole))), 1,
+                    1e-5);
+        assert_near(soup_area(&round), 4 * VTS_PI, 1e-4);
         plate.as.disc.center = vec3(1, 2, 3);
         plate.as.disc.normal = vec3(0, -3, 0.1);
         plate.as.disc.radius = 2;

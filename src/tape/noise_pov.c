@@ -64,7 +64,9 @@ double noise_pov(Vec3 p) {
     return vec3_is_finite(p) ? double_clamp((raw_noise(p) + 1.05242) * 0.48985582, 0, 1) : (double)NAN;
 }
 
-double noise_pov_original(Vec3 p) { return vec3_is_finite(p) ? double_clamp(raw_noise(p) + 0.5, 0, 1) : (double)NAN; }
+double noise_pov_original(Vec3 p) {
+    return vec3_is_finite(p) ? double_clamp(raw_noise(p) + 0.5, 0, 1) : (double)NAN;
+}
 
 Vec3 noise_pov_vector(Vec3 p) {
     if (!vec3_is_finite(p)) return vec3_splat((double)NAN);

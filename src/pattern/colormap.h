@@ -1,0 +1,29 @@
+/* Colour maps: a piecewise linear function of the pattern's value, and its means over intervals. */
+#ifndef VTS_PATTERN_COLORMAP_H
+#define VTS_PATTERN_COLORMAP_H
+
+#include "pattern/values.h"
+
+typedef struct ColorMap {
+    const ColorMapEntry *entries;
+    size_t count;
+} ColorMap;
+
+/* The pigment's map, or POV-Ray's own for the pattern where it has none. */
+ColorMap colormap_of(const Pigment *pigment);
+
+/* Pieces of the range of values, each filled uniformly; weights add up to 1. */
+enum { MAX_PIECES = 8 };
+typedef struct MapPieces {
+    struct {
+        double lo, hi, weight;
+    } items[MAX_PIECES];
+    int count;
+} MapPieces;
+
+/* The values, after the pigment's frequency and phase and the pattern's wave, that `spread` stands for. */
+MapPieces colormap_pieces(const Pigment *pigment, Spread spread);
+/* The weight of entry k in the mean over the pieces. Weights of all entries add up to 1. */
+double colormap_weight(ColorMap map, size_t k, const MapPieces *pieces);
+
+#endif

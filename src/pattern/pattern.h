@@ -1,0 +1,36 @@
+/* Pigments and textures at a point, averaged over the footprint that is seen there.
+ *
+ * A footprint is the diameter, in units of the space the point is given in, of the disc about the point (across `normal`)
+ * over which the colour is wanted; a zero normal means a ball, footprint 0 the point alone. Block and periodic patterns are
+ * averaged exactly or nearly so, noises lose the octaves finer than the footprint; what they lose widens the piece of the
+ * colour map that is averaged. All functions are pure and thread-safe. */
+#ifndef VTS_PATTERN_PATTERN_H
+#define VTS_PATTERN_PATTERN_H
+
+#include "scene/scene.h"
+
+/* The colour at `point` of the textured object's space. `normal` (unit, or zero) is used by slope patterns too. */
+Color pigment_color(const Pigment *pigment, Vec3 point, Vec3 normal, double footprint);
+/* The pattern's value before the colour map, frequency, phase and wave applied: function { pattern { … } }. Block patterns
+ * give the index of their entry; PATTERN_SOLID gives 0. */
+double pigment_value(const Pigment *pigment, Vec3 point, Vec3 normal);
+/* Whether the pigment has one colour everywhere, which *color gets. */
+bool pigment_is_uniform(const Pigment *pigment, Color *color);
+
+typedef struct SurfaceLook {
+    Color color;          /* of all layers together; filter and transmit: what passes the lowest */
+    const Finish *finish; /* of the topmost layer */
+} SurfaceLook;
+
+/* The point is in the textured object's space. */
+SurfaceLook texture_look(const Texture *texture, Vec3 point, Vec3 normal, double footprint);
+
+/* `top` laid over `below`. Light that comes back: top's own, where it is opaque, and what its filter lets through of the
+ * layer below. */
+Color color_over(Color top, Color below);
+
+/* The sky sphere's layers, first below. `direction` is of unit length, footprint an angle in radians. No layers: black that
+ * transmits everything. */
+Color sky_color(const Pigment *const *layers, size_t count, Vec3 direction, double footprint);
+
+#endif

@@ -1,0 +1,19 @@
+/* The patterns that give a number. */
+#ifndef VTS_PATTERN_VALUES_H
+#define VTS_PATTERN_VALUES_H
+
+#include "pattern/warp.h"
+
+typedef enum Wave { WAVE_RAMP, WAVE_TRIANGLE } Wave;
+
+typedef struct PatternTraits {
+    Wave wave;
+    bool bounded;      /* values stay in [0, 1] and do not wrap of themselves */
+    bool warps_itself; /* turbulence is part of the pattern's own formula */
+} PatternTraits;
+
+PatternTraits pattern_traits(PatternKind kind);
+/* The pattern's value at a spot of pattern space (already warped), before frequency, phase and wave. */
+Spread pattern_value(const Pigment *pigment, const Spot *spot);
+
+#endif

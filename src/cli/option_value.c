@@ -22,11 +22,11 @@ static bool leading_int(const char **text, int smallest, int largest, int *out) 
     return true;
 }
 
-bool value_int(const char *text, int smallest, int largest, int *out) {
+bool option_int(const char *text, int smallest, int largest, int *out) {
     return leading_int(&text, smallest, largest, out) && !*text;
 }
 
-bool value_unsigned(const char *text, unsigned long long *out) {
+bool option_unsigned(const char *text, unsigned long long *out) {
     if (!isdigit((unsigned char)*text)) return false;
     char *end;
     errno = 0;
@@ -43,9 +43,9 @@ static bool leading_double(const char **text, double *out) {
     return true;
 }
 
-bool value_double(const char *text, double *out) { return leading_double(&text, out) && !*text; }
+bool option_double(const char *text, double *out) { return leading_double(&text, out) && !*text; }
 
-bool value_quotient(const char *text, double *out) {
+bool option_quotient(const char *text, double *out) {
     double divisor = 1;
     if (!leading_double(&text, out)) return false;
     if (*text == '/') {
@@ -56,14 +56,14 @@ bool value_quotient(const char *text, double *out) {
     return !*text;
 }
 
-bool value_size(const char *text, int *width, int *height) {
+bool option_size(const char *text, int *width, int *height) {
     if (!leading_int(&text, 1, LARGEST_SIDE, width)) return false;
     if (*text != 'x' && *text != 'X') return false;
     text++;
     return leading_int(&text, 1, LARGEST_SIDE, height) && !*text;
 }
 
-bool value_region(const char *text, int region[4]) {
+bool option_region(const char *text, int region[4]) {
     for (int i = 0; i < 4; i++) {
         if (i > 0 && *text++ != ',') return false;
         if (!leading_int(&text, 0, LARGEST_SIDE, &region[i])) return false;
@@ -71,7 +71,7 @@ bool value_region(const char *text, int region[4]) {
     return !*text && region[0] < region[2] && region[1] < region[3];
 }
 
-bool value_bytes(const char *text, size_t *out) {
+bool option_bytes(const char *text, size_t *out) {
     static const char units[] = "KMGT";
     double value;
     if (!leading_double(&text, &value) || value <= 0) return false;
@@ -86,15 +86,15 @@ bool value_bytes(const char *text, size_t *out) {
     return *out > 0;
 }
 
-int value_word(const char *text, const char *const *words) {
+int option_word(const char *text, const char *const *words) {
     for (int i = 0; words[i]; i++)
         if (strcasecmp(text, words[i]) == 0) return i;
     return -1;
 }
 
-bool value_truth(const char *text, bool *out) {
+bool option_truth(const char *text, bool *out) {
     static const char *const words[] = {"on", "yes", "true", "1", "off", "no", "false", "0", NULL};
-    int found = value_word(text, words);
+    int found = option_word(text, words);
     *out = found < 4;
     return found >= 0;
 }

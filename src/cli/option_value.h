@@ -5,21 +5,21 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-bool value_int(const char *text, int smallest, int largest, int *out);
-bool value_unsigned(const char *text, unsigned long long *out);
+bool option_int(const char *text, int smallest, int largest, int *out);
+bool option_unsigned(const char *text, unsigned long long *out);
 /* A finite number. */
-bool value_double(const char *text, double *out);
+bool option_double(const char *text, double *out);
 /* A number or a quotient of two: "1/255". */
-bool value_quotient(const char *text, double *out);
+bool option_quotient(const char *text, double *out);
 /* "640x480". */
-bool value_size(const char *text, int *width, int *height);
+bool option_size(const char *text, int *width, int *height);
 /* "x0,y0,x1,y1" with x0 < x1 and y0 < y1, none negative. */
-bool value_region(const char *text, int region[4]);
+bool option_region(const char *text, int region[4]);
 /* Bytes: "8G", "512M", "1.5g", "4096". */
-bool value_bytes(const char *text, size_t *out);
+bool option_bytes(const char *text, size_t *out);
 /* POV-Ray's truth: on, yes, true, 1, and their opposites, in either case. */
-bool value_truth(const char *text, bool *out);
+bool option_truth(const char *text, bool *out);
 /* The index of `text` among `words` (ended by NULL), or -1. */
-int value_word(const char *text, const char *const *words);
+int option_word(const char *text, const char *const *words);
 
 #endif

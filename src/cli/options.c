@@ -25,29 +25,30 @@ static const char *apply_output(Settings *s, const char *value) {
     return *value ? NULL : "a file name";
 }
 static const char *apply_size(Settings *s, const char *value) {
-    return value_size(value, &s->options.width, &s->options.height) ? NULL : "WxH, such as 640x480";
+    return option_size(value, &s->options.width, &s->options.height) ? NULL : "WxH, such as 640x480";
 }
 static const char *apply_threads(Settings *s, const char *value) {
-    return value_int(value, 0, 1024, &s->options.threads) ? NULL : "a number from 0 (all processors) to 1024";
+    return option_int(value, 0, 1024, &s->options.threads) ? NULL
+                                                           : "a number from 0 (all processors) to 1024";
 }
 static const char *apply_clock(Settings *s, const char *value) {
     s->options.clock_set = true;
-    return value_double(value, &s->options.clock) ? NULL : "a number";
+    return option_double(value, &s->options.clock) ? NULL : "a number";
 }
 static const char *apply_quality(Settings *s, const char *value) {
     static const char *const names[] = {"draft", "good", "best", NULL};
     static const double errors[] = {4 / 255.0, 1 / 255.0, 0.25 / 255.0};
-    int quality = value_word(value, names);
+    int quality = option_word(value, names);
     if (quality >= 0) s->options.max_error = errors[quality];
     return quality >= 0 ? NULL : "draft, good or best";
 }
 static const char *apply_max_error(Settings *s, const char *value) {
-    bool valid =
-        value_quotient(value, &s->options.max_error) && s->options.max_error > 0 && s->options.max_error <= 1;
+    bool valid = option_quotient(value, &s->options.max_error) && s->options.max_error > 0 &&
+                 s->options.max_error <= 1;
     return valid ? NULL : "a number in (0, 1], such as 1/255";
 }
 static const char *apply_samples(Settings *s, const char *value) {
-    return value_int(value, 1, 256, &s->options.samples) ? NULL : "a number from 1 to 256";
+    return option_int(value, 1, 256, &s->options.samples) ? NULL : "a number from 1 to 256";
 }
 static const char *apply_declare(Settings *s, const char *value) {
     return settings_add_pair(s, &s->declares, value) ? NULL : "NAME=VALUE";
@@ -57,7 +58,7 @@ static const char *apply_include(Settings *s, const char *value) {
     return *value ? NULL : "a folder";
 }
 static const char *apply_region(Settings *s, const char *value) {
-    return value_region(value, s->options.region) ? NULL : "x0,y0,x1,y1 in pixels, x0 < x1 and y0 < y1";
+    return option_region(value, s->options.region) ? NULL : "x0,y0,x1,y1 in pixels, x0 < x1 and y0 < y1";
 }
 static const char *apply_report(Settings *s, const char *value) {
     s->report = value;
@@ -65,18 +66,18 @@ static const char *apply_report(Settings *s, const char *value) {
 }
 static const char *apply_progress(Settings *s, const char *value) {
     static const char *const names[] = {"auto", "bar", "plain", "none", NULL};
-    int style = value_word(value, names);
+    int style = option_word(value, names);
     if (style >= 0) s->progress = (ProgressStyle)style;
     return style >= 0 ? NULL : "auto, bar, plain or none";
 }
 static const char *apply_seed(Settings *s, const char *value) {
-    return value_unsigned(value, &s->options.seed) ? NULL : "a number from 0 to 2^64 - 1";
+    return option_unsigned(value, &s->options.seed) ? NULL : "a number from 0 to 2^64 - 1";
 }
 static const char *apply_set(Settings *s, const char *value) {
     return settings_add_pair(s, &s->knobs, value) ? NULL : "KNOB=VALUE";
 }
 static const char *apply_exposure(Settings *s, const char *value) {
-    return value_double(value, &s->options.exposure) ? NULL : "a number (in EV)";
+    return option_double(value, &s->options.exposure) ? NULL : "a number (in EV)";
 }
 static const char *apply_alpha(Settings *s, const char *value) {
     (void)value;
@@ -96,7 +97,7 @@ static const char *apply_limit(Settings *s, const char *value) {
     return NULL;
 }
 static const char *apply_memory_limit(Settings *s, const char *value) {
-    return value_bytes(value, &s->options.memory_limit) ? NULL : "a number of bytes, such as 8G or 512M";
+    return option_bytes(value, &s->options.memory_limit) ? NULL : "a number of bytes, such as 8G or 512M";
 }
 static const char *apply_allow_read(Settings *s, const char *value) {
     settings_add(&s->read_folders, value);
@@ -108,7 +109,7 @@ static const char *apply_allow_write(Settings *s, const char *value) {
 }
 static const char *apply_dump(Settings *s, const char *value) {
     static const char *const names[] = {"tokens", "ast", "scene", "tape", "compiled", NULL};
-    int stage = value_word(value, names);
+    int stage = option_word(value, names);
     if (stage >= 0) s->dump = (VtsDump)stage;
     s->dumps = true;
     return stage >= 0 ? NULL : "tokens, ast, scene, tape or compiled";

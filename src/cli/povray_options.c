@@ -14,17 +14,17 @@
 typedef const char *ApplyOption(Settings *settings, const char *value);
 
 static const char *apply_width(Settings *s, const char *value) {
-    return value_int(value, 1, 65536, &s->options.width) ? NULL : "a number of pixels";
+    return option_int(value, 1, 65536, &s->options.width) ? NULL : "a number of pixels";
 }
 static const char *apply_height(Settings *s, const char *value) {
-    return value_int(value, 1, 65536, &s->options.height) ? NULL : "a number of pixels";
+    return option_int(value, 1, 65536, &s->options.height) ? NULL : "a number of pixels";
 }
 static const char *apply_clock(Settings *s, const char *value) {
     s->options.clock_set = true;
-    return value_double(value, &s->options.clock) ? NULL : "a number";
+    return option_double(value, &s->options.clock) ? NULL : "a number";
 }
 static const char *apply_threads(Settings *s, const char *value) {
-    return value_int(value, 1, 1024, &s->options.threads) ? NULL : "a number of threads";
+    return option_int(value, 1, 1024, &s->options.threads) ? NULL : "a number of threads";
 }
 static const char *apply_input(Settings *s, const char *value) {
     settings_add(&s->scenes, value);
@@ -43,7 +43,7 @@ static const char *apply_declare(Settings *s, const char *value) {
     return settings_add_pair(s, &s->declares, value) ? NULL : "NAME=VALUE";
 }
 static const char *apply_alpha(Settings *s, const char *value) {
-    return value_truth(value, &s->options.alpha) ? NULL : "on or off";
+    return option_truth(value, &s->options.alpha) ? NULL : "on or off";
 }
 static const char *alpha_on(Settings *s, const char *value) {
     (void)value;
@@ -58,7 +58,7 @@ static const char *apply_file_type(Settings *s, const char *value) {
     return found ? NULL : "N (PNG), E (EXR), H (HDR), J (JPEG) or P (PPM)";
 }
 static const char *part(const char *value, double *out) {
-    return value_double(value, out) && *out >= 0 ? NULL : "a row or column from 1, or a share below 1";
+    return option_double(value, out) && *out >= 0 ? NULL : "a row or column from 1, or a share below 1";
 }
 static const char *apply_start_row(Settings *s, const char *value) { return part(value, &s->rows[0]); }
 static const char *apply_end_row(Settings *s, const char *value) { return part(value, &s->rows[1]); }
@@ -67,7 +67,7 @@ static const char *apply_end_column(Settings *s, const char *value) { return par
 
 static const char *frame_number(Settings *s, const char *value, int *out) {
     s->animation.on = true;
-    return value_int(value, 0, 1000000000, out) ? NULL : "the number of a frame";
+    return option_int(value, 0, 1000000000, out) ? NULL : "the number of a frame";
 }
 static const char *apply_first_frame(Settings *s, const char *value) {
     return frame_number(s, value, &s->animation.first_frame);
@@ -82,13 +82,13 @@ static const char *apply_subset_last(Settings *s, const char *value) {
     return frame_number(s, value, &s->animation.subset_last);
 }
 static const char *apply_first_clock(Settings *s, const char *value) {
-    return value_double(value, &s->animation.first_clock) ? NULL : "a number";
+    return option_double(value, &s->animation.first_clock) ? NULL : "a number";
 }
 static const char *apply_last_clock(Settings *s, const char *value) {
-    return value_double(value, &s->animation.last_clock) ? NULL : "a number";
+    return option_double(value, &s->animation.last_clock) ? NULL : "a number";
 }
 static const char *apply_cyclic(Settings *s, const char *value) {
-    return value_truth(value, &s->animation.cyclic) ? NULL : "on or off";
+    return option_truth(value, &s->animation.cyclic) ? NULL : "on or off";
 }
 static const char *cyclic_on(Settings *s, const char *value) {
     s->animation.cyclic = true;
@@ -276,7 +276,7 @@ static int apply_assignment(Settings *settings, const char *argument, size_t nam
     for (size_t i = 0; i < sizeof OPTIONS / sizeof *OPTIONS; i++)
         if (OPTIONS[i].name && strcasecmp(OPTIONS[i].name, name) == 0)
             return finish(settings, argument, OPTIONS[i].apply(settings, value));
-    if (value_word(name, IDLE_NAMES) >= 0) return say_idle(settings, argument);
+    if (option_word(name, IDLE_NAMES) >= 0) return say_idle(settings, argument);
     return unknown_name(settings, name);
 }
 

@@ -36,10 +36,9 @@ static void mark_parents(const VoxelLayer *layer, int level, const uint8_t *belo
 
 static bool mark_present(Build *b) {
     for (int i = 0; i < b->layer->levels; i++) {
-        /* The layer's own flags, needed for something else only at the end. */
-        b->pyramid.present[i] = b->layer->level[i].present =
-            voxel_layer_allocate(b->layer, voxel_level_bricks(&b->layer->level[i]), 1);
-        if (!b->layer->level[i].present) return false;
+        size_t bricks = voxel_level_bricks(&b->layer->level[i]);
+        b->pyramid.present[i] = calloc(bricks, 1);
+        if (!b->pyramid.present[i]) return false;
     }
     for (size_t i = 0; i < b->bins.bricks; i++)
         b->pyramid.present[0][i] = b->bins.start[i + 1] > b->bins.start[i];
@@ -79,6 +78,7 @@ static void release(Build *b) {
     }
     for (size_t i = 0; b->pyramid.job_cells && i < b->jobs; i++) free(b->pyramid.job_cells[i]);
     for (int i = 0; b->scratch && i < pool_threads(b->options->pool); i++) free(b->scratch[i]);
+    for (int i = 0; i < b->layer->levels; i++) free(b->pyramid.present[i]);
     free(b->scratch);
     free(b->outputs);
     free(b->pyramid.job_cells);
@@ -124,7 +124,7 @@ static bool allocate_level(VoxelLayer *layer, VoxelLevel *level) {
     size_t bricks = voxel_level_bricks(level);
     level->index = voxel_layer_allocate(layer, bricks, sizeof *level->index);
     level->bricks = voxel_layer_allocate(layer, level->brick_count, sizeof *level->bricks);
-    level->codes = voxel_layer_allocate(layer, level->code_count, sizeof *level->codes);
+    level->codes = voxel_layer_allocate(layer, level->code_count + 2, sizeof *level->codes);
     level->brick_count = level->code_count = 0;
     if (!level->index || !level->bricks || !level->codes) return false;
     for (size_t i = 0; i < bricks; i++) level->index[i] = -1;

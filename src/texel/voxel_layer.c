@@ -63,7 +63,6 @@ void voxel_layer_destroy(VoxelLayer *layer) {
     if (!layer) return;
     for (int i = 0; i < layer->levels; i++) {
         free(layer->level[i].index);
-        free(layer->level[i].present);
         free(layer->level[i].cells.index);
         free(layer->level[i].cells.bits);
         free(layer->level[i].bricks);

@@ -21,6 +21,12 @@ static inline uint32_t count_bits(uint64_t x) {
     return (uint32_t)(x * 0x0101010101010101u >> 56);
 }
 
+static inline uint32_t count_bits_of_byte(uint32_t x) {
+    x -= x >> 1 & 0x55u;
+    x = (x & 0x33u) + (x >> 2 & 0x33u);
+    return (x + (x >> 4)) & 0x0fu;
+}
+
 /* Where interpolation can find anything, one bit for each cell of eight voxel centres. Cell (x, y, z) lies between the centres
  * of voxels x − 1 and x, …: there is one more of them than voxels. Only bricks of 8³ cells with a set bit are kept. */
 typedef struct VoxelCells {
@@ -37,10 +43,9 @@ typedef struct VoxelLevel {
     float per_side[3];  /* 1 / sides */
     float density_unit; /* 1 / the voxel's side along the longest axis of the extent */
     int32_t *index;     /* per brick, x fastest; −1: nothing in it */
-    uint8_t *present;   /* while building, per brick: something is in it */
     VoxelCells cells;
     VoxelBrick *bricks;
-    VoxelCode *codes;
+    VoxelCode *codes; /* two more than code_count: readers look past the last before they know */
     size_t brick_count, code_count;
 } VoxelLevel;
 

@@ -2,88 +2,113 @@
 
 #include <math.h>
 
-/* The occupied ones of the eight voxels around a point, with their weights; lanes past `count` have weight 0. */
+/* The eight voxels around a point: x in bit 0, y in bit 1, z in bit 2. Empty ones have weight 0 and any code: testing each
+ * would cost more, in mispredicted branches, than decoding them. */
 typedef struct Corners {
-    int count;
     uint32_t diagonal[8], rest[8];
     float weight[8];
 } Corners;
 
-static inline void add_corner(Corners *c, VoxelCode code, float weight) {
-    c->diagonal[c->count] = code.diagonal;
-    c->rest[c->count] = code.rest;
-    c->weight[c->count++] = weight;
-}
+/* The two voxels along an axis, by brick and place in it. Outside of the layer: weight 0, place of voxel 0. */
+typedef struct AxisPair {
+    uint32_t brick[2], place[2];
+    float weight[2];
+} AxisPair;
 
-/* The lower voxel along an axis, and the weight of the upper one; false where x is not a number or out of all bounds. */
-static inline bool split_coordinate(float x, int *lower, float *t) {
+/* False where x is not a number or out of all bounds. */
+static inline bool pair_on_axis(float x, int size, bool cyclic, AxisPair *pair) {
     x -= 0.5f;
-    if (!(x > -1e9f && x < 1e9f)) return false;
-    int whole = (int)x;
-    whole -= x < (float)whole;
-    *lower = whole;
-    *t = x - (float)whole;
+    if (!(fabsf(x) < 1e9f)) return false;
+    int lower = (int)x, wrap = cyclic ? size - 1 : -1; /* sizes are powers of two */
+    lower -= x < (float)lower;
+    float t = x - (float)lower;
+    pair->weight[0] = 1 - t;
+    pair->weight[1] = t;
+    for (int i = 0; i < 2; i++) {
+        uint32_t at = (uint32_t)((lower + i) & wrap);
+        if (at >= (uint32_t)size) at = 0, pair->weight[i] = 0;
+        pair->brick[i] = at / BRICK_SIDE;
+        pair->place[i] = at % BRICK_SIDE;
+    }
     return true;
 }
 
-/* One or both of the two voxels along an axis, as far as they are in one brick. */
-typedef struct Segment {
-    int brick, place, count;
-    const float *weights;
-} Segment;
-
-static inline int cut_at_bricks(int lower, const float weights[2], int size, bool cyclic,
-                                Segment segments[2]) {
-    if (lower >= 0 && lower < size - 1 && lower % BRICK_SIDE != BRICK_SIDE - 1) {
-        segments[0] = (Segment){lower / BRICK_SIDE, lower % BRICK_SIDE, 2, weights};
-        return 1;
-    }
-    int count = 0;
-    for (int i = 0; i < 2; i++) {
-        int at = cyclic ? (lower + i) & (size - 1) : lower + i; /* sizes are powers of two */
-        if (at >= 0 && at < size)
-            segments[count++] = (Segment){at / BRICK_SIDE, at % BRICK_SIDE, 1, weights + i};
-    }
-    return count;
+static inline bool in_one_brick(const AxisPair *pair) {
+    return pair->brick[0] == pair->brick[1] && pair->place[1] == pair->place[0] + 1;
 }
 
-static inline void gather_slice(Corners *c, const VoxelCode *codes, const VoxelBrick *brick, int z, float wz,
-                                const Segment *y, const Segment *x) {
-    uint64_t slice = brick->slice[z], wanted = x->count == 2 ? 3 : 1;
-    for (int j = 0; j < y->count; j++) {
-        int at = (y->place + j) * BRICK_SIDE + x->place;
-        uint64_t pair = slice >> at & wanted;
-        if (!pair) continue;
-        const VoxelCode *code = codes + brick->first[z] + count_bits(slice & (((uint64_t)1 << at) - 1));
-        float w = y->weights[j] * wz;
-        if (pair & 1) add_corner(c, *code++, x->weights[0] * w);
-        if (pair & 2) add_corner(c, *code, x->weights[1] * w);
-    }
+static inline void set_corner(Corners *c, int i, const VoxelCode *code, bool exists, float weight) {
+    c->diagonal[i] = code->diagonal;
+    c->rest[i] = code->rest;
+    c->weight[i] = exists ? weight : 0;
 }
 
-static void gather(const VoxelLevel *level, const bool cyclic[3], Vec3f p, Corners *c) {
-    const float at[3] = {p.x, p.y, p.z};
-    float weights[3][2];
-    Segment segments[3][2];
-    int counts[3];
-    c->count = 0;
-    for (int k = 0; k < 3; k++) {
-        int lower;
-        if (!split_coordinate(at[k] * level->per_side[k], &lower, &weights[k][1])) return;
-        weights[k][0] = 1 - weights[k][1];
-        counts[k] = cut_at_bricks(lower, weights[k], level->size[k], cyclic[k], segments[k]);
+/* All eight in one brick. */
+static inline bool gather_inside(const VoxelLevel *level, const VoxelBrick *brick, const AxisPair axes[3],
+                                 Corners *c) {
+    uint32_t at = axes[1].place[0] * BRICK_SIDE + axes[0].place[0], z = axes[2].place[0];
+    if (!((brick->slice[z] | brick->slice[z + 1]) >> at & 0x303)) return false;
+    for (int k = 0; k < 2; k++) {
+        uint64_t slice = brick->slice[z + (uint32_t)k];
+        uint32_t bits = (uint32_t)(slice >> at), below = count_bits(slice & (((uint64_t)1 << at) - 1));
+        const VoxelCode *code = level->codes + brick->first[z + (uint32_t)k] + below;
+        for (int j = 0; j < 2; j++) {
+            float w = axes[1].weight[j] * axes[2].weight[k];
+            set_corner(c, 4 * k + 2 * j, code, bits & 1, axes[0].weight[0] * w);
+            set_corner(c, 4 * k + 2 * j + 1, code + (bits & 1), bits & 2, axes[0].weight[1] * w);
+            if (j) break;
+            code += count_bits_of_byte(bits & 0xff);
+            bits >>= BRICK_SIDE;
+        }
     }
-    for (const Segment *z = segments[2]; z < segments[2] + counts[2]; z++)
-        for (const Segment *y = segments[1]; y < segments[1] + counts[1]; y++)
-            for (const Segment *x = segments[0]; x < segments[0] + counts[0]; x++) {
-                int32_t brick = level->index[voxel_level_brick_at(level, x->brick, y->brick, z->brick)];
-                for (int i = 0; brick >= 0 && i < z->count; i++)
-                    gather_slice(c, level->codes, &level->bricks[brick], z->place + i, z->weights[i], y, x);
-            }
-    for (int i = c->count; i & 3; i++) {
-        c->diagonal[i] = c->rest[i] = 0;
-        c->weight[i] = 0;
+    return true;
+}
+
+/* The voxels from bit `at` on of a slice of a brick; index −1: none. Returns the bits. */
+static inline uint32_t find_row(const VoxelLevel *level, int32_t index, uint32_t z, uint32_t at,
+                                const VoxelCode **code) {
+    static const VoxelBrick nothing = {{0}, {0}};
+    const VoxelBrick *brick = index < 0 ? &nothing : &level->bricks[index];
+    uint64_t slice = brick->slice[z];
+    *code = level->codes + brick->first[z] + count_bits(slice & (((uint64_t)1 << at) - 1));
+    return (uint32_t)(slice >> at);
+}
+
+/* In more than one brick. */
+static bool gather_across(const VoxelLevel *level, const AxisPair axes[3], Corners *c) {
+    const AxisPair *x = &axes[0];
+    bool together = in_one_brick(x);
+    uint32_t any = 0;
+    for (int i = 0; i < 4; i++) {
+        const int j = i & 1, k = i >> 1;
+        uint32_t z = axes[2].place[k], y = axes[1].place[j] * BRICK_SIDE;
+        const int32_t *row =
+            level->index + voxel_level_brick_at(level, 0, (int)axes[1].brick[j], (int)axes[2].brick[k]);
+        const VoxelCode *code;
+        float w = axes[1].weight[j] * axes[2].weight[k];
+        uint32_t bits = find_row(level, row[x->brick[0]], z, y + x->place[0], &code);
+        set_corner(c, 2 * i, code, bits & 1, x->weight[0] * w);
+        any |= bits & 1;
+        code += bits & 1;
+        bits = together ? bits >> 1 : find_row(level, row[x->brick[1]], z, y + x->place[1], &code);
+        set_corner(c, 2 * i + 1, code, bits & 1, x->weight[1] * w);
+        any |= bits & 1;
     }
+    return any;
+}
+
+/* False if nothing is there. */
+static inline bool gather(const VoxelLevel *level, const bool cyclic[3], Vec3f p, Corners *c) {
+    AxisPair axes[3];
+    if (!pair_on_axis(p.x * level->per_side[0], level->size[0], cyclic[0], &axes[0]) ||
+        !pair_on_axis(p.y * level->per_side[1], level->size[1], cyclic[1], &axes[1]) ||
+        !pair_on_axis(p.z * level->per_side[2], level->size[2], cyclic[2], &axes[2]))
+        return false;
+    if (!in_one_brick(&axes[0]) || !in_one_brick(&axes[1]) || !in_one_brick(&axes[2]))
+        return gather_across(level, axes, c);
+    int32_t index = level->index[voxel_level_brick_at(level, (int)axes[0].brick[0], (int)axes[1].brick[0],
+                                                      (int)axes[2].brick[0])];
+    return index >= 0 && gather_inside(level, &level->bricks[index], axes, c);
 }
 
 /* Sums of weight·density, weight·density·gamma and weight·density·S. */
@@ -111,11 +136,9 @@ static inline void decode_four(const uint32_t diagonal[4], const uint32_t rest[4
 static void add_corners(const Corners *c, float factor, float sums[SUMS]) {
     float lanes[SUMS][4], more[SUMS][4];
     decode_four(c->diagonal, c->rest, c->weight, lanes);
-    if (c->count > 4) {
-        decode_four(c->diagonal + 4, c->rest + 4, c->weight + 4, more);
-        for (int i = 0; i < SUMS; i++)
-            for (int l = 0; l < 4; l++) lanes[i][l] += more[i][l];
-    }
+    decode_four(c->diagonal + 4, c->rest + 4, c->weight + 4, more);
+    for (int i = 0; i < SUMS; i++)
+        for (int l = 0; l < 4; l++) lanes[i][l] += more[i][l];
     for (int i = 0; i < SUMS; i++)
         sums[i] += factor * ((lanes[i][0] + lanes[i][1]) + (lanes[i][2] + lanes[i][3]));
 }
@@ -137,8 +160,8 @@ static bool finish(const float sums[SUMS], VoxelSample *out) {
 
 static void add_level(const VoxelLayer *layer, int level, Vec3f p, float factor, float sums[SUMS]) {
     Corners corners;
-    gather(&layer->level[level], layer->cyclic, p, &corners);
-    if (corners.count) add_corners(&corners, factor * layer->level[level].density_unit, sums);
+    if (gather(&layer->level[level], layer->cyclic, p, &corners))
+        add_corners(&corners, factor * layer->level[level].density_unit, sums);
 }
 
 bool voxel_layer_sample(const VoxelLayer *layer, int level, Vec3f p, VoxelSample *out) {

@@ -23,6 +23,8 @@ typedef struct EvalOptions {
     size_t declare_count;
     double clock;
     bool clock_on;
+    double clock_delta, initial_clock, final_clock;
+    int frame_number, initial_frame, final_frame;
     int image_width, image_height;
     EvalLimits limits;
     const char *const *allow_read;

@@ -39,8 +39,8 @@ typedef struct ParserHost {
     Binding (*macro_binding)(void *context, const void *macro);
     /* Slow road only. The next token, macros expanded and names replaced by their values unless the parser's `raw` is set. */
     Token (*pull)(void *context, Parser *parser);
-    /* The raw token after the one that was pulled last, not taken. */
-    const Token *(*after)(void *context);
+    /* The raw token after the one that was pulled last, or the one `skip` tokens further; not taken. */
+    const Token *(*after)(void *context, uint32_t skip);
     /* When the last pulled token is an opening bracket whose match lies in the same text: that text, which is then skipped. */
     bool (*take_body)(void *context, Body *body);
     /* Evaluates a finished operand at once, so that effects happen in the order of the text. */
@@ -66,6 +66,8 @@ struct Parser {
     Name *parameters;   /* of the function whose body is being read */
     size_t parameter_count;
     bool in_function;
+    bool heads_only;    /* branches of directives need not be whole: the text after #end may complete them */
+    bool closed;        /* the last operand was a block, a function or an array: no operator follows */
     int depth;          /* nesting, against the C stack */
     int brackets;       /* open ( < [ of the expression being read */
     AssumptionList assumptions;

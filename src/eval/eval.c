@@ -1,0 +1,196 @@
+#include "eval/eval.h"
+
+#include "eval/eval_files.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+EvalLimits eval_limits_default(void) {
+    return (EvalLimits){.loops = 100000000, .recursion = 200, .include_depth = 32, .array_elements = 64000000, .string_bytes = 64u << 20};
+}
+
+/* ---- notes of the include and macro stack ---- */
+
+static void add_call_notes(void *context, DiagList *list, Diagnostic *diagnostic) {
+    const Eval *ev = context;
+    enum { MOST_NOTES = 8 };
+    int count = 0;
+    for (const CallRecord *c = ev->calls; c; c = c->outer, count++) {
+        if (count == MOST_NOTES && c->outer) {
+            diag_note(list, diagnostic, c->span, "and further calls around this one");
+            return;
+        }
+        if (c->macro) diag_note(list, diagnostic, c->span, "in macro '%s', called here", c->macro->text);
+        else diag_note(list, diagnostic, c->span, "included here");
+    }
+}
+
+/* ---- ParserHost of the fast road ---- */
+
+static NameClass classify(void *context, Name name, const void **macro) {
+    const Macro *m;
+    NameClass class = scope_classify(context, name, &m);
+    *macro = m;
+    return class;
+}
+
+static Binding binding(void *context, const void *macro) { return macro_binding(context, macro); }
+
+/* ---- includes ---- */
+
+static TokenList *load(Eval *ev, const SourceFile *file) {
+    if (file->id < ev->program_count && ev->programs[file->id]) return ev->programs[file->id]->tokens;
+    TokenList *tokens = lexer_run(file, &ev->keywords, ev->parse, ev->diags);
+    eval_program(ev, tokens);
+    return tokens;
+}
+
+TokenList *eval_load_include(Eval *ev, const Node *node, Span *path_span) {
+    const char *name;
+    *path_span = node->as.operand.a->span;
+    if (!eval_string(ev, node->as.operand.a, &name, NULL)) return NULL;
+    if (ev->include_depth >= ev->options->limits.include_depth) {
+        diag_error(ev->diags, *path_span, "includes are nested more than %u deep", ev->options->limits.include_depth);
+        ev->stopped = true;
+        return NULL;
+    }
+    Diagnostic *refused = NULL;
+    StrBuf places = {0};
+    const char *path = path_find(ev, name, *path_span, &refused, &places);
+    const SourceFile *file = NULL;
+    if (!path && !refused) {
+        Diagnostic *d = diag_error(ev->diags, *path_span, "there is no include file '%s'", name);
+        diag_hint(ev->diags, d, "looked in %s", places.data ? places.data : "no folder");
+    }
+    strbuf_free(&places);
+    if (!path) return NULL;
+    SourceStatus status = source_load(ev->sources, path, NULL, &file);
+    if (status == SOURCE_OK) return load(ev, file);
+    diag_error(ev->diags, *path_span, status == SOURCE_BINARY ? "'%s' is not a text: it holds zero bytes" : "'%s' cannot be read", path);
+    return NULL;
+}
+
+void run_include(Eval *ev, const Node *node, Sink *sink) {
+    Span span;
+    TokenList *tokens = eval_load_include(ev, node, &span);
+    if (!tokens || !eval_deeper(ev, span)) return;
+    Scope scope;
+    CallRecord record = {.outer = ev->calls, .span = span};
+    ev->calls = &record;
+    scope_enter(ev, &scope);
+    ev->include_depth++;
+    Body body = {.tokens = tokens, .begin = 0, .end = tokens->count - 1};
+    run_body(ev, &body, sink);
+    ev->include_depth--;
+    scope_leave(ev, &scope);
+    ev->calls = record.outer;
+    ev->nesting--;
+}
+
+/* ---- the whole ---- */
+
+static void declare_options(Eval *ev) {
+    for (size_t i = 0; i < ev->options->declare_count; i++) {
+        const char *text = ev->options->declares[i].value;
+        char *end;
+        double number = strtod(text, &end);
+        Value v = *text && *end == '\0' ? value_float(number) : value_string(ev, text, strlen(text));
+        slot_set(ev, scope_declare(ev, intern_cstr(ev->names, ev->options->declares[i].name), false), &v);
+    }
+}
+
+static void init(Eval *ev, const EvalOptions *options, SourceSet *sources, DiagList *diags, Interner *names, Arena *parse, Arena *scene) {
+    *ev = (Eval){.options = options, .sources = sources, .diags = diags, .names = names, .parse = parse, .version = 3.7, .macro_stamp = 1};
+    arena_init(&ev->temp, parse->budget, 0);
+    arena_init(&ev->blocks, parse->budget, 0);
+    keyword_table_init(&ev->keywords, names, parse);
+    ev->build = (BuildContext){.arena = scene, .names = names, .diags = diags, .eval = ev};
+    ev->build.image_aspect = options->image_width > 0 && options->image_height > 0 ? (double)options->image_width / options->image_height : 4.0 / 3;
+    ev->fast_host = (ParserHost){.context = ev, .classify = classify, .macro_binding = binding};
+    ev->index_name = intern_cstr(names, "index");
+    ev->count_name = intern_cstr(names, "count");
+    ev->particles_name = intern_cstr(names, "particles");
+    diags->add_context_notes = add_call_notes;
+    diags->context = ev;
+}
+
+static void destroy(Eval *ev) {
+    files_close_all(ev);
+    ev->diags->add_context_notes = NULL;
+    ev->diags->context = NULL;
+    arena_destroy(&ev->temp);
+    arena_destroy(&ev->blocks);
+}
+
+static bool load_scene(Eval *ev, const char *path, const SourceFile **file, EvalStatus *status) {
+    SourceStatus loaded = source_load(ev->sources, path, NULL, file);
+    *status = loaded == SOURCE_NOT_FOUND || loaded == SOURCE_UNREADABLE ? EVAL_NO_FILE : EVAL_FAILED;
+    switch (loaded) {
+    case SOURCE_OK: return true;
+    case SOURCE_NOT_FOUND: diag_error(ev->diags, (Span){0}, "there is no file '%s'", path); break;
+    case SOURCE_UNREADABLE: diag_error(ev->diags, (Span){0}, "'%s' cannot be read", path); break;
+    case SOURCE_TOO_LARGE: diag_error(ev->diags, (Span){0}, "'%s' is too large for a scene", path); break;
+    case SOURCE_BINARY: diag_error(ev->diags, (Span){0}, "'%s' is not a text: it holds zero bytes", path); break;
+    }
+    return false;
+}
+
+static void say(Eval *ev, StrBuf *text) {
+    if (ev->options->on_text) ev->options->on_text(ev->options->context, EVAL_STREAM_STATISTICS, text->data ? text->data : "");
+    strbuf_free(text);
+}
+
+/* The tree of each statement of the file that the fast road can read; nothing is run. */
+static void print_tree(Eval *ev, Program *program) {
+    StrBuf out = {0};
+    uint32_t end = program->tokens->count - 1;
+    for (uint32_t at = 0; at < end;) {
+        const Statement *s = statement_at(ev, program, at, end, NULL);
+        if (s->node) ast_print(s->node, &out, 0);
+        at = s->node ? s->next : at + 1;
+    }
+    say(ev, &out);
+}
+
+static EvalStatus evaluate(Eval *ev, const SourceFile *file, const Scene **scene) {
+    TokenList *tokens = load(ev, file);
+    if (ev->options->print_tokens) {
+        StrBuf out = {0};
+        lexer_print(tokens, ev->sources, &out);
+        say(ev, &out);
+        return ev->diags->error_count ? EVAL_FAILED : EVAL_OK;
+    }
+    if (ev->options->print_ast) {
+        print_tree(ev, eval_program(ev, tokens));
+        return ev->diags->error_count ? EVAL_FAILED : EVAL_OK;
+    }
+    ev->draft = scene_draft_create(&ev->build, file->name);
+    Sink sink = {.kind = SINK_SCENE};
+    Body body = {.tokens = tokens, .begin = 0, .end = tokens->count - 1};
+    if (ev->diags->error_count == 0 || !diag_full(ev->diags)) {
+        Flow flow = run_body(ev, &body, &sink);
+        if (flow == FLOW_BREAK) diag_error(ev->diags, tokens->items[0].span, "#break outside of a loop or #switch");
+    }
+    if (ev->interrupted) return EVAL_INTERRUPTED;
+    if (ev->diags->error_count) return EVAL_FAILED;
+    *scene = scene_draft_finish(ev->draft, &ev->build, ev->options->clock);
+    return *scene && ev->diags->error_count == 0 ? EVAL_OK : EVAL_FAILED;
+}
+
+EvalStatus eval_file(const char *path, const EvalOptions *options, SourceSet *sources, DiagList *diags, Interner *names,
+                     Arena *parse_arena, Arena *scene_arena, const Scene **scene) {
+    Eval ev;
+    const SourceFile *file;
+    EvalStatus status;
+    Scope global;
+    EvalOptions filled = *options;
+    if (filled.limits.loops == 0) filled.limits = eval_limits_default();
+    *scene = NULL;
+    init(&ev, &filled, sources, diags, names, parse_arena, scene_arena);
+    eval_set_scene_path(&ev, path);
+    scope_enter(&ev, &global);
+    declare_options(&ev);
+    if (load_scene(&ev, path, &file, &status)) status = evaluate(&ev, file, scene);
+    destroy(&ev);
+    return status;
+}

@@ -1,0 +1,101 @@
+#include "eval/eval_state.h"
+
+int array_rank(const Array *array) {
+    int rank = 1;
+    for (; array->rows && array->count && array->items[0].set; rank++) array = array->items[0].value.as.array;
+    return rank;
+}
+
+size_t array_extent(const Array *array, int dimension) {
+    for (; dimension > 0; dimension--) {
+        if (!array->rows || array->count == 0 || !array->items[0].set) return 0;
+        array = array->items[0].value.as.array;
+    }
+    return array->count;
+}
+
+const Value *array_element(const Array *array, const size_t *indices, int count) {
+    for (int i = 0; i < count; i++) {
+        if (indices[i] >= array->count || !array->items[indices[i]].set) return NULL;
+        const Value *v = &array->items[indices[i]].value;
+        if (i + 1 == count) return v;
+        if (v->kind != VALUE_ARRAY) return NULL;
+        array = v->as.array;
+    }
+    return NULL;
+}
+
+Array *array_copy(Eval *ev, const Array *from) {
+    Array *to = arena_new(ev->parse, Array);
+    *to = *from;
+    to->capacity = from->count;
+    to->items = arena_new_array(ev->parse, Slot, from->count);
+    for (size_t i = 0; i < from->count; i++)
+        if (from->items[i].set) slot_set(ev, &to->items[i], &from->items[i].value);
+    return to;
+}
+
+Slot *array_slot(Eval *ev, const Array *array, double index, Span span) {
+    if (index >= 0 && index < (double)array->count) return &array->items[(size_t)index];
+    if (array->count) diag_error(ev->diags, span, "index %g is outside of the array, which goes from 0 to %zu", index, array->count - 1);
+    else diag_error(ev->diags, span, "index %g of an empty array", index);
+    return NULL;
+}
+
+/* Rows are made at once, so that elements can be set in any order. */
+static Array *make(Eval *ev, const size_t *sizes, size_t rank) {
+    Array *a = arena_new(ev->parse, Array);
+    a->count = sizes[0];
+    a->rows = rank > 1;
+    a->items = arena_new_array(ev->parse, Slot, a->count);
+    for (size_t i = 0; rank > 1 && i < a->count; i++)
+        a->items[i] = (Slot){.value = {.kind = VALUE_ARRAY, .as.array = make(ev, sizes + 1, rank - 1)}, .set = true};
+    return a;
+}
+
+enum { LARGEST_RANK = 16 };
+
+static bool read_sizes(Eval *ev, const Node *node, size_t *sizes) {
+    uint64_t total = 1, limit = ev->options->limits.array_elements;
+    for (size_t i = 0; i < node->as.array.dimensions.count; i++) {
+        const Node *d = node->as.array.dimensions.items[i];
+        double size;
+        if (!eval_float(ev, d, &size)) return false;
+        if (!(size >= 1)) {
+            diag_error(ev->diags, d->span, "an array needs at least one element, %g asked for", size);
+            return false;
+        }
+        if (size > (double)limit || (total *= (uint64_t)size) > limit) {
+            diag_error(ev->diags, d->span, "the array would have more than %llu elements", (unsigned long long)limit);
+            return false;
+        }
+        sizes[i] = (size_t)size;
+    }
+    return true;
+}
+
+static void check_filled(Eval *ev, const Array *a, size_t given, Span span) {
+    if (given && given < a->count) diag_error(ev->diags, span, "an array of %zu elements gets only %zu", a->count, given);
+}
+
+Value eval_array(Eval *ev, const Node *node) {
+    size_t sizes[LARGEST_RANK] = {0}, rank = node->as.array.dimensions.count;
+    if (rank > LARGEST_RANK) {
+        diag_error(ev->diags, node->span, "an array has at most %d dimensions", LARGEST_RANK);
+        return value_error();
+    }
+    if (!read_sizes(ev, node, sizes)) return value_error();
+    if (rank == 0 && !node->as.array.body) {
+        diag_error(ev->diags, node->span, "array needs its size: array[N]");
+        return value_error();
+    }
+    Array *a = make(ev, sizes, rank ? rank : 1);
+    a->growing = rank == 0;
+    if (node->as.array.body) {
+        Sink sink = {.kind = SINK_ARRAY, .array = a};
+        size_t errors = ev->diags->error_count;
+        run_body(ev, node->as.array.body, &sink);
+        if (errors == ev->diags->error_count && rank) check_filled(ev, a, sink.next, node->span);
+    }
+    return (Value){.kind = VALUE_ARRAY, .as.array = a};
+}

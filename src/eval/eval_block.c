@@ -1,0 +1,66 @@
+#include "eval/eval_state.h"
+
+#include <string.h>
+
+const EvalBlock *eval_block_items(Eval *ev, Name word, Span word_span, Span span, const Body *body) {
+    ItemList items = {0};
+    Sink sink = {.kind = SINK_ITEMS, .block = word, .items = &items};
+    run_body(ev, body, &sink);
+    EvalBlock *block = arena_new(&ev->blocks, EvalBlock);
+    *block = (EvalBlock){.word = word, .word_span = word_span, .span = span, .items = items.items, .count = items.count};
+    return block;
+}
+
+static Value keep_value(Arena *arena, Value v) {
+    if (v.kind == VALUE_VECTOR || v.kind == VALUE_COLOR) v.as.components = arena_copy(arena, v.as.components, v.size * sizeof(double));
+    return v;
+}
+
+/* A block that stays a value outlives the items' arena. */
+static const EvalBlock *keep_block(Arena *arena, const EvalBlock *from) {
+    if (!from) return NULL;
+    EvalBlock *to = arena_copy(arena, from, sizeof *from);
+    BlockItem *items = arena_new_array(arena, BlockItem, from->count);
+    for (size_t i = 0; i < from->count; i++) {
+        items[i] = from->items[i];
+        items[i].value = keep_value(arena, items[i].value);
+        items[i].body = keep_block(arena, items[i].body);
+        items[i].entry = keep_block(arena, items[i].entry);
+        if (items[i].argument_count == 0) continue;
+        Argument *arguments = arena_copy(arena, items[i].arguments, items[i].argument_count * sizeof(Argument));
+        for (size_t k = 0; k < items[i].argument_count; k++) arguments[k].value = keep_value(arena, arguments[k].value);
+        items[i].arguments = arguments;
+    }
+    to->items = items;
+    return to;
+}
+
+static Value unknown_block(Eval *ev, const EvalBlock *block) {
+    Diagnostic *d = diag_error(ev->diags, block->word_span, "unknown word '%s'", block->word->text);
+    const char *suggestion = block_word_suggest(block->word->text);
+    if (suggestion) diag_hint(ev->diags, d, "did you mean '%s'?", suggestion);
+    return value_error();
+}
+
+Value eval_block(Eval *ev, const Node *node, Name declared_as) {
+    ArenaMark mark = arena_mark(&ev->blocks);
+    size_t errors = ev->diags->error_count;
+    bool known = true;
+    BlockBuilder *builder = block_builder_find(&ev->build, node->as.block.word, &known);
+    EvalBlock *block = (EvalBlock *)(uintptr_t)eval_block_items(ev, node->as.block.word, node->as.block.word_span, node->span, node->as.block.body);
+    block->declared_as = declared_as;
+    Value v = value_error();
+    if (keyword_of(&ev->keywords, block->word) == KW_spline) {
+        v = eval_spline(ev, block);
+    } else if (!known) {
+        v = unknown_block(ev, block);
+    } else if (ev->diags->error_count != errors) {
+        v = value_error(); /* what is missing inside was said already */
+    } else if (builder) {
+        if (!builder(&ev->build, block, &v)) v = value_error();
+    } else {
+        v = (Value){.kind = VALUE_BLOCK, .as.block = keep_block(ev->build.arena, block)};
+    }
+    arena_reset_to(&ev->blocks, mark);
+    return v;
+}

@@ -1,0 +1,446 @@
+/* The slow road: a statement whose text only makes sense once its directives have run and its macros are expanded. Tokens are
+ * pulled one by one; directives met on the way are run, calls of macros replaced by their bodies, names by their values. */
+#include "eval/eval_state.h"
+
+#include <string.h>
+
+typedef enum FrameKind { FRAME_BASE, FRAME_BRANCH, FRAME_WHILE, FRAME_FOR, FRAME_SWITCH, FRAME_MACRO, FRAME_INCLUDE } FrameKind;
+
+/* A piece of text that is being read; tokens come from the innermost. */
+typedef struct Frame Frame;
+struct Frame {
+    Frame *outer;
+    FrameKind kind;
+    TokenList *list;
+    uint32_t at, end;
+    const Node *node;     /* WHILE, FOR, SWITCH */
+    size_t next_case;     /* SWITCH */
+    double to, step;      /* FOR */
+    uint64_t passes;
+    size_t errors;
+    uint32_t head;        /* WHILE: the token of #while; its condition may itself need the slow road */
+    Scope scope;          /* MACRO, INCLUDE */
+    CallRecord record;
+};
+
+typedef struct Source {
+    Eval *ev;
+    Frame base;
+    Frame *top;
+    Parser *parser;
+    bool at_start;        /* the statement's own directive is not for the source to run */
+    Frame *window_frame;  /* where the last token came from */
+    uint32_t window_at;
+    size_t groups_ended;
+    Flow flow;
+} Source;
+
+static Frame *push(Source *s, FrameKind kind, TokenList *list, uint32_t at, uint32_t end) {
+    Frame *f = arena_new(&s->ev->temp, Frame);
+    f->outer = s->top;
+    f->kind = kind;
+    f->list = list;
+    f->at = at;
+    f->end = end;
+    f->errors = s->ev->diags->error_count;
+    s->top = f;
+    return f;
+}
+
+static void pop(Source *s) {
+    Frame *f = s->top;
+    if (f->kind == FRAME_MACRO) {
+        macro_leave(s->ev, &f->scope);
+    } else if (f->kind == FRAME_INCLUDE) {
+        macro_leave(s->ev, &f->scope);
+        s->ev->include_depth--;
+    } else {
+        s->groups_ended++;
+    }
+    s->top = f->outer;
+}
+
+static void fail(Source *s) {
+    s->parser->failed = true;
+}
+
+static void to_body(Frame *f, const Body *body) {
+    f->list = body->tokens;
+    f->at = body->begin;
+    f->end = body->end;
+}
+
+static bool next_pass(Source *s, Frame *f) {
+    Flow flow = run_loop_guard(s->ev, &f->passes, f->errors, f->node->span);
+    if (flow == FLOW_STOP) fail(s);
+    return flow == FLOW_NEXT;
+}
+
+static const Node *head_at(Source *s, Frame *f, uint32_t at, uint32_t *next);
+
+/* At the end of a loop's body: on to the next pass, or false. */
+static bool repeat_while(Source *s, Frame *f) {
+    uint32_t next;
+    bool go_on = false;
+    const Node *head = head_at(s, f->outer, f->head, &next);
+    if (!head || !eval_condition(s->ev, head->as.loop.condition, &go_on) || !go_on || !next_pass(s, f)) return false;
+    to_body(f, &head->as.loop.body);
+    return true;
+}
+
+static bool repeat_for(Source *s, Frame *f, bool first) {
+    VarBinding *b = scope_find(s->ev, f->node->as.for_loop.name);
+    if (!b || b->slot->value.kind != VALUE_FLOAT) return false;
+    double *now = &b->slot->value.as.number;
+    if (!first) *now += f->step;
+    if (f->step > 0 ? *now > f->to + 1e-10 : *now < f->to - 1e-10) return false;
+    if (!next_pass(s, f)) return false;
+    to_body(f, &f->node->as.for_loop.body);
+    return true;
+}
+
+static bool next_case(Source *s, Frame *f) {
+    (void)s;
+    if (f->next_case >= f->node->as.switch_.count) return false;
+    to_body(f, &f->node->as.switch_.cases[f->next_case++].body);
+    return true;
+}
+
+static void end_frame(Source *s) {
+    Frame *f = s->top;
+    bool again = f->kind == FRAME_WHILE   ? repeat_while(s, f)
+                 : f->kind == FRAME_FOR    ? repeat_for(s, f, false)
+                 : f->kind == FRAME_SWITCH ? next_case(s, f)
+                                           : false;
+    if (!again) pop(s);
+}
+
+static void break_out(Source *s) {
+    while (s->top != &s->base) {
+        FrameKind kind = s->top->kind;
+        pop(s);
+        if (kind == FRAME_WHILE || kind == FRAME_FOR || kind == FRAME_SWITCH) return;
+    }
+    s->flow = FLOW_BREAK;
+    s->base.at = s->base.end;
+}
+
+/* ---- what is met while pulling ---- */
+
+static void begin_if(Source *s, const Node *n) {
+    for (size_t i = 0; i < n->as.branches.count; i++) {
+        const Branch *b = &n->as.branches.branches[i];
+        bool taken = true;
+        if (b->condition && !eval_condition(s->ev, b->condition, &taken)) return;
+        if (!taken) continue;
+        push(s, FRAME_BRANCH, b->body.tokens, b->body.begin, b->body.end);
+        return;
+    }
+}
+
+static void begin_for(Source *s, const Node *n) {
+    Eval *ev = s->ev;
+    double from, to, step = 1;
+    if (!eval_float(ev, n->as.for_loop.from, &from) || !eval_float(ev, n->as.for_loop.to, &to)) return;
+    if (n->as.for_loop.step && !eval_float(ev, n->as.for_loop.step, &step)) return;
+    if (!value_is_true(step)) {
+        diag_error(ev->diags, n->as.for_loop.step->span, "the step of #for is 0");
+        return;
+    }
+    Value v = value_float(from);
+    slot_set(ev, scope_declare(ev, n->as.for_loop.name, true), &v);
+    Frame *f = push(s, FRAME_FOR, n->as.for_loop.body.tokens, 0, 0);
+    f->node = n;
+    f->to = to;
+    f->step = step;
+    if (!repeat_for(s, f, true)) pop(s);
+}
+
+static void begin_while(Source *s, const Node *n, uint32_t head) {
+    Frame *f = push(s, FRAME_WHILE, n->as.loop.body.tokens, 0, 0);
+    f->node = n;
+    f->head = head;
+    bool go_on;
+    if (!eval_condition(s->ev, n->as.loop.condition, &go_on) || !go_on || !next_pass(s, f)) {
+        pop(s);
+        return;
+    }
+    to_body(f, &n->as.loop.body);
+}
+
+static void begin_switch(Source *s, const Node *n) {
+    double subject;
+    if (!eval_float(s->ev, n->as.switch_.subject, &subject)) return;
+    for (size_t i = 0; i < n->as.switch_.count; i++) {
+        if (!run_case_matches(s->ev, &n->as.switch_.cases[i], subject)) continue;
+        Frame *f = push(s, FRAME_SWITCH, n->as.switch_.cases[i].body.tokens, 0, 0);
+        f->node = n;
+        f->next_case = i;
+        next_case(s, f);
+        return;
+    }
+}
+
+static void begin_include(Source *s, const Node *n) {
+    Span span;
+    TokenList *list = eval_load_include(s->ev, n, &span);
+    if (!list) {
+        fail(s);
+        return;
+    }
+    Frame *f = push(s, FRAME_INCLUDE, list, 0, list->count - 1);
+    scope_enter(s->ev, &f->scope);
+    f->record = (CallRecord){.outer = s->ev->calls, .span = span};
+    s->ev->calls = &f->record;
+    s->ev->call_depth++;
+    s->ev->include_depth++;
+}
+
+static void begin_call(Source *s, Frame *from, const Macro *macro, Span name_span);
+
+static void source_init(Source *s, Eval *ev, Parser *p, const ParserHost *host, Frame *frame, uint32_t at);
+static void make_host(ParserHost *host, Source *s);
+
+/* Reads a directive's head on a slow road of its own. */
+static const Node *slow_head(Source *outer, Frame *f, uint32_t at, uint32_t *next) {
+    Source inner;
+    Parser p;
+    ParserHost host;
+    source_init(&inner, outer->ev, &p, &host, f, at);
+    p.block = outer->parser->block;
+    parser_take(&p);
+    Node *n = parser_directive(&p, f->list, at, next);
+    while (inner.top != &inner.base) pop(&inner);
+    if (!n) {
+        outer->parser->failed = true;
+        return NULL;
+    }
+    if (*next == 0) *next = p.has_window && inner.window_frame == &inner.base ? inner.window_at : inner.base.at;
+    return n;
+}
+
+/* The directive at `at`: its head parsed, *next the token after all of it. */
+static const Node *head_at(Source *s, Frame *f, uint32_t at, uint32_t *next) {
+    Parser p = {.arena = s->ev->parse, .diags = s->ev->diags, .keywords = &s->ev->keywords, .host = &s->ev->fast_host, .list = f->list,
+                .at = at, .end = f->end, .heads_only = true};
+    parser_take(&p);
+    Node *n = parser_directive(&p, f->list, at, next);
+    bool holds = n != NULL;
+    for (size_t i = 0; holds && i < p.assumptions.count; i++) {
+        const Assumption *a = &p.assumptions.items[i];
+        holds = a->class != NAME_MACRO || !a->call || macro_binding(s->ev, a->macro) >= a->call->need;
+    }
+    if (!holds) return slow_head(s, f, at, next);
+    *next = p.at;
+    return n;
+}
+
+static void begin_directive(Source *s) {
+    Frame *f = s->top;
+    uint32_t at = f->at, next = 0;
+    const Node *n = head_at(s, f, at, &next);
+    if (!n) return;
+    f->at = next;
+    switch (n->kind) {
+    case NODE_IF: begin_if(s, n); break;
+    case NODE_WHILE: begin_while(s, n, at); break;
+    case NODE_FOR: begin_for(s, n); break;
+    case NODE_SWITCH: begin_switch(s, n); break;
+    case NODE_BREAK: break_out(s); break;
+    case NODE_INCLUDE: begin_include(s, n); break;
+    default: {
+        Sink none = {.kind = SINK_NONE};
+        run_node(s->ev, n, &none);
+    }
+    }
+    if (s->ev->stopped) fail(s);
+}
+
+static void begin_call(Source *s, Frame *from, const Macro *macro, Span name_span) {
+    Eval *ev = s->ev;
+    Source inner;
+    Parser p;
+    ParserHost host;
+    NodeList arguments = {0};
+    source_init(&inner, ev, &p, &host, from, from->at);
+    inner.at_start = false;
+    bool ok = parser_arguments(&p, &arguments);
+    Span span = span_join(name_span, p.last.span);
+    while (inner.top != &inner.base) pop(&inner);
+    from->at = inner.base.at;
+    Frame *f = ok ? push(s, FRAME_MACRO, macro->body.tokens, macro->body.begin, macro->body.end) : NULL;
+    if (f && macro_enter(ev, macro, &arguments, span, &f->scope, &f->record)) return;
+    if (f) s->top = f->outer;
+    fail(s);
+}
+
+/* ---- ParserHost ---- */
+
+static bool is_parameter(const Parser *p, Name name) {
+    for (size_t i = 0; i < p->parameter_count; i++)
+        if (p->parameters[i] == name) return true;
+    return false;
+}
+
+static Token value_token(Eval *ev, const Token *word, const Slot *slot) {
+    Token t = {.kind = TOKEN_VALUE, .span = word->span};
+    Value *v = arena_new(&ev->temp, Value);
+    *v = slot_get(ev, slot);
+    t.as.value = v;
+    if (v->kind == VALUE_FUNCTION || v->kind == VALUE_SPLINE) t.keyword = KW_function;
+    return t;
+}
+
+/* Whether a name stays a name: an index's running name, a word of this block, something not declared. */
+static bool stays_name(const Source *s, const Parser *p, const Token *t) {
+    const Macro *macro;
+    if (t->keyword || is_parameter(p, t->as.name) || context_is_item(p->block, t->as.name)) return true;
+    return scope_classify(s->ev, t->as.name, &macro) == NAME_UNKNOWN;
+}
+
+static Token pull(void *context, Parser *p) {
+    Source *s = context;
+    for (;;) {
+        Frame *f = s->top;
+        if (p->failed || s->ev->stopped) break;
+        if (f->at >= f->end) {
+            if (f == &s->base) break;
+            end_frame(s);
+            continue;
+        }
+        const Token *t = &f->list->items[f->at];
+        bool start = s->at_start;
+        s->at_start = false;
+        s->window_frame = f;
+        s->window_at = f->at;
+        if (t->kind == TOKEN_DIRECTIVE && !start) {
+            begin_directive(s);
+            continue;
+        }
+        f->at++;
+        if (t->kind != TOKEN_WORD || p->raw || stays_name(s, p, t)) return *t;
+        const Macro *macro;
+        if (scope_classify(s->ev, t->as.name, &macro) != NAME_MACRO) return value_token(s->ev, t, scope_find(s->ev, t->as.name)->slot);
+        if (f->at >= f->end || f->list->items[f->at].kind != '(') return *t;
+        begin_call(s, f, macro, t->span);
+    }
+    if (s->ev->stopped) p->failed = true;
+    Frame *f = s->top;
+    Span last = f->at > 0 ? f->list->items[f->at - 1].span : f->list->items[0].span;
+    return (Token){.kind = TOKEN_END, .span = {last.file, last.end, last.end}};
+}
+
+static const Token *after(void *context, uint32_t skip) {
+    static const Token end = {.kind = TOKEN_END};
+    Source *s = context;
+    const Frame *f = s->top;
+    return f->at + skip < f->list->count ? &f->list->items[f->at + skip] : &end;
+}
+
+static bool take_body(void *context, Body *body) {
+    Source *s = context;
+    Frame *f = s->window_frame;
+    if (f != s->top || f->at == 0) return false;
+    uint32_t close = f->list->items[s->window_at].match;
+    if (close == 0 || close >= f->end) return false;
+    *body = (Body){.tokens = f->list, .begin = s->window_at + 1, .end = close};
+    f->at = close + 1;
+    return true;
+}
+
+static Node *fold(void *context, Node *node) {
+    Source *s = context;
+    Value *v = arena_new(&s->ev->temp, Value);
+    *v = eval_node(s->ev, node);
+    Node *n = arena_new(&s->ev->temp, Node);
+    n->kind = NODE_VALUE;
+    n->op = node->kind;
+    n->span = node->span;
+    n->as.value = v;
+    return n;
+}
+
+static size_t groups_ended(void *context) { return ((Source *)context)->groups_ended; }
+
+static NameClass classify(void *context, Name name, const void **macro) {
+    const Macro *m;
+    NameClass class = scope_classify(((Source *)context)->ev, name, &m);
+    *macro = m;
+    return class;
+}
+
+static Binding binding(void *context, const void *macro) { return macro_binding(((Source *)context)->ev, macro); }
+
+static void make_host(ParserHost *host, Source *s) {
+    *host = (ParserHost){.context = s, .classify = classify, .macro_binding = binding, .pull = pull, .after = after,
+                         .take_body = take_body, .fold = fold, .groups_ended = groups_ended};
+}
+
+static void source_init(Source *s, Eval *ev, Parser *p, const ParserHost *host, Frame *frame, uint32_t at) {
+    *s = (Source){.ev = ev, .parser = p, .at_start = true};
+    s->base = (Frame){.kind = FRAME_BASE, .list = frame->list, .at = at, .end = frame->end};
+    s->top = &s->base;
+    make_host((ParserHost *)(uintptr_t)host, s);
+    *p = (Parser){.arena = &ev->temp, .diags = ev->diags, .keywords = &ev->keywords, .host = host, .slow = true, .list = frame->list};
+}
+
+/* ---- statements ---- */
+
+/* After a mistake: past the next ';' or bracket that closes more than was opened, or up to a directive. */
+static uint32_t recover(const TokenList *list, uint32_t at, uint32_t end) {
+    int depth = 0;
+    for (; at < end; at++) {
+        const Token *t = &list->items[at];
+        if (t->kind == '{' || t->kind == '(' || t->kind == '[') {
+            if (t->match && t->match < end) at = t->match;
+            else depth++;
+        } else if (t->kind == ';' || (t->kind == '}' && depth-- <= 0)) {
+            return at + 1;
+        } else if (t->kind == TOKEN_DIRECTIVE && depth <= 0 && t->keyword != KW_end && t->keyword != KW_else) {
+            return at;
+        }
+    }
+    return end;
+}
+
+Flow run_slow(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink) {
+    Source s;
+    Parser p;
+    ParserHost host;
+    Frame frame = {.list = program->tokens, .end = end};
+    uint32_t begin = *at;
+    const Token *first = &program->tokens->items[begin];
+    if (!eval_deeper(ev, first->span)) return FLOW_STOP;
+    source_init(&s, ev, &p, &host, &frame, begin);
+    p.block = sink->kind == SINK_ITEMS ? sink->block : NULL;
+    Flow flow = FLOW_NEXT;
+    if (first->kind == TOKEN_DIRECTIVE && first->match && first->keyword != KW_macro) {
+        /* A group: its branches are text like any other. */
+        s.at_start = false;
+        if (parser_at_end(&p) && !p.failed) goto done;
+    }
+    do {
+        s.at_start = s.at_start && s.base.at == begin;
+        bool directive = s.top == &s.base && s.base.at == begin && first->kind == TOKEN_DIRECTIVE && !p.has_window;
+        Node *n;
+        if (directive) {
+            uint32_t next;
+            parser_take(&p);
+            n = parser_directive(&p, program->tokens, begin, &next);
+            if (n && next) s.base.at = next;
+        } else {
+            n = parser_statement(&p);
+        }
+        if (p.failed) break;
+        flow = run_node(ev, n, sink);
+    } while (flow == FLOW_NEXT && !p.failed && (s.top != &s.base || (p.has_window && s.window_frame != &s.base && p.window.kind != TOKEN_END)));
+done:
+    while (s.top != &s.base) pop(&s);
+    if (p.failed) *at = recover(program->tokens, s.base.at > begin ? s.base.at : begin + 1, end);
+    else *at = p.has_window && s.window_frame == &s.base && p.window.kind != TOKEN_END ? s.window_at : s.base.at;
+    if (p.failed && sink->kind == SINK_SINGLE) sink->filled = true;
+    if (*at <= begin) *at = begin + 1;
+    ev->nesting--;
+    if (ev->stopped) return FLOW_STOP;
+    return flow == FLOW_NEXT ? s.flow : flow;
+}

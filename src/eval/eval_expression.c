@@ -1,0 +1,194 @@
+#include "eval/eval_state.h"
+
+#include <math.h>
+
+void eval_undeclared(Eval *ev, Name name, Span span) {
+    Diagnostic *d = diag_error(ev->diags, span, "'%s' is not declared", name->text);
+    if (!d) return;
+    const char *candidates[512];
+    size_t count = 0;
+    for (uint32_t i = 0; i < ev->names->slot_count && count < VTS_ARRAY_COUNT(candidates); i++) {
+        Name other = ev->names->slots[i];
+        VarBinding *b = other ? scope_find(ev, other) : NULL;
+        if (b && b->slot->set) candidates[count++] = other->text;
+    }
+    const char *closest = closest_word(name->text, candidates, count);
+    if (closest) diag_hint(ev->diags, d, "did you mean '%s'?", closest);
+}
+
+static Value eval_name(Eval *ev, const Node *node) {
+    VarBinding *b = scope_find(ev, node->as.name);
+    if (!b || !b->slot->set) {
+        eval_undeclared(ev, node->as.name, node->span);
+        return value_error();
+    }
+    if (b->slot->value.kind == VALUE_FLOAT) return b->slot->value;
+    if (b->slot->value.kind == VALUE_MACRO) {
+        diag_error(ev->diags, node->span, "'%s' is a macro: it is called with ( )", node->as.name->text);
+        return value_error();
+    }
+    return slot_get(ev, b->slot);
+}
+
+static Value eval_vector(Eval *ev, const Node *node) {
+    double out[12];
+    int size = (int)node->as.list.count;
+    bool ok = true;
+    for (int i = 0; i < size; i++) ok = eval_float(ev, node->as.list.items[i], &out[i]) && ok;
+    return ok ? value_vector(ev, out, size) : value_error();
+}
+
+static Value eval_index(Eval *ev, const Node *node) {
+    const Node *base = node->as.apply.base;
+    Value v;
+    VarBinding *b = base->kind == NODE_NAME ? scope_find(ev, base->as.name) : NULL;
+    v = b && b->slot->set && b->slot->value.kind == VALUE_ARRAY ? b->slot->value : eval_node(ev, base);
+    double index;
+    if (!eval_float(ev, node->as.apply.list.items[0], &index) || v.kind == VALUE_ERROR) return value_error();
+    if (v.kind != VALUE_ARRAY) {
+        diag_error(ev->diags, base->span, "expected an array before '[', found %s", value_kind_text(v.kind));
+        return value_error();
+    }
+    Slot *slot = array_slot(ev, v.as.array, index, node->span);
+    if (!slot) return value_error();
+    if (!slot->set) {
+        diag_error(ev->diags, node->span, "this element of the array was never set");
+        return value_error();
+    }
+    return slot_get(ev, slot);
+}
+
+static Value eval_dot(Eval *ev, const Node *node) {
+    Value v = eval_node(ev, node->as.operand.a);
+    if (v.kind == VALUE_ERROR) return v;
+    if (!value_is_numeric(&v)) {
+        diag_error(ev->diags, node->span, "%s has no components", value_kind_text(v.kind));
+        return v = value_error();
+    }
+    if (node->op == DOT_GRAY)
+        return value_float(0.297 * value_component(&v, 0) + 0.589 * value_component(&v, 1) + 0.114 * value_component(&v, 2));
+    return value_float(value_component(&v, node->op));
+}
+
+/* Both branches run, as in POV-Ray. */
+static Value eval_choice(Eval *ev, const Node *node) {
+    bool yes;
+    bool ok = eval_condition(ev, node->as.operand.a, &yes);
+    Value b = eval_node(ev, node->as.operand.b), c = eval_node(ev, node->as.operand.c);
+    return !ok ? value_error() : yes ? b : c;
+}
+
+Value eval_node(Eval *ev, const Node *node) {
+    switch (node->kind) {
+    case NODE_NUMBER: return value_float(node->as.number);
+    case NODE_STRING: return (Value){.kind = VALUE_STRING, .as.string = {node->as.string->text, node->as.string->length}};
+    case NODE_VALUE: return *node->as.value;
+    case NODE_NAME: return eval_name(ev, node);
+    case NODE_CONSTANT: return eval_constant(ev, node);
+    case NODE_VECTOR: return eval_vector(ev, node);
+    case NODE_INDEX: return eval_index(ev, node);
+    case NODE_DOT: return eval_dot(ev, node);
+    case NODE_UNARY: return value_unary(ev, node->op, eval_node(ev, node->as.operand.a), node->span);
+    case NODE_BINARY: {
+        Value a = eval_node(ev, node->as.operand.a);
+        return value_binary(ev, node->op, a, eval_node(ev, node->as.operand.b), node->span);
+    }
+    case NODE_CONDITION: return eval_choice(ev, node);
+    case NODE_CALL: return eval_call(ev, node);
+    case NODE_BUILTIN: return eval_builtin(ev, node);
+    case NODE_COLOR: return eval_color(ev, node);
+    case NODE_ARRAY: return eval_array(ev, node);
+    case NODE_FUNCTION: return eval_function(ev, node);
+    case NODE_BLOCK: return eval_block(ev, node, NULL);
+    default: return value_error();
+    }
+}
+
+bool eval_float(Eval *ev, const Node *node, double *out) {
+    Value v = eval_node(ev, node);
+    return value_to_float(ev, &v, node->span, out);
+}
+
+bool eval_condition(Eval *ev, const Node *node, bool *out) {
+    double number;
+    *out = false;
+    if (!eval_float(ev, node, &number)) return false;
+    *out = value_is_true(number);
+    return true;
+}
+
+bool eval_string(Eval *ev, const Node *node, const char **text, size_t *length) {
+    Value v = eval_node(ev, node);
+    return value_to_string(ev, &v, node->span, text, length);
+}
+
+Slot *eval_target(Eval *ev, const Node *target, bool *failed) {
+    if (target->kind == NODE_NAME) {
+        VarBinding *b = scope_find(ev, target->as.name);
+        return b ? b->slot : NULL;
+    }
+    if (target->kind != NODE_INDEX) return NULL;
+    Slot *base = eval_target(ev, target->as.apply.base, failed);
+    double index;
+    if (!eval_float(ev, target->as.apply.list.items[0], &index)) *failed = true;
+    if (*failed || !base || !base->set) return NULL;
+    if (base->value.kind != VALUE_ARRAY) {
+        *failed = true;
+        if (base->value.kind != VALUE_ERROR)
+            diag_error(ev->diags, target->as.apply.base->span, "expected an array before '[', found %s", value_kind_text(base->value.kind));
+        return NULL;
+    }
+    Slot *slot = array_slot(ev, base->value.as.array, index, target->span);
+    *failed = slot == NULL;
+    return slot;
+}
+
+/* IEC 61966-2-1: the display's encoding to linear light. */
+static double srgb_to_linear(double c) { return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4); }
+
+static int component_index(int keyword) {
+    switch (keyword) {
+    case KW_red: return 0;
+    case KW_green: return 1;
+    case KW_blue: return 2;
+    case KW_filter: return 3;
+    default: return 4;
+    }
+}
+
+static void color_from(int keyword, const Value *v, double out[5]) {
+    bool whole = keyword == KW_color || keyword == KW_rgbft || keyword == KW_srgbft;
+    int given = v->kind == VALUE_FLOAT ? (whole && keyword == KW_color ? 3 : 5) : v->size;
+    for (int i = 0; i < 5; i++) out[i] = i < given || v->kind != VALUE_FLOAT ? value_component(v, i) : 0;
+    if (keyword == KW_rgb || keyword == KW_srgb) {
+        if (v->kind == VALUE_FLOAT) out[3] = out[4] = 0;
+        else if (v->size <= 3) out[3] = out[4] = 0;
+    } else if (keyword == KW_rgbf || keyword == KW_srgbf) {
+        if (v->size <= 4) out[4] = 0;
+    } else if (keyword == KW_rgbt || keyword == KW_srgbt) {
+        if (v->size <= 4) {
+            out[4] = out[3];
+            out[3] = 0;
+        }
+    }
+    if (keyword == KW_srgb || keyword == KW_srgbf || keyword == KW_srgbt || keyword == KW_srgbft)
+        for (int i = 0; i < 3; i++) out[i] = srgb_to_linear(out[i]);
+}
+
+Value eval_color(Eval *ev, const Node *node) {
+    double c[5] = {0};
+    bool ok = true;
+    for (size_t i = 0; i < node->as.color.count; i++) {
+        const ColorPart *part = &node->as.color.parts[i];
+        Value v = eval_node(ev, part->value);
+        if (keyword_class((Keyword)part->component) == KEYWORD_COLOR) {
+            if (!value_is_numeric(&v)) ok = value_to_vector(ev, &v, part->value->span, c, 5);
+            else color_from(part->component, &v, c);
+        } else {
+            ok = value_to_float(ev, &v, part->value->span, &c[component_index(part->component)]) && ok;
+        }
+    }
+    Value v = value_vector(ev, c, 5);
+    v.kind = VALUE_COLOR;
+    return ok ? v : value_error();
+}

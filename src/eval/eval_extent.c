@@ -1,0 +1,78 @@
+/* min_extent(), max_extent(): bounding boxes of objects. */
+#include "eval/eval_state.h"
+
+static Box3 box_of(Vec3 a, Vec3 b) { return box3_add_point(box3_add_point(box3_empty(), a), b); }
+
+static Box3 cone_box(Vec3 base, double r0, Vec3 cap, double r1) {
+    Vec3 axis = vec3_normalize(vec3_sub(cap, base));
+    Vec3 spread = vec3(sqrt(double_max(1 - axis.x * axis.x, 0)), sqrt(double_max(1 - axis.y * axis.y, 0)), sqrt(double_max(1 - axis.z * axis.z, 0)));
+    Box3 a = box_of(vec3_madd(base, spread, -r0), vec3_madd(base, spread, r0));
+    return box3_union(a, box_of(vec3_madd(cap, spread, -r1), vec3_madd(cap, spread, r1)));
+}
+
+static bool object_box(const Object *o, Box3 *out);
+
+static bool children_box(const Object *o, Box3 *out) {
+    bool common = o->kind == OBJECT_INTERSECTION;
+    size_t count = o->kind == OBJECT_DIFFERENCE ? size_min(o->as.children.count, 1) : o->as.children.count;
+    *out = box3_empty();
+    for (size_t i = 0; i < count; i++) {
+        Box3 b;
+        if (!object_box(o->as.children.items[i], &b)) {
+            if (common) continue;
+            return false;
+        }
+        *out = common && !box3_is_empty(*out) ? (Box3){vec3_max(out->min, b.min), vec3_min(out->max, b.max)} : box3_union(*out, b);
+    }
+    return !box3_is_empty(*out);
+}
+
+static bool own_box(const Object *o, Box3 *out) {
+    Vec3 r;
+    switch (o->kind) {
+    case OBJECT_SPHERE:
+        r = vec3_splat(o->as.sphere.radius);
+        *out = box_of(vec3_sub(o->as.sphere.center, r), vec3_add(o->as.sphere.center, r));
+        return true;
+    case OBJECT_BOX: *out = box_of(o->as.box.corner1, o->as.box.corner2); return true;
+    case OBJECT_CYLINDER: case OBJECT_CONE:
+        *out = cone_box(o->as.cone.base, o->as.cone.base_radius, o->as.cone.cap, o->as.cone.cap_radius);
+        return true;
+    case OBJECT_TORUS:
+        r = vec3(o->as.torus.major_radius + o->as.torus.minor_radius, o->as.torus.minor_radius, o->as.torus.major_radius + o->as.torus.minor_radius);
+        *out = box_of(vec3_negate(r), r);
+        return true;
+    case OBJECT_DISC:
+        *out = cone_box(o->as.disc.center, o->as.disc.radius, o->as.disc.center, o->as.disc.radius);
+        return true;
+    case OBJECT_TRIANGLES:
+        *out = box3_empty();
+        for (size_t i = 0; i < o->as.mesh->vertex_count; i++) *out = box3_add_point(*out, o->as.mesh->vertices[i]);
+        return true;
+    case OBJECT_UNION: case OBJECT_MERGE: case OBJECT_INTERSECTION: case OBJECT_DIFFERENCE: return children_box(o, out);
+    case OBJECT_TEXEL: *out = o->as.texel->bounds; return true;
+    default: return false;
+    }
+}
+
+/* False for what has no end. */
+static bool object_box(const Object *o, Box3 *out) {
+    if (!own_box(o, out)) return false;
+    /* A sphere stays round under rotation: its box is exact where the matrix is a similarity; POV-Ray takes the box's box too. */
+    *out = box3_transform(&o->transform, *out);
+    return true;
+}
+
+Value eval_extent(Eval *ev, const Node *node) {
+    if (!builtin_argument_count(ev, node, 1, 1)) return value_error();
+    Value v = eval_node(ev, node->as.list.items[0]);
+    if (v.kind == VALUE_ERROR) return v;
+    if (v.kind != VALUE_OBJECT) {
+        diag_error(ev->diags, node->as.list.items[0]->span, "expected an object, found %s", value_kind_text(v.kind));
+        return value_error();
+    }
+    Box3 box;
+    if (!object_box(v.as.object, &box)) box = (Box3){vec3_splat(-1e10), vec3_splat(1e10)};
+    Vec3 p = node->op == KW_min_extent ? box.min : box.max;
+    return value_vector(ev, (double[]){p.x, p.y, p.z}, 3);
+}

@@ -1,0 +1,29 @@
+/* Functions of the language: what the files that make them share. */
+#ifndef VTS_EVAL_EVAL_FUNCTION_H
+#define VTS_EVAL_EVAL_FUNCTION_H
+
+#include "eval/eval_state.h"
+
+enum { FUNCTION_INPUTS = 56 };
+
+typedef struct EvalFunction {
+    UserFunction base;
+    const char *missing; /* why it cannot be evaluated; NULL: it can */
+} EvalFunction;
+
+/* Functions that vts adds, by name: perlin, fbm … They are hidden by whatever a scene declares under their names. */
+typedef struct KnownFunction {
+    const char *name;
+    size_t arguments;
+    bool takes_noise; /* the first argument is the name of a noise */
+    /* The value of the call for the compiled arguments; false after a report. NULL: not for functions. */
+    bool (*compile)(Eval *ev, TapeBuilder *tape, const Node *call, const TapeRef *arguments, size_t count, TapeRef *out);
+} KnownFunction;
+const KnownFunction *known_function_find(Name name);
+
+/* function { internal(id) }, function { spline { S } }, function { transform { T } } */
+Value internal_function(Eval *ev, const Node *node, int id);
+Value spline_function(Eval *ev, const Node *node, const Spline *spline);
+Value transform_function(Eval *ev, const Node *node, const Transform *transform);
+
+#endif

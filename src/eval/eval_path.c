@@ -1,0 +1,102 @@
+/* Where files are looked for, and which a scene may touch: scenes come from strangers. */
+#define _XOPEN_SOURCE 700 /* realpath */
+
+#include "eval/eval_files.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static const char *folder_of(Eval *ev, const char *path) {
+    const char *slash = strrchr(path, '/');
+    if (!slash) return ".";
+    return arena_printf(ev->parse, "%.*s", (int)(slash == path ? 1 : slash - path), path);
+}
+
+/* `path`, once all links are followed, lies in `folder`. */
+static bool lies_in(const char *path, const char *folder) {
+    char *real = realpath(folder, NULL);
+    if (!real) return false;
+    size_t n = strlen(real);
+    bool in = strncmp(path, real, n) == 0 && (path[n] == '/' || path[n] == '\0' || (n == 1 && real[0] == '/'));
+    free(real);
+    return in;
+}
+
+static bool lies_in_any(const char *path, const char *const *folders, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (lies_in(path, folders[i])) return true;
+    return false;
+}
+
+bool path_may_read(const Eval *ev, const char *path) {
+    const EvalOptions *o = ev->options;
+    char *real = realpath(path, NULL);
+    if (!real) return false;
+    bool may = lies_in(real, ev->scene_folder) || lies_in_any(real, o->include_dirs, o->include_dir_count) ||
+               lies_in_any(real, o->allow_read, o->allow_read_count) || (o->stdlib_dir && lies_in(real, o->stdlib_dir));
+    free(real);
+    return may;
+}
+
+/* A file that does not exist yet is judged by its folder. */
+bool path_may_write(Eval *ev, const char *path) {
+    char *real = realpath(folder_of(ev, path), NULL);
+    if (!real) return false;
+    bool may = lies_in_any(real, ev->options->allow_write, ev->options->allow_write_count);
+    free(real);
+    struct stat info;
+    if (may && lstat(path, &info) == 0 && !S_ISREG(info.st_mode)) return false;
+    return may;
+}
+
+static bool is_file(const char *path) {
+    struct stat info;
+    return stat(path, &info) == 0 && !S_ISDIR(info.st_mode);
+}
+
+static const char *join(Eval *ev, const char *folder, const char *name) {
+    return strcmp(folder, ".") == 0 ? arena_strdup(ev->parse, name) : arena_printf(ev->parse, "%s/%s", folder, name);
+}
+
+const char *path_find(Eval *ev, const char *name, Span from, Diagnostic **refused, StrBuf *looked_in) {
+    const EvalOptions *o = ev->options;
+    const char *folders[64];
+    size_t count = 0;
+    SourcePlace place = source_locate(ev->sources, from);
+    if (place.file) folders[count++] = folder_of(ev, place.file->path);
+    folders[count++] = ev->scene_folder;
+    for (size_t i = 0; i < o->include_dir_count && count < VTS_ARRAY_COUNT(folders) - 1; i++) folders[count++] = o->include_dirs[i];
+    if (o->stdlib_dir) folders[count++] = o->stdlib_dir;
+    if (name[0] == '/') {
+        folders[0] = "";
+        count = 1;
+    }
+    for (size_t i = 0; i < count; i++) {
+        bool seen = false;
+        for (size_t k = 0; k < i && !seen; k++) seen = strcmp(folders[i], folders[k]) == 0;
+        if (seen) continue;
+        const char *path = name[0] == '/' ? name : join(ev, folders[i], name);
+        if (!is_file(path)) {
+            if (looked_in) strbuf_addf(looked_in, "%s%s", looked_in->size ? ", " : "", name[0] == '/' ? "/" : folders[i]);
+            continue;
+        }
+        if (path_may_read(ev, path)) return path;
+        if (refused) {
+            *refused = diag_error(ev->diags, from, "the scene may not read '%s'", path);
+            diag_hint(ev->diags, *refused, "--allow-read gives it another folder");
+            return NULL;
+        }
+    }
+    return NULL;
+}
+
+bool file_exists_for(Eval *ev, const char *name, Span span) {
+    return files_in_memory(ev, name) != NULL || path_find(ev, name, span, NULL, NULL) != NULL;
+}
+
+void eval_set_scene_path(Eval *ev, const char *path) {
+    ev->scene_path = path;
+    ev->scene_folder = folder_of(ev, path);
+}

@@ -1,0 +1,299 @@
+#include "eval/eval_state.h"
+
+#include <math.h>
+
+enum { NESTING_LIMIT = 2000 };
+
+bool eval_deeper(Eval *ev, Span span) {
+    if (ev->nesting < NESTING_LIMIT) {
+        ev->nesting++;
+        return true;
+    }
+    diag_error(ev->diags, span, "nested too deeply");
+    ev->stopped = true;
+    return false;
+}
+
+/* ---- statements and their memo ---- */
+
+Program *eval_program(Eval *ev, TokenList *tokens) {
+    uint32_t id = tokens->file->id;
+    if (id >= ev->program_count) {
+        uint32_t count = ev->program_count ? ev->program_count * 2 : 16;
+        while (count <= id) count *= 2;
+        Program **larger = arena_new_array(ev->parse, Program *, count);
+        for (uint32_t i = 0; i < ev->program_count; i++) larger[i] = ev->programs[i];
+        ev->programs = larger;
+        ev->program_count = count;
+    }
+    if (!ev->programs[id]) {
+        Program *p = arena_new(ev->parse, Program);
+        p->tokens = tokens;
+        p->memo = arena_new_array(ev->parse, Statement *, tokens->count);
+        ev->programs[id] = p;
+    }
+    return ev->programs[id];
+}
+
+/* What a call's macro must be for the fast road: the text around the call would read its body as one operand. */
+static bool calls_hold(Eval *ev, const Assumption *a, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (a[i].class == NAME_MACRO && a[i].call && macro_binding(ev, a[i].macro) < a[i].call->need) return false;
+    return true;
+}
+
+static bool still_holds(Eval *ev, Statement *s) {
+    for (uint32_t i = 0; i < s->assumption_count; i++) {
+        const Assumption *a = &s->assumptions[i];
+        const Macro *macro;
+        if (scope_classify(ev, a->name, &macro) != a->class || macro != a->macro) return false;
+    }
+    if (s->stamp == ev->macro_stamp) return true;
+    s->stamp = ev->macro_stamp;
+    return s->node == NULL || calls_hold(ev, s->assumptions, s->assumption_count);
+}
+
+/* Names are looked at several times while a statement is read. */
+static uint32_t drop_repetitions(Assumption *a, size_t count) {
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        bool seen = false;
+        for (size_t k = 0; k < kept && !seen; k++) seen = a[k].name == a[i].name && (!a[i].call || a[k].call == a[i].call);
+        if (!seen) a[kept++] = a[i];
+    }
+    return (uint32_t)kept;
+}
+
+const Statement *statement_at(Eval *ev, Program *program, uint32_t at, uint32_t end, Name block) {
+    Statement *s = program->memo[at];
+    if (s && s->end == end && s->block == block && still_holds(ev, s)) return s;
+    Parser p = {.arena = ev->parse, .diags = ev->diags, .keywords = &ev->keywords, .host = &ev->fast_host, .list = program->tokens,
+                .at = at, .end = end, .block = block};
+    Node *n = parser_statement(&p);
+    if (!s) s = program->memo[at] = arena_new(ev->parse, Statement);
+    if (n && !calls_hold(ev, p.assumptions.items, p.assumptions.count)) n = NULL;
+    *s = (Statement){.node = n, .next = p.at, .end = end, .block = block, .assumptions = p.assumptions.items,
+                     .assumption_count = drop_repetitions(p.assumptions.items, p.assumptions.count), .stamp = ev->macro_stamp};
+    return s;
+}
+
+Flow run_statement(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink) {
+    Name block = sink->kind == SINK_ITEMS ? sink->block : NULL;
+    const Statement *s = statement_at(ev, program, *at, end, block);
+    if (!s->node) return run_slow(ev, program, at, end, sink);
+    *at = s->next;
+    return run_node(ev, s->node, sink);
+}
+
+Flow run_body(Eval *ev, const Body *body, Sink *sink) {
+    Flow flow = FLOW_NEXT;
+    if (!body->tokens) {
+        for (size_t i = 0; i < body->items.count && flow == FLOW_NEXT; i++) flow = run_node(ev, body->items.items[i], sink);
+        return flow;
+    }
+    Program *program = eval_program(ev, body->tokens);
+    for (uint32_t at = body->begin; at < body->end && flow == FLOW_NEXT;) {
+        ArenaMark mark = arena_mark(&ev->temp);
+        flow = run_statement(ev, program, &at, body->end, sink);
+        if (!(sink->kind == SINK_SINGLE && sink->filled)) arena_reset_to(&ev->temp, mark);
+        if (ev->stopped) return FLOW_STOP;
+    }
+    return flow;
+}
+
+/* ---- directives ---- */
+
+static Flow run_if(Eval *ev, const Node *node, Sink *sink) {
+    for (size_t i = 0; i < node->as.branches.count; i++) {
+        const Branch *b = &node->as.branches.branches[i];
+        bool taken = true;
+        if (b->condition && !eval_condition(ev, b->condition, &taken)) return FLOW_NEXT;
+        if (taken) return run_body(ev, &b->body, sink);
+    }
+    return FLOW_NEXT;
+}
+
+/* Called before each pass. A loop whose pass met an error ends: its condition may depend on what failed. */
+Flow run_loop_guard(Eval *ev, uint64_t *passes, size_t errors, Span span) {
+    if (ev->diags->error_count != errors) return FLOW_BREAK;
+    if (++*passes > ev->options->limits.loops) {
+        diag_error(ev->diags, span, "the loop has made %llu passes without ending", (unsigned long long)ev->options->limits.loops);
+        return FLOW_BREAK;
+    }
+    if (ev->options->interrupted && *ev->options->interrupted) {
+        ev->interrupted = ev->stopped = true;
+        return FLOW_STOP;
+    }
+    return FLOW_NEXT;
+}
+
+static Flow run_while(Eval *ev, const Node *node, Sink *sink) {
+    uint64_t passes = 0;
+    size_t errors = ev->diags->error_count;
+    for (;;) {
+        bool go_on;
+        ArenaMark mark = arena_mark(&ev->temp);
+        if (!eval_condition(ev, node->as.loop.condition, &go_on) || !go_on) return FLOW_NEXT;
+        arena_reset_to(&ev->temp, mark);
+        Flow flow = run_loop_guard(ev, &passes, errors, node->span);
+        if (flow == FLOW_NEXT) flow = run_body(ev, &node->as.loop.body, sink);
+        if (flow != FLOW_NEXT) return flow == FLOW_BREAK ? FLOW_NEXT : flow;
+    }
+}
+
+static Flow run_for(Eval *ev, const Node *node, Sink *sink) {
+    double from, to, step = 1;
+    if (!(eval_float(ev, node->as.for_loop.from, &from) & eval_float(ev, node->as.for_loop.to, &to))) return FLOW_NEXT;
+    if (node->as.for_loop.step && !eval_float(ev, node->as.for_loop.step, &step)) return FLOW_NEXT;
+    if (!value_is_true(step)) {
+        diag_error(ev->diags, node->as.for_loop.step->span, "the step of #for is 0");
+        return FLOW_NEXT;
+    }
+    Name name = node->as.for_loop.name;
+    Value v = value_float(from);
+    Slot *slot = scope_declare(ev, name, true);
+    slot_set(ev, slot, &v);
+    uint64_t passes = 0;
+    size_t errors = ev->diags->error_count;
+    for (;;) {
+        VarBinding *b = scope_find(ev, name);
+        if (!b || b->slot->value.kind != VALUE_FLOAT) {
+            diag_error(ev->diags, node->span, "the variable of this #for no longer holds a float");
+            return FLOW_NEXT;
+        }
+        /* A limit missed by rounding still counts: 0 to 1 by 0.1 makes 11 passes. */
+        double now = b->slot->value.as.number;
+        if (step > 0 ? now > to + 1e-10 : now < to - 1e-10) return FLOW_NEXT;
+        Flow flow = run_loop_guard(ev, &passes, errors, node->span);
+        if (flow == FLOW_NEXT) flow = run_body(ev, &node->as.for_loop.body, sink);
+        if (flow != FLOW_NEXT) return flow == FLOW_BREAK ? FLOW_NEXT : flow;
+        b = scope_find(ev, name);
+        if (b && b->slot->value.kind == VALUE_FLOAT) b->slot->value.as.number += step;
+    }
+}
+
+bool run_case_matches(Eval *ev, const SwitchCase *c, double subject) {
+    double low, high;
+    if (!c->low) return true;
+    if (!eval_float(ev, c->low, &low)) return false;
+    if (!c->high) return !value_is_true(subject - low);
+    return eval_float(ev, c->high, &high) && subject >= low && subject <= high;
+}
+
+/* From the first case that matches on, through the following ones, to a #break. */
+static Flow run_switch(Eval *ev, const Node *node, Sink *sink) {
+    double subject;
+    if (!eval_float(ev, node->as.switch_.subject, &subject)) return FLOW_NEXT;
+    bool found = false;
+    for (size_t i = 0; i < node->as.switch_.count; i++) {
+        const SwitchCase *c = &node->as.switch_.cases[i];
+        found = found || run_case_matches(ev, c, subject);
+        if (!found) continue;
+        Flow flow = run_body(ev, &c->body, sink);
+        if (flow != FLOW_NEXT) return flow == FLOW_BREAK ? FLOW_NEXT : flow;
+    }
+    return FLOW_NEXT;
+}
+
+void run_assign(Eval *ev, const Node *node) {
+    const Node *target = node->as.declare.target, *source = node->as.declare.value;
+    Value v = source->kind == NODE_BLOCK && target->kind == NODE_NAME ? eval_block(ev, source, target->as.name) : eval_node(ev, source);
+    if (target->kind == NODE_NAME) {
+        Slot *slot = scope_declare(ev, target->as.name, node->as.declare.local);
+        slot_set(ev, slot, &v);
+        return;
+    }
+    bool failed = false;
+    Slot *slot = eval_target(ev, target, &failed);
+    if (!slot && !failed) {
+        const Node *base = target;
+        while (base->kind == NODE_INDEX) base = base->as.apply.base;
+        eval_undeclared(ev, base->as.name, base->span);
+    }
+    if (slot && v.kind != VALUE_ERROR) slot_set(ev, slot, &v);
+}
+
+static void run_undef(Eval *ev, const Node *node) {
+    const Node *target = node->as.list.items[0];
+    bool failed = false;
+    if (target->kind == NODE_NAME) {
+        VarBinding *b = scope_find(ev, target->as.name);
+        if (!b || !b->slot->set) diag_warning(ev->diags, target->span, "'%s' is not declared", target->as.name->text);
+        else if (b->slot != &b->own) slot_clear(b->slot);
+        scope_undef(ev, target->as.name);
+        return;
+    }
+    Slot *slot = eval_target(ev, target, &failed);
+    if (slot) slot_clear(slot);
+}
+
+static void run_message(Eval *ev, const Node *node) {
+    const char *text;
+    size_t length;
+    if (!eval_string(ev, node->as.operand.a, &text, &length)) return;
+    EvalStream stream = EVAL_STREAM_DEBUG;
+    switch (node->op) {
+    case KW_error:
+        diag_error(ev->diags, node->span, "#error: %s", text);
+        ev->stopped = true;
+        return;
+    case KW_warning: stream = EVAL_STREAM_WARNING; break;
+    case KW_render: stream = EVAL_STREAM_RENDER; break;
+    case KW_statistics: stream = EVAL_STREAM_STATISTICS; break;
+    default: break;
+    }
+    if (ev->options->on_text) ev->options->on_text(ev->options->context, stream, text);
+}
+
+static void run_version(Eval *ev, const Node *node) {
+    double version;
+    if (!eval_float(ev, node->as.operand.a, &version)) return;
+    if (version > 3.85) diag_error(ev->diags, node->as.operand.a->span, "the scene asks for version %g of the language, this is 3.8 at most", version);
+    else ev->version = version;
+}
+
+static void run_default(Eval *ev, const Node *node) {
+    ArenaMark mark = arena_mark(&ev->blocks);
+    size_t errors = ev->diags->error_count;
+    const EvalBlock *block = eval_block_items(ev, node->as.block.word, node->as.block.word_span, node->span, node->as.block.body);
+    if (errors == ev->diags->error_count) scene_draft_default(ev->draft, &ev->build, block);
+    arena_reset_to(&ev->blocks, mark);
+}
+
+static bool is_macro_call(const Eval *ev, const Node *node) {
+    const Macro *macro;
+    return node->as.apply.base->kind == NODE_NAME && scope_classify(ev, node->as.apply.base->as.name, &macro) == NAME_MACRO;
+}
+
+Flow run_node(Eval *ev, const Node *node, Sink *sink) {
+    Flow flow = FLOW_NEXT;
+    switch (node->kind) {
+    case NODE_DECLARE: run_assign(ev, node); break;
+    case NODE_UNDEF: run_undef(ev, node); break;
+    case NODE_IF: flow = run_if(ev, node, sink); break;
+    case NODE_WHILE: flow = run_while(ev, node, sink); break;
+    case NODE_FOR: flow = run_for(ev, node, sink); break;
+    case NODE_SWITCH: flow = run_switch(ev, node, sink); break;
+    case NODE_BREAK: flow = FLOW_BREAK; break;
+    case NODE_MACRO: run_define_macro(ev, node); break;
+    case NODE_INCLUDE: run_include(ev, node, sink); break;
+    case NODE_VERSION: run_version(ev, node); break;
+    case NODE_DEFAULT: run_default(ev, node); break;
+    case NODE_MESSAGE: run_message(ev, node); break;
+    case NODE_FOPEN: run_fopen(ev, node); break;
+    case NODE_FCLOSE: run_fclose(ev, node); break;
+    case NODE_READ: run_read(ev, node); break;
+    case NODE_WRITE: run_write(ev, node); break;
+    case NODE_WORD: sink_word(ev, sink, node); break;
+    case NODE_ENTRY: sink_entry(ev, sink, node); break;
+    case NODE_LIST: sink_list(ev, sink, node); break;
+    case NODE_EMPTY: case NODE_ERROR: break;
+    case NODE_CALL:
+        if (is_macro_call(ev, node)) return run_call(ev, node, sink);
+        sink_value(ev, sink, eval_node(ev, node), node->span);
+        break;
+    default: sink_value(ev, sink, eval_node(ev, node), node->span); break;
+    }
+    if (ev->diags->error_count && diag_full(ev->diags)) ev->stopped = true;
+    return ev->stopped ? FLOW_STOP : flow;
+}

@@ -1,0 +1,92 @@
+#include "eval/eval_state.h"
+
+#include <string.h>
+
+void scope_enter(Eval *ev, Scope *scope) {
+    *scope = (Scope){.outer = ev->scope, .number = ev->scope ? ev->scope->number + 1 : 0};
+    ev->scope = scope;
+}
+
+static void drop(Eval *ev, VarBinding *b) {
+    ev->bindings[b->name_id] = b->outer;
+    slot_clear(&b->own);
+    b->scope_next = ev->free_bindings;
+    ev->free_bindings = b;
+}
+
+void scope_leave(Eval *ev, Scope *scope) {
+    for (VarBinding *b = scope->bindings, *next; b; b = next) {
+        next = b->scope_next;
+        drop(ev, b);
+    }
+    ev->scope = scope->outer;
+}
+
+static void make_room(Eval *ev, uint32_t id) {
+    if (id < ev->binding_count) return;
+    uint32_t count = ev->binding_count ? ev->binding_count : 1024;
+    while (count <= id) count *= 2;
+    VarBinding **larger = arena_new_array(ev->parse, VarBinding *, count);
+    if (ev->binding_count) memcpy(larger, ev->bindings, ev->binding_count * sizeof *larger);
+    ev->bindings = larger;
+    ev->binding_count = count;
+}
+
+static VarBinding *push(Eval *ev, Name name, Scope *scope) {
+    make_room(ev, name->id);
+    VarBinding *b = ev->free_bindings;
+    if (b) ev->free_bindings = b->scope_next;
+    else b = arena_new(ev->parse, VarBinding);
+    b->slot = &b->own;
+    b->name_id = name->id;
+    b->scope = scope->number;
+    b->outer = ev->bindings[name->id];
+    b->scope_next = scope->bindings;
+    scope->bindings = b;
+    ev->bindings[name->id] = b;
+    return b;
+}
+
+/* A new global goes below whatever locals the name has: there are none, or #declare would have found them. */
+static Scope *global_scope(Eval *ev) {
+    Scope *s = ev->scope;
+    while (s->outer) s = s->outer;
+    return s;
+}
+
+Slot *scope_declare(Eval *ev, Name name, bool local) {
+    VarBinding *b = scope_find(ev, name);
+    if (b && (!local || b->scope == ev->scope->number)) return b->slot;
+    return push(ev, name, local ? ev->scope : global_scope(ev))->slot;
+}
+
+Slot *scope_bind(Eval *ev, Name name, Slot *reference) {
+    VarBinding *b = push(ev, name, ev->scope);
+    if (reference) b->slot = reference;
+    return b->slot;
+}
+
+void scope_undef(Eval *ev, Name name) {
+    VarBinding *b = scope_find(ev, name);
+    if (!b) return;
+    for (Scope *s = ev->scope; s; s = s->outer) {
+        if (s->number != b->scope) continue;
+        for (VarBinding **p = &s->bindings; *p; p = &(*p)->scope_next)
+            if (*p == b) {
+                *p = b->scope_next;
+                drop(ev, b);
+                return;
+            }
+    }
+}
+
+NameClass scope_classify(const Eval *ev, Name name, const Macro **macro) {
+    *macro = NULL;
+    const VarBinding *b = scope_find(ev, name);
+    if (!b || !b->slot->set) return NAME_UNKNOWN;
+    switch (b->slot->value.kind) {
+    case VALUE_MACRO: *macro = b->slot->value.as.macro; return NAME_MACRO;
+    case VALUE_FUNCTION: case VALUE_SPLINE: return NAME_CALLABLE;
+    default: return NAME_PLAIN;
+    }
+}

@@ -1,0 +1,170 @@
+#include "eval/eval_state.h"
+
+#include <string.h>
+
+/* What goes into a block outlives the statement that made it. */
+static Value keep(Eval *ev, Value v) {
+    if (v.kind == VALUE_VECTOR || v.kind == VALUE_COLOR)
+        v.as.components = arena_copy(&ev->blocks, v.as.components, v.size * sizeof(double));
+    else if (v.kind == VALUE_STRING)
+        v.as.string.text = arena_copy(ev->build.arena, v.as.string.text, v.as.string.length + 1); /* builders keep texts */
+    return v;
+}
+
+/* A number, colour or text that directives brought in right after a word continues that word's arguments, as it would if it stood
+ * there. */
+static bool continues_word(const ItemList *items, const Value *v) {
+    if (items->count == 0 || items->items[items->count - 1].kind != ITEM_WORD || items->items[items->count - 1].body) return false;
+    return value_is_numeric(v) || v->kind == VALUE_STRING;
+}
+
+static void add_argument(Eval *ev, BlockItem *item, Value v, Span span) {
+    Argument *all = arena_new_array(&ev->blocks, Argument, item->argument_count + 1);
+    if (item->argument_count) memcpy(all, item->arguments, item->argument_count * sizeof *all);
+    all[item->argument_count++] = (Argument){v, span};
+    item->arguments = all;
+}
+
+static void add_item(Eval *ev, Sink *sink, Value v, Span span) {
+    v = keep(ev, v);
+    if (continues_word(sink->items, &v)) add_argument(ev, &sink->items->items[sink->items->count - 1], v, span);
+    else *list_push(&ev->blocks, sink->items) = (BlockItem){.kind = ITEM_VALUE, .span = span, .value = v};
+}
+
+/* An array without a size grows as it is filled. */
+static void grow_array(Eval *ev, Array *a) {
+    struct { Slot *items; size_t count, capacity; } list = {a->items, a->count, a->capacity};
+    *list_push(ev->parse, &list) = (Slot){0};
+    a->items = list.items;
+    a->count = list.count;
+    a->capacity = list.capacity;
+}
+
+static void add_element(Eval *ev, Sink *sink, Value v, Span span) {
+    if (sink->array->growing && sink->next == sink->array->count) grow_array(ev, sink->array);
+    if (sink->next >= sink->array->count && !sink->filled) {
+        diag_error(ev->diags, span, "one element too many for an array of %zu", sink->array->count);
+        sink->filled = true;
+    }
+    if (sink->next < sink->array->count) slot_set(ev, &sink->array->items[sink->next++], &v);
+}
+
+void sink_value(Eval *ev, Sink *sink, Value v, Span span) {
+    if (v.kind == VALUE_ERROR) {
+        sink->filled = sink->kind == SINK_SINGLE || sink->filled;
+        return;
+    }
+    switch (sink->kind) {
+    case SINK_SCENE: {
+        Value kept = keep(ev, v);
+        scene_draft_add(ev->draft, &ev->build, &kept, span);
+        return;
+    }
+    case SINK_ITEMS: add_item(ev, sink, v, span); return;
+    case SINK_SINGLE:
+        if (sink->filled) diag_error(ev->diags, span, "a second value where one is expected");
+        sink->value = v;
+        sink->filled = true;
+        return;
+    case SINK_ARRAY: add_element(ev, sink, v, span); return;
+    default: diag_error(ev->diags, span, "%s has no meaning here", value_kind_text(v.kind)); return;
+    }
+}
+
+static const Argument *eval_arguments(Eval *ev, const NodeList *list, bool *ok) {
+    Argument *out = arena_new_array(&ev->blocks, Argument, list->count);
+    for (size_t i = 0; i < list->count; i++) {
+        Value v = eval_node(ev, list->items[i]);
+        if (v.kind == VALUE_ERROR) *ok = false;
+        out[i] = (Argument){keep(ev, v), list->items[i]->span};
+    }
+    return out;
+}
+
+/* particles { count N { … } }: one item for each particle, with `index` counting. */
+static void add_particles(Eval *ev, Sink *sink, const Node *node, BlockItem item) {
+    double count = item.argument_count == 1 && item.arguments[0].value.kind == VALUE_FLOAT ? item.arguments[0].value.as.number : -1;
+    if (!(count >= 0) || count != (double)(uint64_t)count || count > (double)ev->options->limits.loops) {
+        diag_error(ev->diags, node->span, "count takes a whole number of particles");
+        return;
+    }
+    Scope scope;
+    scope_enter(ev, &scope);
+    Slot *index = scope_bind(ev, ev->index_name, NULL);
+    size_t errors = ev->diags->error_count;
+    for (double i = 0; i < count && !ev->stopped && errors == ev->diags->error_count; i++) {
+        Value v = value_float(i), n = value_float(count);
+        slot_set(ev, index, &v);
+        Argument *arguments = arena_new_array(&ev->blocks, Argument, 2);
+        arguments[0] = (Argument){v, item.word_span};
+        arguments[1] = (Argument){n, item.arguments[0].span};
+        BlockItem one = item;
+        one.arguments = arguments;
+        one.argument_count = 2;
+        ArenaMark mark = arena_mark(&ev->temp);
+        one.body = eval_block_items(ev, item.word, item.word_span, item.span, node->as.word.body);
+        arena_reset_to(&ev->temp, mark);
+        *list_push(&ev->blocks, sink->items) = one;
+    }
+    scope_leave(ev, &scope);
+}
+
+static void unknown_word(Eval *ev, const Node *node) {
+    Name word = node->as.word.word;
+    const char *suggestion = block_word_suggest(word->text);
+    Diagnostic *d = diag_error(ev->diags, node->as.word.word_span, keyword_of(&ev->keywords, word) ? "'%s' has no meaning here" : "unknown word '%s'", word->text);
+    if (suggestion) diag_hint(ev->diags, d, "did you mean '%s'?", suggestion);
+}
+
+void sink_word(Eval *ev, Sink *sink, const Node *node) {
+    if (sink->kind != SINK_ITEMS) {
+        if (sink->kind != SINK_SCENE && !keyword_of(&ev->keywords, node->as.word.word)) eval_undeclared(ev, node->as.word.word, node->as.word.word_span);
+        else unknown_word(ev, node);
+        sink->filled = sink->filled || sink->kind == SINK_SINGLE;
+        return;
+    }
+    bool ok = true;
+    BlockItem item = {.kind = ITEM_WORD, .span = node->span, .word_span = node->as.word.word_span, .word = node->as.word.word};
+    item.argument_count = node->as.word.list.count;
+    item.arguments = eval_arguments(ev, &node->as.word.list, &ok);
+    if (!ok) return;
+    if (node->as.word.body && item.word == ev->count_name && sink->block == ev->particles_name) {
+        add_particles(ev, sink, node, item);
+        return;
+    }
+    if (node->as.word.body) item.body = eval_block_items(ev, item.word, item.word_span, item.span, node->as.word.body);
+    *list_push(&ev->blocks, sink->items) = item;
+}
+
+void sink_entry(Eval *ev, Sink *sink, const Node *node) {
+    if (sink->kind != SINK_ITEMS) {
+        diag_error(ev->diags, node->span, "[ … ] has no meaning here");
+        return;
+    }
+    BlockItem item = {.kind = ITEM_ENTRY, .span = node->span};
+    item.entry = eval_block_items(ev, sink->block, node->span, node->span, node->as.block.body);
+    *list_push(&ev->blocks, sink->items) = item;
+}
+
+/* { … } among the elements of an array is one row of it. */
+void sink_list(Eval *ev, Sink *sink, const Node *node) {
+    if (sink->kind != SINK_ARRAY) {
+        diag_error(ev->diags, (Span){node->span.file, node->span.begin, node->span.begin + 1}, "unexpected '{'");
+        return;
+    }
+    Array *a = sink->array;
+    if (sink->next >= a->count) {
+        diag_error(ev->diags, node->span, "one row too many for an array of %zu", a->count);
+        return;
+    }
+    Slot *row = &a->items[sink->next++];
+    if (!row->set || row->value.kind != VALUE_ARRAY) {
+        diag_error(ev->diags, node->span, "this array has fewer dimensions");
+        return;
+    }
+    Sink inner = {.kind = SINK_ARRAY, .array = row->value.as.array};
+    size_t errors = ev->diags->error_count;
+    run_body(ev, node->as.block.body, &inner);
+    if (errors == ev->diags->error_count && inner.next < inner.array->count)
+        diag_error(ev->diags, node->span, "a row of %zu elements gets only %zu", inner.array->count, inner.next);
+}

@@ -1,0 +1,275 @@
+/* The evaluator's own state: names and scopes, sinks, the stack of calls. Only eval_*.c include this. */
+#ifndef VTS_EVAL_EVAL_STATE_H
+#define VTS_EVAL_EVAL_STATE_H
+
+#include "eval/block.h"
+#include "eval/eval.h"
+#include "parser/parser.h"
+
+typedef struct Eval Eval;
+
+/* ---- names ---- */
+
+/* A place that holds a value and owns the memory of its vector or text, which is reused from one assignment to the next. */
+typedef struct Slot {
+    Value value;
+    void *buffer;
+    uint32_t capacity; /* bytes */
+    bool set;
+} Slot;
+
+/* Scope is dynamic: the visible meaning of a name is on top of that name's own stack of bindings, so that looking it up is one load. */
+typedef struct VarBinding VarBinding;
+struct VarBinding {
+    Slot *slot;             /* &own, or the caller's for a parameter that went by reference */
+    Slot own;
+    VarBinding *outer;      /* what the name meant outside */
+    VarBinding *scope_next; /* next binding of the same scope; also links the free ones */
+    uint32_t name_id;
+    uint32_t scope;         /* number of the scope that it belongs to; 0: global */
+};
+
+typedef struct Scope {
+    VarBinding *bindings;
+    struct Scope *outer;
+    uint32_t number;
+} Scope;
+
+/* ---- macros and calls ---- */
+
+struct Macro {
+    Name name;
+    const Name *parameters;
+    size_t parameter_count;
+    Body body;
+    bool whole;              /* brackets balance and no operator dangles */
+    /* Whether a call stands for one expression and how tightly it binds; found on first need, and again when `stamp` is old. */
+    Binding binding;
+    uint32_t stamp;
+    bool measuring;
+};
+
+typedef struct CallRecord CallRecord;
+struct CallRecord {
+    CallRecord *outer;
+    Name macro; /* NULL: an include */
+    Span span;  /* of the call */
+};
+
+/* ---- where the values of a body go ---- */
+
+typedef enum SinkKind {
+    SINK_NONE,  /* nothing is expected: a body of directives */
+    SINK_SCENE, /* top level of the file */
+    SINK_ITEMS, /* a block's items */
+    SINK_SINGLE,/* one value */
+    SINK_ARRAY, /* the elements of an array, in order */
+} SinkKind;
+
+typedef struct ItemList {
+    BlockItem *items;
+    size_t count, capacity;
+} ItemList;
+
+typedef struct Sink {
+    SinkKind kind;
+    Name block;       /* SINK_ITEMS */
+    ItemList *items;  /* SINK_ITEMS */
+    Value value;      /* SINK_SINGLE */
+    bool filled;
+    Array *array;     /* SINK_ARRAY */
+    size_t next;      /* element */
+} Sink;
+
+typedef enum Flow { FLOW_NEXT, FLOW_BREAK, FLOW_STOP } Flow;
+
+/* ---- arrays, splines, files ---- */
+
+struct Array {
+    Slot *items;
+    size_t count, capacity;
+    bool growing; /* written without a size: array { … } */
+    bool rows; /* its elements are arrays themselves: more than one dimension */
+};
+
+enum { SPLINE_LINEAR, SPLINE_QUADRATIC, SPLINE_CUBIC, SPLINE_NATURAL };
+typedef struct SplinePoint {
+    double at;
+    double value[5];
+    double second[5]; /* second derivatives of the natural spline */
+} SplinePoint;
+struct Spline {
+    int type, size;
+    SplinePoint *points;
+    size_t count;
+};
+
+/* ---- programs ---- */
+
+/* A statement as it was parsed when it was first reached. */
+typedef struct Statement {
+    Node *node; /* NULL: it needs the slow road */
+    uint32_t next;
+    uint32_t end; /* of the body that it was read in */
+    Name block;
+    const Assumption *assumptions;
+    uint32_t assumption_count;
+    uint32_t stamp; /* Eval.macro_stamp when it was checked */
+} Statement;
+
+typedef struct Program {
+    TokenList *tokens;
+    Statement **memo; /* by token */
+    struct Program *next;
+} Program;
+
+struct Eval {
+    const EvalOptions *options;
+    SourceSet *sources;
+    DiagList *diags;
+    Interner *names;
+    KeywordTable keywords;
+    Arena *parse;     /* trees, memos, variables */
+    Arena temp;       /* values of the statement that is running */
+    Arena blocks;     /* items of blocks that are being read */
+    BuildContext build;
+    SceneDraft *draft;
+    const char *scene_path, *scene_folder;
+
+    VarBinding **bindings; /* by name id */
+    uint32_t binding_count;
+    VarBinding *free_bindings;
+    Scope *scope;
+    uint32_t macro_stamp; /* counts definitions of macros */
+    CallRecord *calls;
+    uint32_t call_depth, include_depth;
+    int nesting; /* C stack: bodies and expressions within each other */
+
+    Program **programs; /* by file id */
+    uint32_t program_count;
+    ParserHost fast_host;
+
+    uint32_t *streams; /* states of seed()'s streams */
+    size_t stream_count, stream_capacity;
+    UserFile *files;
+    struct MemoryFile *memory;
+    double version;
+    bool stopped, interrupted;
+    Name index_name, phase_name, count_name, particles_name;
+};
+
+/* ---- eval_value.c ---- */
+static inline Value value_error(void) { return (Value){.kind = VALUE_ERROR}; }
+static inline Value value_float(double number) { return (Value){.kind = VALUE_FLOAT, .size = 1, .as.number = number}; }
+Value value_vector(Eval *ev, const double *components, int size);
+Value value_string(Eval *ev, const char *text, size_t length);
+bool value_is_numeric(const Value *v);
+/* Component i; a float has it everywhere, a shorter vector 0. */
+double value_component(const Value *v, int i);
+bool value_is_true(double number);
+Value value_unary(Eval *ev, int op, Value a, Span span);
+Value value_binary(Eval *ev, int op, Value a, Value b, Span span);
+/* As a float, reporting anything else; false after an error. */
+bool value_to_float(Eval *ev, const Value *v, Span span, double *out);
+/* Vectors of `size` components; floats are spread, more or fewer components cut or filled with 0. */
+bool value_to_vector(Eval *ev, const Value *v, Span span, double *out, int size);
+bool value_to_string(Eval *ev, const Value *v, Span span, const char **text, size_t *length);
+/* Puts a value into a slot, copying vectors, strings and arrays. */
+void slot_set(Eval *ev, Slot *slot, const Value *value);
+void slot_clear(Slot *slot);
+/* A copy that the evaluation of the statement may keep, whatever happens to the slot. */
+Value slot_get(Eval *ev, const Slot *slot);
+
+/* ---- eval_scope.c ---- */
+static inline VarBinding *scope_find(const Eval *ev, Name name) {
+    return name->id < ev->binding_count ? ev->bindings[name->id] : NULL;
+}
+void scope_enter(Eval *ev, Scope *scope);
+void scope_leave(Eval *ev, Scope *scope);
+/* The slot that #declare (local: #local) of a name assigns, made if need be. */
+Slot *scope_declare(Eval *ev, Name name, bool local);
+/* A parameter of the innermost scope: bound to the caller's slot, or (NULL) to one of its own. */
+Slot *scope_bind(Eval *ev, Name name, Slot *reference);
+void scope_undef(Eval *ev, Name name);
+NameClass scope_classify(const Eval *ev, Name name, const Macro **macro);
+
+/* ---- eval_expression.c ---- */
+Value eval_node(Eval *ev, const Node *node);
+bool eval_float(Eval *ev, const Node *node, double *out);
+bool eval_condition(Eval *ev, const Node *node, bool *out);
+bool eval_string(Eval *ev, const Node *node, const char **text, size_t *length);
+/* The slot that a target names, or NULL: not declared (no report), or an error (reported: *failed). */
+Slot *eval_target(Eval *ev, const Node *target, bool *failed);
+Value eval_color(Eval *ev, const Node *node);
+void eval_undeclared(Eval *ev, Name name, Span span);
+
+/* ---- eval_builtin.c, eval_builtin_string.c ---- */
+Value eval_builtin(Eval *ev, const Node *node);
+Value eval_builtin_string(Eval *ev, const Node *node);
+Value eval_constant(Eval *ev, const Node *node);
+/* min_extent, max_extent (eval_extent.c). */
+Value eval_extent(Eval *ev, const Node *node);
+bool builtin_argument_count(Eval *ev, const Node *node, size_t least, size_t most);
+
+/* ---- eval_array.c ---- */
+Value eval_array(Eval *ev, const Node *node);
+Array *array_copy(Eval *ev, const Array *from);
+Slot *array_slot(Eval *ev, const Array *array, double index, Span span);
+
+/* ---- eval_run.c ---- */
+Flow run_body(Eval *ev, const Body *body, Sink *sink);
+Flow run_node(Eval *ev, const Node *node, Sink *sink);
+Flow run_statement(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink);
+/* The statement at a token, from the memo or parsed now; NULL node: slow road. */
+const Statement *statement_at(Eval *ev, Program *program, uint32_t at, uint32_t end, Name block);
+Program *eval_program(Eval *ev, TokenList *tokens);
+bool eval_deeper(Eval *ev, Span span);
+void run_assign(Eval *ev, const Node *node);
+void run_define_macro(Eval *ev, const Node *node);
+void run_include(Eval *ev, const Node *node, Sink *sink);
+/* Loads and lexes what an #include names; NULL after a report. */
+TokenList *eval_load_include(Eval *ev, const Node *node, Span *path_span);
+bool run_case_matches(Eval *ev, const SwitchCase *c, double subject);
+Flow run_loop_guard(Eval *ev, uint64_t *passes, size_t errors, Span span);
+
+/* ---- eval_sink.c ---- */
+void sink_value(Eval *ev, Sink *sink, Value value, Span span);
+void sink_word(Eval *ev, Sink *sink, const Node *node);
+void sink_entry(Eval *ev, Sink *sink, const Node *node);
+void sink_list(Eval *ev, Sink *sink, const Node *node);
+
+/* ---- eval_block.c ---- */
+Value eval_block(Eval *ev, const Node *node, Name declared_as);
+const EvalBlock *eval_block_items(Eval *ev, Name word, Span word_span, Span span, const Body *body);
+
+/* ---- eval_macro.c ---- */
+Value eval_call(Eval *ev, const Node *node);
+/* A call as an item: its body's items go to the sink. */
+Flow run_call(Eval *ev, const Node *node, Sink *sink);
+/* Binds the arguments of a call in a new scope. False after a report: nothing is then entered. */
+bool macro_enter(Eval *ev, const Macro *macro, const NodeList *arguments, Span span, Scope *scope, CallRecord *record);
+void macro_leave(Eval *ev, Scope *scope);
+Binding macro_binding(Eval *ev, const Macro *macro);
+
+/* ---- eval_expand.c: the slow road ---- */
+/* Reads and runs the statement at *at of `program` with directives and macros expanded, and moves *at past it. */
+Flow run_slow(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink);
+
+/* ---- eval_function.c, eval_spline.c, eval_files.c ---- */
+Value eval_function(Eval *ev, const Node *node);
+Value call_function(Eval *ev, const UserFunction *function, const NodeList *arguments, Span span);
+Value call_known_function(Eval *ev, const Node *node, bool *known);
+Value eval_spline(Eval *ev, const EvalBlock *block);
+Value call_spline(Eval *ev, const Spline *spline, const NodeList *arguments, Span span);
+void spline_evaluate(const Spline *spline, int type, double at, double *out);
+void run_fopen(Eval *ev, const Node *node);
+void run_fclose(Eval *ev, const Node *node);
+void run_read(Eval *ev, const Node *node);
+void run_write(Eval *ev, const Node *node);
+bool file_is_open(const UserFile *file);
+void files_close_all(Eval *ev);
+bool file_exists_for(Eval *ev, const char *path, Span span);
+/* Whether the scene may read this path. */
+bool path_may_read(const Eval *ev, const char *path);
+
+#endif

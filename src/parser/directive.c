@@ -1,0 +1,384 @@
+#include "parser/parser.h"
+
+/* Where the bodies of a group lie: from the head's end to #else …, known from the tokens' matches. */
+typedef struct Group {
+    TokenList *list;
+    uint32_t at;  /* the first token of the body that comes next */
+    uint32_t end; /* the directive that ends it */
+} Group;
+
+static bool group_begin(Parser *p, TokenList *list, uint32_t index, uint32_t body, Group *out) {
+    const Token *t = &list->items[index];
+    if (t->match == 0) {
+        parser_fail(p, t->span, "this #%s has no #end", t->as.name->text);
+        return false;
+    }
+    *out = (Group){list, body, t->match};
+    return true;
+}
+
+static Body group_body(const Group *g) { return (Body){.tokens = g->list, .begin = g->at, .end = g->end}; }
+
+/* The raw position after a head: the fast road's own, or what the host has not pulled yet. */
+static uint32_t raw_position(Parser *p, TokenList *list) {
+    if (!p->slow) return p->at;
+    const Token *next = p->host->after(p->host->context, 0);
+    return (uint32_t)(next - list->items);
+}
+
+/* On the fast road a branch must make sense by itself. */
+static bool bodies_whole(Parser *p, const Node *n, bool unbalanced) {
+    if (p->slow || p->heads_only) return true;
+    bool whole = !unbalanced;
+    if (n->kind == NODE_IF)
+        for (size_t i = 0; i < n->as.branches.count; i++) whole = whole && parser_body_is_whole(&n->as.branches.branches[i].body);
+    else if (n->kind == NODE_SWITCH)
+        for (size_t i = 0; i < n->as.switch_.count; i++) whole = whole && parser_body_is_whole(&n->as.switch_.cases[i].body);
+    else if (n->kind == NODE_WHILE)
+        whole = whole && parser_body_is_whole(&n->as.loop.body);
+    else
+        whole = whole && parser_body_is_whole(&n->as.for_loop.body);
+    if (!whole) p->failed = true;
+    return whole;
+}
+
+static void go_on_after(Parser *p, uint32_t end, uint32_t *next) {
+    if (p->slow) *next = end + 1;
+    else p->at = end + 1;
+}
+
+static Node *in_parentheses(Parser *p) {
+    if (!parser_expect(p, '(', "'('")) return NULL;
+    p->brackets++;
+    Node *e = parser_full(p);
+    if (!e || !parser_expect(p, ')', "')'")) return NULL;
+    p->brackets--;
+    return e;
+}
+
+/* if = "#if" "(" full ")" | "#ifdef" "(" target ")" | "#ifndef" "(" target ")" */
+static Node *condition(Parser *p, int keyword) {
+    if (keyword == KW_if || keyword == KW_elseif) return in_parentheses(p);
+    if (!parser_expect(p, '(', "'('")) return NULL;
+    Node *target = parser_target(p);
+    if (!target || !parser_expect(p, ')', "')'")) return NULL;
+    Node *defined = parser_node(p, NODE_BUILTIN, target->span);
+    defined->op = KW_defined;
+    *list_push(p->arena, &defined->as.list) = target;
+    if (keyword == KW_ifdef) return defined;
+    Node *not = parser_node(p, NODE_UNARY, target->span);
+    not->op = '!';
+    not->as.operand.a = defined;
+    return not;
+}
+
+typedef struct BranchList {
+    Branch *items;
+    size_t count, capacity;
+} BranchList;
+
+/* group = if body { "#elseif" "(" full ")" body } ["#else" body] "#end"
+ * On the slow road only the head is read; #elseif are read when they are reached (their condition is then a NODE_IF of its own). */
+static Node *if_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *next) {
+    const Token *head = &list->items[index];
+    Node *n = parser_node(p, NODE_IF, head->span);
+    Node *test = condition(p, head->keyword);
+    Group g;
+    if (!test || !group_begin(p, list, index, raw_position(p, list), &g)) return NULL;
+    BranchList branches = {0};
+    *list_push(p->arena, &branches) = (Branch){test, group_body(&g)};
+    bool else_seen = false;
+    while (list->items[g.end].keyword != KW_end) {
+        const Token *t = &list->items[g.end];
+        if (else_seen || (t->keyword != KW_elseif && t->keyword != KW_else))
+            return parser_fail(p, t->span, "this #%s does not belong to an #if", t->as.name->text);
+        else_seen = t->keyword == KW_else;
+        g.at = g.end + 1;
+        Node *other = NULL;
+        if (t->keyword == KW_elseif) {
+            /* On both roads the condition is read as it stands. */
+            Parser inner = *p;
+            inner.slow = false;
+            inner.has_window = false;
+            inner.list = list;
+            inner.at = g.at;
+            inner.end = t->match ? t->match : list->count;
+            other = in_parentheses(&inner);
+            g.at = inner.at;
+            if (!p->slow) p->assumptions = inner.assumptions;
+            if (!other) return parser_fail(p, t->span, "the condition of #elseif cannot be read");
+        }
+        if (t->match == 0) return parser_fail(p, head->span, "this #%s has no #end", head->as.name->text);
+        g.end = t->match;
+        *list_push(p->arena, &branches) = (Branch){other, group_body(&g)};
+    }
+    n->as.branches.branches = branches.items;
+    n->as.branches.count = branches.count;
+    go_on_after(p, g.end, next);
+    return bodies_whole(p, n, list->items[index].unbalanced) ? n : NULL;
+}
+
+static Node *while_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *next) {
+    Node *n = parser_node(p, NODE_WHILE, list->items[index].span);
+    n->as.loop.condition = in_parentheses(p);
+    Group g;
+    if (!n->as.loop.condition || !group_begin(p, list, index, raw_position(p, list), &g)) return NULL;
+    n->as.loop.body = group_body(&g);
+    go_on_after(p, g.end, next);
+    return bodies_whole(p, n, list->items[index].unbalanced) ? n : NULL;
+}
+
+/* for = "#for" "(" name "," expression "," expression ["," expression] ")" body "#end" */
+static Node *for_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *next) {
+    Node *n = parser_node(p, NODE_FOR, list->items[index].span);
+    if (!parser_expect(p, '(', "'('")) return NULL;
+    Node *name = parser_target(p);
+    if (!name) return NULL;
+    if (name->kind != NODE_NAME) return parser_fail(p, name->span, "the variable of #for is a plain name");
+    p->brackets++;
+    n->as.for_loop.name = name->as.name;
+    if (!parser_expect(p, ',', "','") || !(n->as.for_loop.from = parser_full(p))) return NULL;
+    if (!parser_expect(p, ',', "','") || !(n->as.for_loop.to = parser_full(p))) return NULL;
+    if (parser_accept(p, ',') && !(n->as.for_loop.step = parser_full(p))) return NULL;
+    if (!parser_expect(p, ')', "',' or ')'")) return NULL;
+    p->brackets--;
+    Group g;
+    if (!group_begin(p, list, index, raw_position(p, list), &g)) return NULL;
+    n->as.for_loop.body = group_body(&g);
+    go_on_after(p, g.end, next);
+    return bodies_whole(p, n, list->items[index].unbalanced) ? n : NULL;
+}
+
+static bool case_head(Parser *p, const Token *t, SwitchCase *out) {
+    if (t->keyword == KW_else) return true;
+    if (!parser_expect(p, '(', "'('") || !(out->low = parser_full(p))) return false;
+    if (t->keyword == KW_range && (!parser_expect(p, ',', "','") || !(out->high = parser_full(p)))) return false;
+    return parser_expect(p, ')', "')'");
+}
+
+/* switch = "#switch" "(" full ")" { "#case" "(" full ")" body | "#range" "(" full "," full ")" body } ["#else" body] "#end" */
+static Node *switch_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *next) {
+    Node *n = parser_node(p, NODE_SWITCH, list->items[index].span);
+    n->as.switch_.subject = in_parentheses(p);
+    Group g;
+    if (!n->as.switch_.subject || !group_begin(p, list, index, raw_position(p, list), &g)) return NULL;
+    if (g.at < g.end && list->items[g.at].kind != ';')
+        return parser_fail(p, list->items[g.at].span, "expected #case or #range after #switch");
+    struct { SwitchCase *items; size_t count, capacity; } cases = {0};
+    while (list->items[g.end].keyword != KW_end) {
+        const Token *t = &list->items[g.end];
+        if (t->keyword == KW_elseif) return parser_fail(p, t->span, "this #elseif does not belong to an #if");
+        if (t->match == 0) return parser_fail(p, n->span, "this #switch has no #end");
+        SwitchCase one = {0};
+        Parser inner = *p;
+        inner.slow = false;
+        inner.has_window = false;
+        inner.list = list;
+        inner.at = g.end + 1;
+        inner.end = t->match;
+        bool ok = case_head(&inner, t, &one);
+        if (!p->slow) p->assumptions = inner.assumptions;
+        if (!ok) return parser_fail(p, t->span, "this #%s cannot be read", t->as.name->text);
+        g.at = inner.at;
+        g.end = t->match;
+        one.body = group_body(&g);
+        *list_push(p->arena, &cases) = one;
+    }
+    n->as.switch_.cases = cases.items;
+    n->as.switch_.count = cases.count;
+    go_on_after(p, g.end, next);
+    return bodies_whole(p, n, list->items[index].unbalanced) ? n : NULL;
+}
+
+/* macro = "#macro" name "(" [name { "," name }] ")" body "#end" */
+static Node *macro_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *next) {
+    Node *n = parser_node(p, NODE_MACRO, list->items[index].span);
+    p->raw = true;
+    const Token *word = parser_peek(p);
+    if (word->kind != TOKEN_WORD) return parser_fail(p, word->span, "expected the macro's name");
+    if (word->keyword) return parser_fail(p, word->span, "'%s' is a word of the language: it cannot be a name", word->as.name->text);
+    n->as.macro.name_span = word->span;
+    n->as.macro.name = parser_take(p).as.name;
+    struct { Name *items; size_t count, capacity; } names = {0};
+    if (!parser_expect(p, '(', "'('")) return NULL;
+    for (;;) {
+        p->raw = true;
+        if (parser_peek(p)->kind != TOKEN_WORD) break;
+        Token name = parser_take(p);
+        if (name.keyword) return parser_fail(p, name.span, "'%s' is a word of the language: it cannot be a parameter", name.as.name->text);
+        *list_push(p->arena, &names) = name.as.name;
+        if (!parser_accept(p, ',')) break;
+    }
+    if (!parser_expect(p, ')', "',' or ')'")) return NULL;
+    Group g;
+    if (!group_begin(p, list, index, raw_position(p, list), &g)) return NULL;
+    if (list->items[g.end].keyword != KW_end)
+        return parser_fail(p, list->items[g.end].span, "this #%s stands in a macro, outside of its #if", list->items[g.end].as.name->text);
+    n->as.macro.parameters = names.items;
+    n->as.macro.count = names.count;
+    n->as.macro.body = group_body(&g);
+    n->as.macro.unbalanced = list->items[index].unbalanced;
+    go_on_after(p, g.end, next);
+    return n;
+}
+
+/* Values that must be followed by a semicolon, as far as their form tells. */
+static bool needs_semicolon(const Node *n) {
+    switch (n->kind) {
+    case NODE_NUMBER: case NODE_CONSTANT: case NODE_VECTOR: case NODE_COLOR: case NODE_DOT: case NODE_CONDITION: case NODE_BINARY: return true;
+    case NODE_VALUE: return n->op == NODE_NUMBER || n->op == NODE_VECTOR || n->op == NODE_COLOR || n->op == NODE_VALUE || n->op == NODE_DOT;
+    case NODE_UNARY: return n->op != '(' || needs_semicolon(n->as.operand.a);
+    default: return false;
+    }
+}
+
+/* declare = ("#declare" | "#local") target "=" expression [";"] */
+static Node *declare_directive(Parser *p, Token head) {
+    Node *n = parser_node(p, NODE_DECLARE, head.span);
+    n->as.declare.local = head.keyword == KW_local;
+    p->brackets = 0;
+    size_t groups = p->slow ? p->host->groups_ended(p->host->context) : 0;
+    n->as.declare.target = parser_target(p);
+    if (!n->as.declare.target || !parser_expect(p, '=', "'='")) return NULL;
+    Node *value = n->as.declare.value = parser_expression(p);
+    if (!value) return NULL;
+    n->span = span_join(head.span, p->last.span);
+    if (p->slow && p->closed && !p->has_window && p->host->after(p->host->context, 0)->kind != ';') return n;
+    if (p->slow && p->host->groups_ended(p->host->context) != groups && needs_semicolon(value) && !p->closed) {
+        Diagnostic *d = diag_error(p->diags, value->span, "a directive ends in the middle of this value");
+        diag_hint(p->diags, d, "put the value into parentheses");
+        p->failed = true;
+        return NULL;
+    }
+    if (parser_accept(p, ';')) return n;
+    if (needs_semicolon(value)) {
+        const Token *t = parser_peek(p);
+        Span after = {p->last.span.file, p->last.span.end, p->last.span.end};
+        return parser_fail(p, t->kind == TOKEN_END || t->kind == TOKEN_DIRECTIVE ? after : t->span,
+                           "expected ';' after the value of '%s', found %s", n->as.declare.target->kind == NODE_NAME ? n->as.declare.target->as.name->text : "an array's element",
+                           token_describe(t, p->arena));
+    }
+    return n;
+}
+
+static Node *undef_directive(Parser *p, Token head) {
+    Node *n = parser_node(p, NODE_UNDEF, head.span);
+    Node *target = parser_target(p);
+    if (!target) return NULL;
+    *list_push(p->arena, &n->as.list) = target;
+    parser_accept(p, ';');
+    return n;
+}
+
+static Node *operand_directive(Parser *p, NodeKind kind, Token head) {
+    Node *n = parser_node(p, kind, head.span);
+    n->op = head.keyword;
+    n->as.operand.a = parser_expression(p);
+    if (!n->as.operand.a) return NULL;
+    n->span = span_join(head.span, p->last.span);
+    if (kind == NODE_VERSION) parser_accept(p, ';');
+    return n;
+}
+
+/* fopen = "#fopen" name expression ("read" | "write" | "append") */
+static Node *fopen_directive(Parser *p, Token head) {
+    Node *n = parser_node(p, NODE_FOPEN, head.span);
+    Node *handle = parser_target(p);
+    Node *path = handle ? parser_expression(p) : NULL;
+    if (!path) return NULL;
+    *list_push(p->arena, &n->as.list) = handle;
+    *list_push(p->arena, &n->as.list) = path;
+    Token mode = parser_take(p);
+    if (mode.kind != TOKEN_WORD || (mode.keyword != KW_read && mode.keyword != KW_write && mode.keyword != KW_append))
+        return parser_fail(p, mode.span, "expected read, write or append");
+    n->op = mode.keyword;
+    n->span = span_join(head.span, mode.span);
+    return n;
+}
+
+static Node *fclose_directive(Parser *p, Token head) {
+    Node *n = parser_node(p, NODE_FCLOSE, head.span);
+    Node *handle = parser_target(p);
+    if (!handle) return NULL;
+    *list_push(p->arena, &n->as.list) = handle;
+    return n;
+}
+
+/* read = "#read" "(" name { "," target } ")" */
+static Node *read_directive(Parser *p, Token head) {
+    Node *n = parser_node(p, NODE_READ, head.span);
+    if (!parser_expect(p, '(', "'('")) return NULL;
+    do {
+        Node *target = parser_target(p);
+        if (!target) return NULL;
+        *list_push(p->arena, &n->as.list) = target;
+    } while (parser_accept(p, ','));
+    return parser_expect(p, ')', "',' or ')'") ? n : NULL;
+}
+
+/* write = "#write" "(" name { [","] full } ")" */
+static Node *write_directive(Parser *p, Token head) {
+    Node *n = parser_node(p, NODE_WRITE, head.span);
+    if (!parser_expect(p, '(', "'('")) return NULL;
+    Node *handle = parser_target(p);
+    if (!handle) return NULL;
+    *list_push(p->arena, &n->as.list) = handle;
+    p->brackets++;
+    while (parser_accept(p, ',') || (!p->failed && parser_peek(p)->kind != ')' && parser_begins_expression(p, true))) {
+        if (parser_peek(p)->kind == ')' || parser_peek(p)->kind == ',') continue;
+        Node *e = parser_full(p);
+        if (!e) return NULL;
+        *list_push(p->arena, &n->as.list) = e;
+    }
+    p->brackets--;
+    return parser_expect(p, ')', "',' or ')'") ? n : NULL;
+}
+
+static Node *default_directive(Parser *p, Token head) {
+    Node *n = parser_node(p, NODE_DEFAULT, head.span);
+    n->as.block.word = head.as.name;
+    n->as.block.word_span = head.span;
+    if (parser_peek(p)->kind != '{') return parser_expect(p, '{', "'{'"), NULL;
+    n->as.block.body = parser_body(p, head.as.name);
+    return n->as.block.body ? n : NULL;
+}
+
+static Node *unknown_directive(Parser *p, Token head) {
+    if (!p->slow) return parser_fail(p, head.span, "unknown");
+    const char *candidates[64];
+    size_t count = 0;
+    for (int k = 1; k < KW_COUNT; k++)
+        if (keyword_is_directive((Keyword)k)) candidates[count++] = keyword_text((Keyword)k);
+    Diagnostic *d = diag_error(p->diags, head.span, "unknown directive '#%s'", head.as.name->text);
+    const char *closest = closest_word(head.as.name->text, candidates, count);
+    if (closest) diag_hint(p->diags, d, "did you mean '#%s'?", closest);
+    p->failed = true;
+    return NULL;
+}
+
+Node *parser_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *next) {
+    Token head = p->last;
+    *next = 0;
+    switch (head.keyword) {
+    case KW_if: case KW_ifdef: case KW_ifndef: return if_directive(p, list, index, next);
+    case KW_while: return while_directive(p, list, index, next);
+    case KW_for: return for_directive(p, list, index, next);
+    case KW_switch: return switch_directive(p, list, index, next);
+    case KW_macro: return macro_directive(p, list, index, next);
+    case KW_declare: case KW_local: return declare_directive(p, head);
+    case KW_undef: return undef_directive(p, head);
+    case KW_include: return operand_directive(p, NODE_INCLUDE, head);
+    case KW_version: return operand_directive(p, NODE_VERSION, head);
+    case KW_debug: case KW_warning: case KW_error: case KW_render: case KW_statistics:
+        return operand_directive(p, NODE_MESSAGE, head);
+    case KW_break: return parser_node(p, NODE_BREAK, head.span);
+    case KW_default: return default_directive(p, head);
+    case KW_fopen: return fopen_directive(p, head);
+    case KW_fclose: return fclose_directive(p, head);
+    case KW_read: return read_directive(p, head);
+    case KW_write: return write_directive(p, head);
+    case KW_else: case KW_elseif: case KW_end: return parser_fail(p, head.span, "this #%s belongs to no #if", head.as.name->text);
+    case KW_case: case KW_range: return parser_fail(p, head.span, "this #%s belongs to no #switch", head.as.name->text);
+    default: return unknown_directive(p, head);
+    }
+}

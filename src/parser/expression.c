@@ -1,0 +1,564 @@
+#include "parser/parser.h"
+
+/* A call at the place of an operand: its macro's body must bind at least as tightly as the operators around it. */
+static void require(Node *n, Binding need) {
+    if (n->kind == NODE_CALL && n->need < need) n->need = (uint8_t)need;
+}
+
+static Node *fold(Parser *p, Node *n) {
+    if (!n || !p->slow || p->in_function || p->failed) return n;
+    return p->host->fold(p->host->context, n);
+}
+
+static Node *binary(Parser *p, int op, Node *a, Node *b) {
+    Node *n = parser_node(p, NODE_BINARY, span_join(a->span, b->span));
+    n->op = (uint16_t)op;
+    n->as.operand.a = a;
+    n->as.operand.b = b;
+    return n;
+}
+
+/* vector = "<" expression { [","] expression } [","] ">" */
+static Node *vector(Parser *p) {
+    Token open = parser_take(p);
+    Node *n = parser_node(p, NODE_VECTOR, open.span);
+    p->brackets++;
+    while (!p->failed && parser_peek(p)->kind != '>') {
+        Node *e = parser_expression(p);
+        if (!e) return NULL;
+        *list_push(p->arena, &n->as.list) = e;
+        if (!parser_accept(p, ',') && parser_peek(p)->kind != '>' && !parser_begins_expression(p, true)) break;
+    }
+    if (!parser_expect(p, '>', "',' or '>'")) return NULL;
+    p->brackets--;
+    n->span = span_join(open.span, p->last.span);
+    if (n->as.list.count < 2 || (n->as.list.count > 5 && n->as.list.count != 12))
+        return parser_fail(p, n->span, "a vector has 2 to 5 components, this one %zu", n->as.list.count);
+    return n;
+}
+
+/* On the slow road, whether a bare name comes next: it goes by reference and is not replaced by its value. */
+static bool bare_name_follows(Parser *p) {
+    if (!p->slow || p->has_window) return false;
+    const Token *t = p->host->after(p->host->context, 0), *end = p->host->after(p->host->context, 1);
+    return t->kind == TOKEN_WORD && !t->keyword && (end->kind == ',' || end->kind == ')');
+}
+
+/* arguments = "(" [full { "," full }] ")" */
+bool parser_arguments(Parser *p, NodeList *out) {
+    if (!parser_expect(p, '(', "'('")) return false;
+    p->brackets++;
+    for (;;) {
+        if (bare_name_follows(p)) {
+            p->raw = true;
+            Token name = parser_take(p);
+            Node *n = parser_node(p, NODE_NAME, name.span);
+            n->as.name = name.as.name;
+            *list_push(p->arena, out) = n;
+        } else if (parser_peek(p)->kind == ')' && out->count == 0) {
+            break;
+        } else {
+            Node *e = parser_full(p);
+            if (!e) return false;
+            *list_push(p->arena, out) = e;
+        }
+        if (!parser_accept(p, ',')) break;
+    }
+    if (!parser_expect(p, ')', "',' or ')'")) return false;
+    p->brackets--;
+    return true;
+}
+
+/* arguments = "(" [full { [","] full } [","]] ")" */
+static bool plain_arguments(Parser *p, NodeList *out) {
+    if (!parser_expect(p, '(', "'('")) return false;
+    p->brackets++;
+    while (!p->failed && parser_peek(p)->kind != ')') {
+        Node *e = parser_full(p);
+        if (!e) return false;
+        *list_push(p->arena, out) = e;
+        if (!parser_accept(p, ',') && !(parser_peek(p)->kind != ')' && parser_begins_expression(p, false))) break;
+    }
+    if (!parser_expect(p, ')', "',' or ')'")) return false;
+    p->brackets--;
+    return true;
+}
+
+/* builtin = "defined" "(" target ")" | ("sum" | "prod") "(" name "," full "," full "," full ")"
+ *         | "trace" "(" full "," full "," full ["," target] ")" | "dimensions" … "(" arguments ")" */
+static Node *builtin(Parser *p) {
+    Token word = parser_take(p);
+    Node *n = parser_node(p, NODE_BUILTIN, word.span);
+    n->op = word.keyword;
+    bool ok;
+    if (word.keyword == KW_defined) {
+        ok = parser_expect(p, '(', "'('");
+        p->brackets++;
+        Node *target = ok ? parser_target(p) : NULL;
+        ok = target && parser_expect(p, ')', "')'");
+        p->brackets--;
+        if (ok) *list_push(p->arena, &n->as.list) = target;
+    } else if (word.keyword == KW_trace || word.keyword == KW_rand || word.keyword == KW_dimensions ||
+               word.keyword == KW_dimension_size) {
+        ok = parser_arguments(p, &n->as.list);
+    } else if ((word.keyword == KW_sum || word.keyword == KW_prod) && !p->in_function) {
+        parser_fail(p, word.span, "'%s' exists only inside functions", keyword_text((Keyword)word.keyword));
+        ok = false;
+    } else if (word.keyword == KW_sum || word.keyword == KW_prod) {
+        ok = parser_expect(p, '(', "'('");
+        Token name = parser_take(p);
+        if (ok && name.kind != TOKEN_WORD) parser_fail(p, name.span, "expected the name of the running index");
+        Node *index = parser_node(p, NODE_NAME, name.span);
+        index->as.name = name.as.name;
+        *list_push(p->arena, &n->as.list) = index;
+        Name *parameters = p->parameters;
+        if (!p->failed) {
+            p->parameters = arena_new_array(p->arena, Name, p->parameter_count + 1);
+            for (size_t i = 0; i < p->parameter_count; i++) p->parameters[i] = parameters[i];
+            p->parameters[p->parameter_count++] = name.as.name;
+            for (int i = 0; ok && i < 3; i++) {
+                Node *e = parser_expect(p, ',', "','") ? parser_full(p) : NULL;
+                if (e) *list_push(p->arena, &n->as.list) = e;
+                ok = e != NULL;
+            }
+            p->parameter_count--;
+            p->parameters = parameters;
+        }
+        ok = ok && parser_expect(p, ')', "')'");
+    } else {
+        ok = plain_arguments(p, &n->as.list);
+    }
+    n->span = span_join(word.span, p->last.span);
+    return ok && !p->failed ? n : NULL;
+}
+
+static bool is_parameter(const Parser *p, Name name) {
+    for (size_t i = 0; i < p->parameter_count; i++)
+        if (p->parameters[i] == name) return true;
+    return false;
+}
+
+/* name = identifier ["(" arguments ")"] | block */
+static Node *name_or_call(Parser *p) {
+    const Token *t = parser_peek(p), *after = parser_peek_after(p);
+    if (after->kind == '{' && context_is_block(t->as.name) && !p->in_function) return parser_block(p);
+    Token word = parser_take(p);
+    Node *n = parser_node(p, NODE_NAME, word.span);
+    n->as.name = word.as.name;
+    if (is_parameter(p, word.as.name)) return n;
+    if (parser_peek(p)->kind != '(') {
+        if (!p->slow && !p->in_function) {
+            const void *macro;
+            if (parser_classify(p, word.as.name, &macro) == NAME_MACRO) return parser_fail(p, word.span, "macro without (");
+            p->assumptions.count--; /* its being a value or not makes no difference here */
+        }
+        return n;
+    }
+    const void *macro;
+    NameClass class = parser_classify(p, word.as.name, &macro);
+    if (class == NAME_PLAIN) return n;
+    if (class == NAME_MACRO && p->in_function && !p->slow) return parser_fail(p, word.span, "a macro's text");
+    Node *call = parser_node(p, NODE_CALL, word.span);
+    call->as.apply.base = n;
+    size_t at = p->assumptions.count - 1;
+    if (!p->slow) p->assumptions.items[at].call = call;
+    if (!(class == NAME_MACRO || class == NAME_UNKNOWN ? parser_arguments(p, &call->as.apply.list)
+                                                        : plain_arguments(p, &call->as.apply.list)))
+        return NULL;
+    call->need = BIND_ANY;
+    call->span = span_join(word.span, p->last.span);
+    return call;
+}
+
+static Node *constant(Parser *p) {
+    Token t = parser_take(p);
+    Node *n;
+    if (is_parameter(p, t.as.name)) {
+        n = parser_node(p, NODE_NAME, t.span);
+        n->as.name = t.as.name;
+    } else {
+        n = parser_node(p, NODE_CONSTANT, t.span);
+        n->op = t.keyword;
+    }
+    return n;
+}
+
+static Node *value_token(Parser *p) {
+    Token t = parser_take(p);
+    Node *n = parser_node(p, NODE_VALUE, t.span);
+    n->as.value = t.as.value;
+    /* Functions and splines: the host marks their tokens with KW_function. */
+    if (t.keyword != KW_function || parser_peek(p)->kind != '(') return n;
+    Node *call = parser_node(p, NODE_CALL, t.span);
+    call->as.apply.base = n;
+    if (!plain_arguments(p, &call->as.apply.list)) return NULL;
+    call->span = span_join(t.span, p->last.span);
+    return call;
+}
+
+static Node *parenthesized(Parser *p) {
+    Token open = parser_take(p);
+    p->brackets++;
+    Node *e = parser_full(p);
+    if (!e || !parser_expect(p, ')', "')'")) return NULL;
+    p->brackets--;
+    /* The brackets themselves keep the macro's body together. */
+    Node *n = parser_node(p, NODE_UNARY, span_join(open.span, p->last.span));
+    n->op = '(';
+    n->as.operand.a = e;
+    return n;
+}
+
+/* primary = number | string | vector | "(" full ")" | constant | builtin | name | block | function | array */
+static Node *primary(Parser *p) {
+    const Token *t = parser_peek(p);
+    Node *n;
+    switch (t->kind) {
+    case TOKEN_NUMBER:
+        n = parser_node(p, NODE_NUMBER, t->span);
+        n->as.number = t->as.number;
+        parser_take(p);
+        return n;
+    case TOKEN_STRING:
+        n = parser_node(p, NODE_STRING, t->span);
+        n->as.string = t->as.string;
+        parser_take(p);
+        return n;
+    case TOKEN_VALUE: return value_token(p);
+    case '<': return vector(p);
+    case '(': return parenthesized(p);
+    case TOKEN_WORD: break;
+    default:
+        return parser_fail(p, t->kind == TOKEN_END ? (Span){p->last.span.file, p->last.span.end, p->last.span.end} : t->span,
+                           "expected a value, found %s", token_describe(t, p->arena));
+    }
+    if (t->keyword == KW_NONE) return name_or_call(p);
+    if (is_parameter(p, t->as.name)) return constant(p);
+    switch (keyword_class((Keyword)t->keyword)) {
+    case KEYWORD_CONSTANT: return constant(p);
+    case KEYWORD_FUNCTION: return builtin(p);
+    default: break;
+    }
+    if (t->keyword == KW_function) return parser_function(p);
+    if (t->keyword == KW_array) return parser_array(p);
+    if (parser_peek_after(p)->kind == '{') return parser_block(p);
+    /* spline types are arguments of a spline's evaluation: S(0.5, cubic_spline) */
+    if (t->keyword == KW_linear_spline || t->keyword == KW_quadratic_spline || t->keyword == KW_cubic_spline ||
+        t->keyword == KW_natural_spline)
+        return constant(p);
+    return parser_fail(p, t->span, "expected a value, found %s", token_describe(t, p->arena));
+}
+
+static int dot_component(const Token *t) {
+    switch (t->keyword) {
+    case KW_x: case KW_u: case KW_red: return DOT_X;
+    case KW_y: case KW_v: case KW_green: return DOT_Y;
+    case KW_z: case KW_blue: return DOT_Z;
+    case KW_t: case KW_filter: return DOT_4;
+    case KW_transmit: return DOT_5;
+    case KW_gray: return DOT_GRAY;
+    default: return -1;
+    }
+}
+
+/* postfix = primary { "." component | "[" expression "]" } */
+static Node *postfix(Parser *p) {
+    Node *n = primary(p);
+    /* Nothing can follow these, so nothing is looked at: on the slow road that would run the directives that come next. */
+    p->closed = n && (n->kind == NODE_BLOCK || n->kind == NODE_FUNCTION || n->kind == NODE_ARRAY);
+    if (p->closed) return fold(p, n);
+    for (;;) {
+        if (!n || p->failed) return NULL;
+        const Token *t = parser_peek(p);
+        if (t->kind == '.') {
+            parser_take(p);
+            p->raw = true;
+            Token part = parser_take(p);
+            int component = part.kind == TOKEN_WORD ? dot_component(&part) : -1;
+            if (component < 0) return parser_fail(p, part.span, "expected a component (x, y, z, red, filter …) after '.'");
+            require(n, BIND_PRIMARY);
+            Node *dot = parser_node(p, NODE_DOT, span_join(n->span, part.span));
+            dot->op = (uint16_t)component;
+            dot->as.operand.a = n;
+            n = dot;
+        } else if (t->kind == '[' && (n->kind == NODE_NAME || n->kind == NODE_INDEX || n->kind == NODE_VALUE)) {
+            parser_take(p);
+            p->brackets++;
+            Node *e = parser_expression(p);
+            if (!e || !parser_expect(p, ']', "']'")) return NULL;
+            p->brackets--;
+            Node *index = parser_node(p, NODE_INDEX, span_join(n->span, p->last.span));
+            index->as.apply.base = n;
+            *list_push(p->arena, &index->as.apply.list) = e;
+            n = index;
+            if (parser_peek(p)->kind == '(') {
+                /* an array of functions: A[I](x) */
+                Node *call = parser_node(p, NODE_CALL, n->span);
+                call->as.apply.base = n;
+                if (!plain_arguments(p, &call->as.apply.list)) return NULL;
+                n = call;
+            }
+        } else {
+            return fold(p, n);
+        }
+    }
+}
+
+/* factor = ("-" | "+" | "!") factor | postfix */
+static Node *factor(Parser *p) {
+    const Token *t = parser_peek(p);
+    if (t->kind != '-' && t->kind != '+' && t->kind != '!') return postfix(p);
+    Token op = parser_take(p);
+    if (!parser_enter(p)) return NULL;
+    Node *a = factor(p);
+    parser_leave(p);
+    if (!a) return NULL;
+    require(a, BIND_PRIMARY);
+    Node *n = parser_node(p, NODE_UNARY, span_join(op.span, a->span));
+    n->op = op.kind;
+    n->as.operand.a = a;
+    return n;
+}
+
+/* term = factor { ("*" | "/") factor } */
+static Node *term(Parser *p) {
+    Node *a = factor(p);
+    for (int count = 0; a && !p->failed; count++) {
+        int op = p->closed ? TOKEN_END : parser_peek(p)->kind;
+        if (op != '*' && op != '/') return a;
+        if (count > PARSER_CHAIN_LIMIT) return parser_fail(p, a->span, "too many operators in one expression");
+        parser_take(p);
+        Node *b = factor(p);
+        if (!b) return NULL;
+        p->closed = false;
+        require(a, BIND_PRODUCT);
+        require(b, BIND_PRIMARY);
+        a = binary(p, op, a, b);
+    }
+    return a;
+}
+
+/* expression = term { ("+" | "-") term } */
+Node *parser_expression(Parser *p) {
+    if (parser_begins_color(p)) return parser_color(p);
+    if (!parser_enter(p)) return NULL;
+    Node *a = term(p);
+    for (int count = 0; a && !p->failed; count++) {
+        int op = p->closed ? TOKEN_END : parser_peek(p)->kind;
+        if (op != '+' && op != '-') break;
+        if (count > PARSER_CHAIN_LIMIT) return parser_fail(p, a->span, "too many operators in one expression");
+        parser_take(p);
+        Node *b = term(p);
+        if (!b) return NULL;
+        require(a, BIND_SUM);
+        require(b, BIND_PRIMARY);
+        a = binary(p, op, a, b);
+    }
+    parser_leave(p);
+    return p->failed ? NULL : a;
+}
+
+static bool is_relation(int kind) {
+    return kind == '=' || kind == '<' || kind == '>' || kind == TOKEN_LESS_EQUAL || kind == TOKEN_GREATER_EQUAL ||
+           kind == TOKEN_NOT_EQUAL;
+}
+
+/* relation = expression { ("=" | "!=" | "<" | "<=" | ">" | ">=") expression } */
+static Node *relation(Parser *p) {
+    Node *a = parser_expression(p);
+    while (a && !p->failed && is_relation(parser_peek(p)->kind)) {
+        int op = parser_take(p).kind;
+        Node *b = parser_expression(p);
+        if (!b) return NULL;
+        require(a, BIND_SUM);
+        require(b, BIND_SUM);
+        a = binary(p, op, a, b);
+    }
+    return a;
+}
+
+/* logical = relation { ("&" | "|") relation } */
+static Node *logical(Parser *p) {
+    Node *a = relation(p);
+    while (a && !p->failed && (parser_peek(p)->kind == '&' || parser_peek(p)->kind == '|')) {
+        int op = parser_take(p).kind;
+        Node *b = relation(p);
+        if (!b) return NULL;
+        require(a, BIND_SUM);
+        require(b, BIND_SUM);
+        a = binary(p, op, a, b);
+    }
+    return a;
+}
+
+/* full = logical ["?" full ":" full] */
+Node *parser_full(Parser *p) {
+    if (!parser_enter(p)) return NULL;
+    Node *a = logical(p);
+    if (a && !p->failed && parser_accept(p, '?')) {
+        require(a, BIND_SUM);
+        Node *b = parser_full(p);
+        Node *c = b && parser_expect(p, ':', "':'") ? parser_full(p) : NULL;
+        if (!c) return NULL;
+        require(b, BIND_SUM);
+        require(c, BIND_SUM);
+        Node *n = parser_node(p, NODE_CONDITION, span_join(a->span, c->span));
+        n->as.operand.a = a;
+        n->as.operand.b = b;
+        n->as.operand.c = c;
+        a = n;
+    }
+    parser_leave(p);
+    return p->failed ? NULL : a;
+}
+
+bool parser_begins_color(Parser *p) {
+    const Token *t = parser_peek(p);
+    return t->kind == TOKEN_WORD && t->keyword && keyword_class((Keyword)t->keyword) == KEYWORD_COLOR &&
+           parser_peek_after(p)->kind != '{';
+}
+
+static bool is_color_component(int keyword) {
+    return keyword == KW_red || keyword == KW_green || keyword == KW_blue || keyword == KW_filter || keyword == KW_transmit ||
+           keyword == KW_alpha;
+}
+
+/* color = { "color" | "colour" | ("rgb" | … | "srgbft") expression | component expression | expression }, at most one
+ * expression that is not a component */
+Node *parser_color(Parser *p) {
+    Node *n = parser_node(p, NODE_COLOR, parser_peek(p)->span);
+    struct { ColorPart *items; size_t count, capacity; } parts = {0};
+    bool have_base = false, named = false;
+    while (!p->failed) {
+        const Token *t = parser_peek(p);
+        int keyword = t->kind == TOKEN_WORD ? t->keyword : KW_NONE;
+        if (keyword == KW_color || keyword == KW_colour) {
+            if (named || parts.count) break;
+            named = true;
+            parser_take(p);
+            continue;
+        }
+        if (is_color_component(keyword)) {
+            parser_take(p);
+        } else if (!have_base && keyword && keyword_class((Keyword)keyword) == KEYWORD_COLOR) {
+            parser_take(p);
+            have_base = true;
+        } else if (!have_base && parts.count == 0 && parser_begins_expression(p, true)) {
+            keyword = KW_color;
+            have_base = true;
+        } else {
+            break;
+        }
+        Node *e = parser_expression(p);
+        if (!e) return NULL;
+        *list_push(p->arena, &parts) = (ColorPart){(uint16_t)keyword, e};
+    }
+    if (parts.count == 0) return parser_fail(p, n->span, "expected a colour");
+    n->as.color.parts = parts.items;
+    n->as.color.count = parts.count;
+    n->span = span_join(n->span, p->last.span);
+    return fold(p, n);
+}
+
+/* What can stand for an operand. Names count after a comma; elsewhere when they are known to be values. */
+bool parser_begins_expression(Parser *p, bool after_comma) {
+    const Token *t = parser_peek(p);
+    switch (t->kind) {
+    case TOKEN_NUMBER: case TOKEN_STRING: case TOKEN_VALUE: case '(': case '<': case '-': case '+': case '!': return true;
+    case TOKEN_WORD: break;
+    default: return false;
+    }
+    int after = parser_peek_after(p)->kind;
+    bool brace = after == '{';
+    if (t->keyword) {
+        if (is_parameter(p, t->as.name)) return true;
+        switch (keyword_class((Keyword)t->keyword)) {
+        case KEYWORD_CONSTANT: case KEYWORD_COLOR: return !brace;
+        case KEYWORD_FUNCTION: return after == '(';
+        default: return t->keyword == KW_function || t->keyword == KW_array;
+        }
+    }
+    if (brace && context_is_block(t->as.name)) return false;
+    if (!after_comma && context_is_item(p->block, t->as.name)) return false;
+    const void *macro;
+    switch (parser_classify(p, t->as.name, &macro)) {
+    case NAME_UNKNOWN: return after_comma ? !brace : parser_peek_after(p)->kind == '(';
+    case NAME_MACRO: return parser_peek_after(p)->kind == '(' && p->host->macro_binding(p->host->context, macro) != BIND_NONE;
+    default: return true;
+    }
+}
+
+/* function = "function" ["(" name { "," name } ")"] "{" (full { "," full } | vector | block) "}" */
+Node *parser_function(Parser *p) {
+    Token word = parser_take(p);
+    Node *n = parser_node(p, NODE_FUNCTION, word.span);
+    struct { Name *items; size_t count, capacity; } names = {0};
+    p->raw = true;
+    if (parser_accept(p, '(')) {
+        for (;;) {
+            p->raw = true;
+            if (parser_peek(p)->kind == ')') break;
+            Token name = parser_take(p);
+            if (name.kind != TOKEN_WORD) return parser_fail(p, name.span, "expected the name of a parameter");
+            *list_push(p->arena, &names) = name.as.name;
+            if (!parser_accept(p, ',')) break;
+        }
+        if (!parser_expect(p, ')', "',' or ')'")) return NULL;
+    }
+    n->as.function.parameters = names.items;
+    n->as.function.count = names.count;
+    Parser outer = *p;
+    p->parameters = names.items;
+    p->parameter_count = names.count;
+    bool ok = parser_expect(p, '{', "'{'");
+    p->brackets = 1;
+    if (ok && parser_peek_after(p)->kind == '{') {
+        p->in_function = false; /* pigment, pattern, spline, transform: a block like any other */
+        p->parameter_count = 0;
+    } else {
+        p->in_function = true;
+    }
+    while (ok && !p->failed && parser_peek(p)->kind != '}') {
+        Node *e = parser_full(p);
+        if (!e) ok = false;
+        else *list_push(p->arena, &n->as.function.body) = e;
+        if (!parser_accept(p, ',')) break;
+    }
+    p->in_function = outer.in_function;
+    p->parameters = outer.parameters;
+    p->parameter_count = outer.parameter_count;
+    if (!ok || !parser_expect(p, '}', "an operator or '}'")) return NULL;
+    p->brackets = outer.brackets;
+    n->span = span_join(word.span, p->last.span);
+    return n;
+}
+
+/* array = "array" ["mixed"] { "[" expression "]" } ["{" body "}"] */
+Node *parser_array(Parser *p) {
+    Token word = parser_take(p);
+    Node *n = parser_node(p, NODE_ARRAY, word.span);
+    p->brackets++;
+    while (parser_accept(p, '[')) {
+        Node *e = parser_expression(p);
+        if (!e || !parser_expect(p, ']', "']'")) return NULL;
+        *list_push(p->arena, &n->as.array.dimensions) = e;
+    }
+    p->brackets--;
+    if (parser_peek(p)->kind == '{') {
+        n->as.array.body = parser_body(p, NULL);
+        if (!n->as.array.body) return NULL;
+    }
+    n->span = span_join(word.span, p->last.span);
+    return n;
+}
+
+Node *parser_block(Parser *p) {
+    Token word = parser_take(p);
+    Node *n = parser_node(p, NODE_BLOCK, word.span);
+    n->as.block.word = word.as.name;
+    n->as.block.word_span = word.span;
+    n->as.block.body = parser_body(p, word.as.name);
+    if (!n->as.block.body) return NULL;
+    n->span = span_join(word.span, p->last.span);
+    return n;
+}

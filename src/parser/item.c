@@ -1,0 +1,132 @@
+#include "parser/parser.h"
+
+/* Colours are arguments where a colour is likely meant: first, after a comma, or after another colour. So `distance 50 color rgb 1` is
+ * a word with one argument, and a colour. */
+static bool argument_follows(Parser *p, const NodeList *list, bool after_comma) {
+    if (!parser_begins_expression(p, after_comma)) return false;
+    if (after_comma || list->count == 0 || !parser_begins_color(p)) return true;
+    return list->items[list->count - 1]->kind == NODE_COLOR;
+}
+
+/* After a comma: whether an argument follows it, and not the next item of the block. */
+static bool argument_after_comma(Parser *p) {
+    if (!p->slow) {
+        uint32_t at = p->at++;
+        bool follows = parser_begins_expression(p, true);
+        p->at = at;
+        return follows;
+    }
+    parser_take(p);
+    return parser_begins_expression(p, true);
+}
+
+/* word = keyword { [","] expression } [body] */
+static Node *word_item(Parser *p) {
+    Token word = parser_take(p);
+    Node *n = parser_node(p, NODE_WORD, word.span);
+    n->as.word.word = word.as.name;
+    n->as.word.word_span = word.span;
+    NodeList *list = &n->as.word.list;
+    bool comma = false;
+    while (!p->failed && argument_follows(p, list, comma)) {
+        Node *e = parser_expression(p);
+        if (!e) return NULL;
+        *list_push(p->arena, list) = e;
+        comma = false;
+        if (parser_peek(p)->kind == ',') {
+            comma = argument_after_comma(p);
+            if (!comma) break;
+            if (!p->slow) parser_take(p);
+        }
+    }
+    if (!p->failed && list->count && parser_peek(p)->kind == '{') {
+        n->as.word.body = parser_body(p, word.as.name);
+        if (!n->as.word.body) return NULL;
+    }
+    n->span = span_join(word.span, p->last.span);
+    return p->failed ? NULL : n;
+}
+
+static Node *bracketed(Parser *p, NodeKind kind) {
+    Node *n = parser_node(p, kind, parser_peek(p)->span);
+    n->as.block.word = p->block;
+    n->as.block.body = parser_body(p, p->block);
+    if (!n->as.block.body) return NULL;
+    n->span = span_join(n->span, p->last.span);
+    return n;
+}
+
+static bool continues_expression(const Token *t) {
+    return t->kind == '*' || t->kind == '/' || t->kind == '+' || t->kind == '-' || t->kind == '.';
+}
+
+/* call = name "(" arguments ")": as an item, whatever its macro's body holds are items here too. */
+static Node *call_item(Parser *p, const void *macro) {
+    Parser before = *p;
+    Token name = parser_take(p);
+    Node *call = parser_node(p, NODE_CALL, name.span);
+    Node *base = parser_node(p, NODE_NAME, name.span);
+    base->as.name = name.as.name;
+    call->as.apply.base = base;
+    if (!parser_arguments(p, &call->as.apply.list)) return NULL;
+    call->span = span_join(name.span, p->last.span);
+    if (!continues_expression(parser_peek(p))) return call;
+    if (p->host->macro_binding(p->host->context, macro) == BIND_NONE) return parser_fail(p, call->span, "half a macro");
+    *p = before;
+    return parser_expression(p);
+}
+
+static Node *named_item(Parser *p) {
+    const Token *t = parser_peek(p), *after = parser_peek_after(p);
+    bool brace = after->kind == '{';
+    if (context_is_item(p->block, t->as.name)) return brace ? parser_block(p) : word_item(p);
+    if (brace && context_is_block(t->as.name)) return parser_block(p);
+    const void *macro;
+    switch (parser_classify(p, t->as.name, &macro)) {
+    case NAME_UNKNOWN:
+        if (brace) return parser_block(p);
+        return after->kind == '(' ? parser_expression(p) : word_item(p);
+    case NAME_MACRO:
+        if (after->kind != '(') return parser_fail(p, t->span, "'%s' is a macro: it is called with ( )", t->as.name->text);
+        return call_item(p, macro);
+    default: return parser_expression(p);
+    }
+}
+
+static Node *keyword_item(Parser *p) {
+    const Token *t = parser_peek(p);
+    int after = parser_peek_after(p)->kind;
+    bool brace = after == '{';
+    switch (keyword_class((Keyword)t->keyword)) {
+    case KEYWORD_CONSTANT: case KEYWORD_COLOR: return brace ? parser_block(p) : parser_expression(p);
+    case KEYWORD_FUNCTION: /* `seed 5` of a jitter is a word, seed(5) a function */
+        if (after == '(') return parser_expression(p);
+        break;
+    default: break;
+    }
+    if (t->keyword == KW_function || t->keyword == KW_array) return parser_expression(p);
+    return brace ? parser_block(p) : word_item(p);
+}
+
+/* statement = directive | word | block | call | "[" body "]" | "{" body "}" | expression | "," | ";" */
+Node *parser_statement(Parser *p) {
+    const Token *t = parser_peek(p);
+    switch (t->kind) {
+    case TOKEN_DIRECTIVE: {
+        Token directive = parser_take(p);
+        (void)directive;
+        uint32_t next;
+        return parser_directive(p, p->list, p->slow ? 0 : p->at - 1, &next);
+    }
+    case '[': return bracketed(p, NODE_ENTRY);
+    case '{': return bracketed(p, NODE_LIST);
+    case ',': case ';': {
+        Node *n = parser_node(p, NODE_EMPTY, t->span);
+        parser_take(p);
+        return n;
+    }
+    case TOKEN_WORD: return t->keyword ? keyword_item(p) : named_item(p);
+    case '}': case ')': case ']': case '>': return parser_fail(p, t->span, "'%c' closes nothing that is open here", t->kind);
+    default: return parser_expression(p);
+    }
+}

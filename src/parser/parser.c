@@ -1,0 +1,174 @@
+#include "parser/parser.h"
+
+#include <stdio.h>
+
+const Token *parser_peek(Parser *p) {
+    static const Token end = {.kind = TOKEN_END};
+    if (p->failed) return &end;
+    if (!p->slow) return p->at < p->end ? &p->list->items[p->at] : &end;
+    if (!p->has_window) {
+        p->window = p->host->pull(p->host->context, p);
+        p->has_window = true;
+        p->raw = false;
+        if (p->failed) return &end;
+    }
+    return &p->window;
+}
+
+/* The token after the next, as it is written. */
+const Token *parser_peek_after(Parser *p) {
+    static const Token end = {.kind = TOKEN_END};
+    if (p->slow) {
+        parser_peek(p);
+        return p->failed ? &end : p->host->after(p->host->context, 0);
+    }
+    return p->at + 1 < p->end ? &p->list->items[p->at + 1] : &end;
+}
+
+Token parser_take(Parser *p) {
+    p->last = *parser_peek(p);
+    if (p->slow) p->has_window = false;
+    else if (p->at < p->end) p->at++;
+    return p->last;
+}
+
+bool parser_at_end(Parser *p) { return parser_peek(p)->kind == TOKEN_END; }
+
+bool parser_accept(Parser *p, int kind) {
+    if (parser_peek(p)->kind != kind) return false;
+    parser_take(p);
+    return true;
+}
+
+bool parser_accept_keyword(Parser *p, Keyword keyword) {
+    const Token *t = parser_peek(p);
+    if (t->kind != TOKEN_WORD || t->keyword != keyword) return false;
+    parser_take(p);
+    return true;
+}
+
+/* Where something is missing: the next token, or the end of the last one where nothing follows. */
+static Span here(Parser *p) {
+    const Token *t = parser_peek(p);
+    if (t->kind != TOKEN_END || t->span.end > t->span.begin) return t->span;
+    return (Span){p->last.span.file, p->last.span.end, p->last.span.end};
+}
+
+bool parser_expect(Parser *p, int kind, const char *what) {
+    if (parser_accept(p, kind)) return true;
+    const Token *t = parser_peek(p);
+    parser_fail(p, here(p), "expected %s, found %s", what, token_describe(t, p->arena));
+    return false;
+}
+
+Node *parser_fail(Parser *p, Span span, const char *format, ...) {
+    if (p->slow && !p->failed) {
+        va_list args;
+        va_start(args, format);
+        StrBuf text = {0};
+        strbuf_vaddf(&text, format, args);
+        va_end(args);
+        diag_error(p->diags, span, "%s", text.data);
+        strbuf_free(&text);
+    }
+    p->failed = true;
+    return NULL;
+}
+
+Node *parser_node(Parser *p, NodeKind kind, Span begin) {
+    Node *n = arena_new(p->arena, Node);
+    n->kind = (uint8_t)kind;
+    n->span = begin;
+    return n;
+}
+
+bool parser_enter(Parser *p) {
+    if (++p->depth <= PARSER_DEPTH_LIMIT) return true;
+    parser_fail(p, here(p), "nested too deeply");
+    return false;
+}
+
+NameClass parser_classify(Parser *p, Name name, const void **macro) {
+    *macro = NULL;
+    NameClass class = p->host->classify(p->host->context, name, macro);
+    if (!p->slow) *list_push(p->arena, &p->assumptions) = (Assumption){name, class, *macro, BIND_NONE, NULL};
+    return class;
+}
+
+/* body = "{" … "}" | "[" … "]": a range of tokens where its end is known, else its statements now. */
+Body *parser_body(Parser *p, Name block) {
+    Token open = parser_take(p);
+    Body *body = arena_new(p->arena, Body);
+    if (!p->slow) {
+        if (open.match == 0 || open.match >= p->end) return parser_fail(p, open.span, "unbalanced"), NULL;
+        *body = (Body){.tokens = p->list, .begin = p->at, .end = open.match};
+        p->at = open.match;
+        parser_take(p);
+        return body;
+    }
+    if (p->host->take_body(p->host->context, body)) {
+        if (body->tokens) p->last = body->tokens->items[body->end];
+        return body;
+    }
+    Name outer = p->block;
+    int brackets = p->brackets;
+    p->block = block;
+    p->brackets = 1;
+    int close = open.kind == '[' ? ']' : '}';
+    if (!parser_enter(p)) return NULL;
+    while (!p->failed && parser_peek(p)->kind != close && !parser_at_end(p)) {
+        Node *n = parser_statement(p);
+        if (n) *list_push(p->arena, &body->items) = n;
+    }
+    parser_leave(p);
+    p->block = outer;
+    p->brackets = brackets;
+    if (!p->failed && !parser_accept(p, close)) {
+        const char *name = block ? block->text : "it";
+        const Token *t = parser_peek(p);
+        if (t->kind == TOKEN_END) parser_fail(p, open.span, "this '%c' of '%s' is never closed", open.kind, name);
+        else parser_expect(p, close, close == ']' ? "']'" : "'}'");
+    }
+    return p->failed ? NULL : body;
+}
+
+/* target = name { "[" expression "]" } */
+Node *parser_target(Parser *p) {
+    p->raw = true;
+    const Token *t = parser_peek(p);
+    if (t->kind != TOKEN_WORD) return parser_fail(p, here(p), "expected a name, found %s", token_describe(t, p->arena));
+    if (t->keyword) return parser_fail(p, t->span, "'%s' is a word of the language: it cannot be a name", t->as.name->text);
+    Token name = parser_take(p);
+    Node *n = parser_node(p, NODE_NAME, name.span);
+    n->as.name = name.as.name;
+    p->brackets++;
+    while (parser_accept(p, '[')) {
+        Node *index = parser_node(p, NODE_INDEX, n->span);
+        index->as.apply.base = n;
+        Node *e = parser_expression(p);
+        if (!e || !parser_expect(p, ']', "']'")) return NULL;
+        *list_push(p->arena, &index->as.apply.list) = e;
+        index->span = span_join(n->span, p->last.span);
+        n = index;
+    }
+    p->brackets--;
+    return n;
+}
+
+static bool is_dangling_end(const Token *t) {
+    return t->kind == '+' || t->kind == '-' || t->kind == '*' || t->kind == '/' || t->kind == '?' || t->kind == ':' ||
+           t->kind == '&' || t->kind == '|' || t->kind == '=' || t->kind == '<' || t->kind == '!' || t->kind == '.' ||
+           t->kind == TOKEN_LESS_EQUAL || t->kind == TOKEN_GREATER_EQUAL || t->kind == TOKEN_NOT_EQUAL;
+}
+
+static bool is_dangling_begin(const Token *t) {
+    return t->kind == '*' || t->kind == '/' || t->kind == '?' || t->kind == ':' || t->kind == '&' || t->kind == '|' ||
+           t->kind == '=' || t->kind == '>' || t->kind == '.' || t->kind == '^' || t->kind == TOKEN_LESS_EQUAL ||
+           t->kind == TOKEN_GREATER_EQUAL || t->kind == TOKEN_NOT_EQUAL;
+}
+
+bool parser_body_is_whole(const Body *body) {
+    if (!body->tokens || body->begin >= body->end) return true;
+    const Token *items = body->tokens->items;
+    return !is_dangling_begin(&items[body->begin]) && !is_dangling_end(&items[body->end - 1]);
+}

@@ -11,20 +11,22 @@ static const double FOLD_HALF_ANGLE = 55 * VTS_RADIANS;
 
 /* ---- frames ---- */
 
-/* Of one trajectory. It lies in the plane across `binormal`; the frame that minimises rotation keeps its angle to it. */
-typedef struct Sweep {
-    const Particle *particle;
-    Vec3 binormal, straight; /* straight: the tangent of a trajectory on a line; else zero */
-    double angle; /* from binormal × tangent to the width axis, towards the binormal, at the foot */
-    int segments, sides;
-    double factor; /* circumradius of the tube's polygon over its radius */
-} Sweep;
-
 typedef struct Frame {
     Vec3 place, tangent;
     Vec3 across; /* unit, along the width */
     Vec3 front;  /* across × tangent */
 } Frame;
+
+/* Of one trajectory. It lies in the plane across `binormal`; the frame that minimises rotation keeps its angle to it. */
+typedef struct Sweep {
+    const Particle *particle;
+    Vec3 binormal, straight; /* straight: the tangent of a trajectory on a line; else zero */
+    double angle;        /* from binormal × tangent to the width axis, towards the binormal, at the foot */
+    double cosine, sine; /* of it */
+    int segments, sides;
+    double factor; /* circumradius of the tube's polygon over its radius */
+    Frame rows[MOST_SEGMENTS + 1];
+} Sweep;
 
 static Vec3 velocity_at(const Particle *particle, double t) {
     return vec3_madd(particle->velocity, particle->acceleration, t);
@@ -66,7 +68,8 @@ static bool start_sweep(const Particle *particle, Sweep *sweep) {
     Vec3 v = vec3_scale(particle->velocity, particle->life);
     Vec3 a = vec3_scale(particle->acceleration, particle->life * particle->life);
     Vec3 normal = vec3_cross(v, a);
-    *sweep = (Sweep){.particle = particle};
+    sweep->particle = particle;
+    sweep->straight = vec3_splat(0);
     /* On a line when the plane is lost in rounding. */
     if (vec3_length(normal) <= 1e-12 * (vec3_length_squared(v) + vec3_length_squared(a))) {
         sweep->straight = vec3_normalize(vec3_length_squared(v) > 1e-24 * vec3_length_squared(a) ? v : a);
@@ -77,17 +80,22 @@ static bool start_sweep(const Particle *particle, Sweep *sweep) {
     across = vec3_normalize(vec3_madd(across, tangent, -vec3_dot(across, tangent)));
     sweep->binormal =
         vec3_length_squared(sweep->straight) > 0 ? vec3_cross(tangent, across) : vec3_normalize(normal);
-    sweep->angle =
-        atan2(vec3_dot(across, sweep->binormal), vec3_dot(across, vec3_cross(sweep->binormal, tangent)));
+    sweep->cosine = vec3_dot(across, vec3_cross(sweep->binormal, tangent));
+    sweep->sine = vec3_dot(across, sweep->binormal);
+    sweep->angle = atan2(sweep->sine, sweep->cosine);
     return true;
 }
 
 static Frame frame_at(const Sweep *sweep, double share) {
     const Particle *particle = sweep->particle;
-    double t = particle->life * share, angle = sweep->angle + particle->twist * VTS_RADIANS * share;
+    double t = particle->life * share, cosine = sweep->cosine, sine = sweep->sine;
+    if (particle->twist != 0) {
+        double angle = sweep->angle + particle->twist * VTS_RADIANS * share;
+        cosine = cos(angle), sine = sin(angle);
+    }
     Frame frame = {.place = place_at(particle, t), .tangent = tangent_at(sweep, t)};
     Vec3 normal = vec3_cross(sweep->binormal, frame.tangent);
-    frame.across = vec3_madd(vec3_scale(normal, cos(angle)), sweep->binormal, sin(angle));
+    frame.across = vec3_madd(vec3_scale(normal, cosine), sweep->binormal, sine);
     frame.front = vec3_cross(frame.across, frame.tangent);
     return frame;
 }
@@ -114,11 +122,11 @@ static Vec3 strip_place(const Strip *strip, const Frame *frame, double half_widt
 static SoupVertex strip_point(const void *context, int i, int j) {
     const Strip *strip = context;
     double share = (double)i / strip->sweep->segments;
-    Frame frame = frame_at(strip->sweep, share);
-    Vec3 across = vec3_madd(vec3_scale(frame.across, strip->x[1] - strip->x[0]), frame.front,
+    const Frame *frame = &strip->sweep->rows[i];
+    Vec3 across = vec3_madd(vec3_scale(frame->across, strip->x[1] - strip->x[0]), frame->front,
                             strip->y[1] - strip->y[0]);
-    return (SoupVertex){strip_place(strip, &frame, half_width_at(strip->sweep->particle, share), j),
-                        vec3_normalize(vec3_cross(across, frame.tangent)),
+    return (SoupVertex){strip_place(strip, frame, half_width_at(strip->sweep->particle, share), j),
+                        vec3_normalize(vec3_cross(across, frame->tangent)),
                         {strip->u[j], share},
                         NULL,
                         NULL};
@@ -137,19 +145,19 @@ static SoupVertex tube_point(const void *context, int i, int j) {
     const Sweep *sweep = context;
     double share = (double)i / sweep->segments, c, s;
     tessellate_turn(j, sweep->sides, &c, &s);
-    Frame frame = frame_at(sweep, share);
-    Vec3 radial = vec3_madd(vec3_scale(frame.across, c), frame.front, -s);
+    const Frame *frame = &sweep->rows[i];
+    Vec3 radial = vec3_madd(vec3_scale(frame->across, c), frame->front, -s);
     double radius = half_width_at(sweep->particle, share) * sweep->factor;
     return (SoupVertex){
-        vec3_madd(frame.place, radial, radius), radial, {(double)j / sweep->sides, share}, NULL, NULL};
+        vec3_madd(frame->place, radial, radius), radial, {(double)j / sweep->sides, share}, NULL, NULL};
 }
 
 static void push_tube_end(const Sweep *sweep, bool tip, Arena *arena, TriangleSoup *out) {
     int row = tip ? sweep->segments : 0;
-    Frame frame = frame_at(sweep, tip ? 1 : 0);
-    Vec3 normal = tip ? frame.tangent : vec3_negate(frame.tangent);
+    const Frame *frame = &sweep->rows[row];
+    Vec3 normal = tip ? frame->tangent : vec3_negate(frame->tangent);
     if (half_width_at(sweep->particle, tip ? 1 : 0) == 0) return;
-    uint32_t center = soup_vertex(arena, out, frame.place, normal, 0.5, 0.5), first = center + 1;
+    uint32_t center = soup_vertex(arena, out, frame->place, normal, 0.5, 0.5), first = center + 1;
     for (int j = 0; j <= sweep->sides; j++) {
         double c, s;
         tessellate_turn(j, sweep->sides, &c, &s);
@@ -179,33 +187,36 @@ static double distance_from_line(Vec3 p, Vec3 a, Vec3 b) {
 }
 
 /* How far the middle of a segment is from its triangles, over the trajectory and the outermost curves of the profile. */
-static double segment_deviation(const Sweep *sweep, double from, double to) {
+static double segment_deviation(const Frame *a, const Frame *m, const Frame *b, double wa, double wb) {
     static const double x[4] = {1, -1, 0, 0}, y[4] = {0, 0, 1, 0};
-    double middle = (from + to) / 2, largest = 0;
-    Frame a = frame_at(sweep, from), b = frame_at(sweep, to), m = frame_at(sweep, middle);
-    double wa = half_width_at(sweep->particle, from), wb = half_width_at(sweep->particle, to),
-           wm = (wa + wb) / 2;
+    double largest = 0;
     for (int i = 0; i < 4; i++) {
-        const Strip curve = {sweep, {x[i], 0}, {y[i], 0}, {0, 0}};
-        Vec3 pa = strip_place(&curve, &a, wa, 0), pb = strip_place(&curve, &b, wb, 0);
-        largest = double_max(largest, distance_from_line(strip_place(&curve, &m, wm, 0), pa, pb));
+        const Strip curve = {NULL, {x[i], 0}, {y[i], 0}, {0, 0}};
+        Vec3 pa = strip_place(&curve, a, wa, 0), pb = strip_place(&curve, b, wb, 0);
+        largest = double_max(largest, distance_from_line(strip_place(&curve, m, (wa + wb) / 2, 0), pa, pb));
     }
     /* The diagonal of a twisted strip: a quarter of c0 - c1 + c2 - c3. */
-    Vec3 warp = vec3_sub(vec3_scale(a.across, wa), vec3_scale(b.across, wb));
-    double wedge = vec3_length(vec3_madd(warp, m.across, -vec3_dot(warp, m.across))) / 2;
+    Vec3 warp = vec3_sub(vec3_scale(a->across, wa), vec3_scale(b->across, wb));
+    double wedge = vec3_length(vec3_madd(warp, m->across, -vec3_dot(warp, m->across))) / 2;
     return largest + wedge;
 }
 
-static double sweep_deviation(const Sweep *sweep, int segments) {
+/* Fills the rows on the way. */
+static double sweep_deviation(Sweep *sweep, int segments) {
     double largest = 0;
+    sweep->rows[0] = frame_at(sweep, 0);
     for (int i = 0; i < segments; i++) {
-        largest =
-            double_max(largest, segment_deviation(sweep, (double)i / segments, (double)(i + 1) / segments));
+        double from = (double)i / segments, to = (double)(i + 1) / segments;
+        Frame middle = frame_at(sweep, (from + to) / 2);
+        sweep->rows[i + 1] = frame_at(sweep, to);
+        double wa = half_width_at(sweep->particle, from), wb = half_width_at(sweep->particle, to);
+        double here = segment_deviation(&sweep->rows[i], &middle, &sweep->rows[i + 1], wa, wb);
+        largest = double_max(largest, here);
     }
     return largest;
 }
 
-static int sweep_segments(const Sweep *sweep, double tolerance) {
+static int sweep_segments(Sweep *sweep, double tolerance) {
     int segments = 1;
     /* One segment of a line that turns back would hide it. */
     if (vec3_length_squared(sweep->straight) > 0 && vec3_length_squared(sweep->particle->acceleration) > 0)

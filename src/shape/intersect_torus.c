@@ -8,59 +8,70 @@ typedef struct TorusLine {
     double major, minor;
 } TorusLine;
 
-static double distance_at(const TorusLine *line, double t) {
-    Vec3 p = vec3_madd(line->origin, line->direction, t);
-    return hypot(hypot(p.x, p.z) - line->major, p.y) - line->minor;
+/* A function along the line, with its slope. */
+typedef struct Value {
+    double value, slope;
+} Value;
+typedef Value (*LineFunction)(const void *context, double t);
+
+/* The signed distance from the torus. */
+static Value distance_at(const void *context, double t) {
+    const TorusLine *line = context;
+    Vec3 p = vec3_madd(line->origin, line->direction, t), d = line->direction;
+    double ring = sqrt(p.x * p.x + p.z * p.z), out = ring - line->major, length = sqrt(out * out + p.y * p.y);
+    double ring_slope = ring > 0 ? (p.x * d.x + p.z * d.z) / ring : 0;
+    return (Value){length - line->minor, length > 0 ? (out * ring_slope + p.y * d.y) / length : 0};
 }
 
-/* c[0] + c[1] t + … + c[degree] t^degree */
-static double polynomial(const double *c, int degree, double t) {
-    double sum = c[degree];
-    for (int i = degree - 1; i >= 0; i--) sum = sum * t + c[i];
-    return sum;
-}
-
-typedef double (*LineFunction)(const void *context, double t);
-
-/* A zero between a and b, where f has different signs: false position with halved ends (Illinois), then bisection. */
+/* A zero between a and b, where f has different signs: Newton's steps as long as they stay between and shrink, halving
+ * otherwise. */
 static double zero_between(LineFunction f, const void *context, double a, double b) {
-    double fa = f(context, a), fb = f(context, b);
+    bool negative = f(context, a).value < 0;
+    double t = a + (b - a) / 2, last = b - a;
     for (int i = 0; i < 200; i++) {
-        double middle = i % 3 == 2 || fa == fb ? a + (b - a) / 2 : a + (b - a) * (fa / (fa - fb));
-        double value = f(context, middle);
-        if (value == 0 || middle == a || middle == b) return middle;
-        if ((value < 0) == (fa < 0))
-            a = middle, fa = value, fb *= 0.5;
+        Value at = f(context, t);
+        if (at.value == 0) return t;
+        if ((at.value < 0) == negative)
+            a = t;
         else
-            b = middle, fb = value, fa *= 0.5;
-        if (fabs(b - a) <= 4e-16 * fmax(fabs(a), fabs(b))) break;
+            b = t;
+        double next = t - at.value / at.slope;
+        bool slow = !(fabs(next - t) < last / 2);
+        if (slow || !(next > fmin(a, b) && next < fmax(a, b))) next = a + (b - a) / 2;
+        last = fabs(next - t);
+        t = next;
+        if (last <= 2e-16 * fabs(t) || t == a || t == b) break;
     }
-    return fabs(f(context, a)) < fabs(f(context, b)) ? a : b;
+    return t;
 }
 
-typedef struct Polynomial {
-    const double *c;
-    int degree;
-} Polynomial;
-
-static double polynomial_at(const void *context, double t) {
-    const Polynomial *p = context;
-    return polynomial(p->c, p->degree, t);
+/* c[0] + c[1] t + c[2] t² + c[3] t³ */
+static Value cubic_at(const void *context, double t) {
+    const double *c = context;
+    return (Value){((c[3] * t + c[2]) * t + c[1]) * t + c[0], (3 * c[3] * t + 2 * c[2]) * t + c[1]};
 }
 
-/* Real zeros of a polynomial in (lo, hi) where it changes sign, ascending, from those of its derivative. */
-static int polynomial_zeros(const double *c, int degree, double lo, double hi, double *out) {
-    double derivative[4], bounds[6];
-    int count = 0, stations = 1;
-    if (degree == 0) return 0;
-    for (int i = 1; i <= degree; i++) derivative[i - 1] = c[i] * i;
-    bounds[0] = lo;
-    stations += polynomial_zeros(derivative, degree - 1, lo, hi, bounds + 1);
-    bounds[stations++] = hi;
-    const Polynomial p = {c, degree};
-    for (int i = 0; i + 1 < stations; i++) {
-        double a = polynomial(c, degree, bounds[i]), b = polynomial(c, degree, bounds[i + 1]);
-        if ((a < 0) != (b < 0)) out[count++] = zero_between(polynomial_at, &p, bounds[i], bounds[i + 1]);
+/* Real zeros of a t² + 2 b t + c within (lo, hi), ascending; a > 0. */
+static int quadratic_zeros(double a, double b, double c, double lo, double hi, double *out) {
+    double discriminant = b * b - a * c;
+    int count = 0;
+    if (!(discriminant > 0)) return 0;
+    double sum = -(b + copysign(sqrt(discriminant), b)), t0 = sum / a, t1 = sum != 0 ? c / sum : 0;
+    double first = double_min(t0, t1), second = double_max(t0, t1);
+    if (first > lo && first < hi) out[count++] = first;
+    if (second > lo && second < hi) out[count++] = second;
+    return count;
+}
+
+/* Zeros of a cubic within (lo, hi) where it changes sign, ascending, one between each two of its derivative's. */
+static int cubic_zeros(const double c[4], double lo, double hi, double *out) {
+    double stations[4] = {lo};
+    int count = 0, station_count = 1 + quadratic_zeros(3 * c[3], c[2], c[1], lo, hi, stations + 1);
+    stations[station_count++] = hi;
+    for (int i = 0; i + 1 < station_count; i++) {
+        double a = stations[i], b = stations[i + 1];
+        if ((cubic_at(c, a).value < 0) != (cubic_at(c, b).value < 0))
+            out[count++] = zero_between(cubic_at, c, a, b);
     }
     return count;
 }
@@ -95,22 +106,20 @@ static bool clip_line(const TorusLine *line, double *lo, double *hi) {
     return *lo < *hi;
 }
 
-static double torus_distance(const void *context, double t) { return distance_at(context, t); }
-
 int intersect_torus(Vec3 origin, Vec3 direction, double major, double minor, double t[4]) {
     const TorusLine line = {origin, direction, major, minor};
-    double derivative[4], stations[5];
+    double derivative[4], lo, hi, stations[5];
     int count = 0, station_count = 1;
-    if (!clip_line(&line, &stations[0], &stations[4])) return 0;
-    double end = stations[4];
+    if (!clip_line(&line, &lo, &hi)) return 0;
     quartic_derivative(&line, derivative);
-    station_count += polynomial_zeros(derivative, 3, stations[0], end, stations + 1);
-    stations[station_count++] = end;
+    stations[0] = lo;
+    station_count += cubic_zeros(derivative, lo, hi, stations + 1);
+    stations[station_count++] = hi;
     /* Both ends are outside, whatever rounding says. */
     bool inside = false;
     for (int i = 1; i < station_count; i++) {
-        bool next = i + 1 < station_count && distance_at(&line, stations[i]) < 0;
-        if (next != inside) t[count++] = zero_between(torus_distance, &line, stations[i - 1], stations[i]);
+        bool next = i + 1 < station_count && distance_at(&line, stations[i]).value < 0;
+        if (next != inside) t[count++] = zero_between(distance_at, &line, stations[i - 1], stations[i]);
         inside = next;
     }
     return count;

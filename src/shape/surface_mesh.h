@@ -55,12 +55,14 @@ typedef struct SurfaceMeshOptions {
  *             the opposite when that one looks down on average.
  *   objects   triangles. Winding is made consistent; the front of a closed part is its outside, that of an open one with
  *             given or natural normals (disc, open cylinder) theirs, of any other open one the side that looks up on average.
+ *   heights   given height vectors win: the front of a part is the side to which they point.
  *   subdivide N cuts flat faces and mesh triangles N times along each edge, curved solids N times per quarter turn.
  *   uv        natural or given ones; planar: the two axes across uv_axis, cylindrical and spherical: turns about it and
  *             the way along it (from pole to pole); all scaled to [0, 1] over the bounding box of the undeformed surface, so
  *             that a texture does not slide while a deform moves.
  * Vertex normals are the angle-weighted mean of the cells around (given normals win unless there is a deform); height
  * vectors and w vectors given with the scene are interpolated to subdivided vertices and follow deform and transform.
+ * What is needed on the way stays in the arena too: about 400 bytes a cell in all.
  * False, with *refusal filled, for what has no finite boundary or is not modelled. */
 bool surface_mesh_build(const Surface *surface, const SurfaceMeshOptions *options, Arena *arena,
                         SurfaceMesh *out, ShapeRefusal *refusal);

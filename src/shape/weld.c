@@ -18,16 +18,21 @@ typedef struct PlaceGrid {
     uint32_t place_count;
 } PlaceGrid;
 
-static uint64_t coordinate_key(const PlaceGrid *grid, double x) {
-    double key = (grid->cell_size > 0 ? floor(x / grid->cell_size) : x) + 0.0; /* -0 and +0 are one */
-    uint64_t bits;
-    memcpy(&bits, &key, sizeof bits);
-    return bits;
+static double cell_of(const PlaceGrid *grid, double x) {
+    return (grid->cell_size > 0 ? floor(x / grid->cell_size) : x) + 0.0; /* -0 and +0 are one */
+}
+
+static uint64_t slot_of(const PlaceGrid *grid, double x, double y, double z) {
+    uint64_t bits[3];
+    memcpy(&bits[0], &x, sizeof x);
+    memcpy(&bits[1], &y, sizeof y);
+    memcpy(&bits[2], &z, sizeof z);
+    uint64_t mixed = bits[0] * 0x9E3779B97F4A7C15u + (bits[1] ^ bits[1] >> 29) * 0xC2B2AE3D27D4EB4Fu;
+    return random_mix(mixed ^ (bits[2] ^ bits[2] >> 31) * 0x165667B19E3779F9u) & grid->mask;
 }
 
 static uint64_t grid_slot(const PlaceGrid *grid, Vec3 p) {
-    return random_hash(coordinate_key(grid, p.x), coordinate_key(grid, p.y), coordinate_key(grid, p.z), 0) &
-           grid->mask;
+    return slot_of(grid, cell_of(grid, p.x), cell_of(grid, p.y), cell_of(grid, p.z));
 }
 
 static bool are_close(Vec3 a, Vec3 b, double tolerance) {
@@ -42,17 +47,21 @@ static uint32_t oldest_near(const PlaceGrid *grid, uint64_t slot, Vec3 p, uint32
     return best;
 }
 
+/* Looks into every cell that the tolerance around p touches: nearly always one. */
 static uint32_t find_place(const PlaceGrid *grid, Vec3 p) {
+    const double at[3] = {p.x, p.y, p.z};
+    double lo[3], hi[3];
     uint32_t best = UINT32_MAX;
-    uint64_t seen[8];
-    int seen_count = 0;
-    for (int corner = 0; corner < (grid->tolerance > 0 ? 8 : 1); corner++) {
-        Vec3 shift = vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-        uint64_t slot = grid_slot(grid, vec3_madd(p, shift, grid->tolerance));
-        bool again = false;
-        for (int i = 0; i < seen_count; i++) again |= seen[i] == slot;
-        if (again) continue;
-        seen[seen_count++] = slot;
+    for (int k = 0; k < 3; k++) {
+        lo[k] = cell_of(grid, at[k] - grid->tolerance);
+        hi[k] = cell_of(grid, at[k] + grid->tolerance);
+    }
+    for (int corner = 0; corner < 8; corner++) {
+        bool repeated = false;
+        for (int k = 0; k < 3; k++) repeated |= (corner >> k & 1) && lo[k] == hi[k];
+        if (repeated) continue;
+        uint64_t slot =
+            slot_of(grid, corner & 1 ? hi[0] : lo[0], corner & 2 ? hi[1] : lo[1], corner & 4 ? hi[2] : lo[2]);
         best = oldest_near(grid, slot, p, best);
     }
     return best;
@@ -71,7 +80,7 @@ uint32_t weld_points(const Vec3 *points, size_t count, double tolerance, Arena *
     uint64_t slots = 16;
     while (slots < 2 * (uint64_t)count) slots *= 2;
     PlaceGrid grid = {
-        .points = points, .tolerance = tolerance, .cell_size = 8 * tolerance, .mask = slots - 1};
+        .points = points, .tolerance = tolerance, .cell_size = 1024 * tolerance, .mask = slots - 1};
     grid.heads = arena_new_array(arena, uint32_t, slots);
     grid.next = arena_new_array(arena, uint32_t, count);
     grid.first_point = arena_new_array(arena, uint32_t, count);

@@ -36,6 +36,11 @@ static NameClass classify(void *context, Name name, const void **macro) {
 
 static Binding binding(void *context, const void *macro) { return macro_binding(context, macro); }
 
+static bool is_block(void *context, const void *macro) {
+    (void)context;
+    return ((const Macro *)macro)->is_block;
+}
+
 /* ---- includes ---- */
 
 static TokenList *load(Eval *ev, const SourceFile *file) {
@@ -106,7 +111,7 @@ static void init(Eval *ev, const EvalOptions *options, SourceSet *sources, DiagL
     keyword_table_init(&ev->keywords, names, parse);
     ev->build = (BuildContext){.arena = scene, .names = names, .diags = diags, .eval = ev};
     ev->build.image_aspect = options->image_width > 0 && options->image_height > 0 ? (double)options->image_width / options->image_height : 4.0 / 3;
-    ev->fast_host = (ParserHost){.context = ev, .classify = classify, .macro_binding = binding};
+    ev->fast_host = (ParserHost){.context = ev, .classify = classify, .macro_binding = binding, .macro_is_block = is_block};
     ev->index_name = intern_cstr(names, "index");
     ev->count_name = intern_cstr(names, "count");
     ev->particles_name = intern_cstr(names, "particles");

@@ -15,6 +15,15 @@ typedef struct EvalLimits {
     uint64_t string_bytes;   /* 64 MiB */
 } EvalLimits;
 
+/* What the evaluator cannot know by itself, supplied by whoever links the folders that can. */
+typedef struct EvalGeometry {
+    void *context;
+    bool (*trace)(void *context, const Object *object, Vec3 origin, Vec3 direction, Vec3 *hit, Vec3 *normal);
+    bool (*inside)(void *context, const Object *object, Vec3 point);
+    /* A pigment as a function of place: 3 inputs, 5 outputs. `out` and its data live in `arena`; false: it cannot be one. */
+    bool (*pigment_function)(void *context, Arena *arena, const Pigment *pigment, TapeExternal *out);
+} EvalGeometry;
+
 typedef struct EvalOptions {
     const char *const *include_dirs;  /* after the including file's folder and the scene's folder */
     size_t include_dir_count;
@@ -32,6 +41,9 @@ typedef struct EvalOptions {
     const char *const *allow_write;
     size_t allow_write_count;
     bool keep_writes_in_memory;       /* check: #write goes to memory, where #read finds it */
+    /* Geometry of objects, for the functions of the language that ask for it; NULL: those functions are errors. `in` is the context
+     * below. trace: the first hit of the ray and the unit normal there; false for a miss. */
+    const struct EvalGeometry *geometry;
     void (*on_text)(void *context, EvalStream stream, const char *text);
     void *context;
     const volatile bool *interrupted; /* polled in loops; may be NULL */

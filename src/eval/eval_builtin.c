@@ -244,7 +244,8 @@ Value eval_builtin(Eval *ev, const Node *node) {
     case KW_asc: case KW_chr: case KW_concat: case KW_datetime: case KW_file_exists: case KW_str: case KW_strcmp: case KW_strlen:
     case KW_strlwr: case KW_strupr: case KW_substr: case KW_val: case KW_vstr: return eval_builtin_string(ev, node);
     case KW_min_extent: case KW_max_extent: return eval_extent(ev, node);
-    case KW_inside: case KW_trace: case KW_vturbulence: case KW_internal: case KW_sum: case KW_prod:
+    case KW_inside: case KW_trace: return eval_geometry(ev, node);
+    case KW_vturbulence: case KW_internal: case KW_sum: case KW_prod:
         diag_error(ev->diags, node->span, "%s() is not available here", keyword_text((Keyword)node->op));
         return value_error();
     default: return float_function(ev, node);

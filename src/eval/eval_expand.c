@@ -371,8 +371,13 @@ static NameClass classify(void *context, Name name, const void **macro) {
 
 static Binding binding(void *context, const void *macro) { return macro_binding(((Source *)context)->ev, macro); }
 
+static bool is_block(void *context, const void *macro) {
+    (void)context;
+    return ((const Macro *)macro)->is_block;
+}
+
 static void make_host(ParserHost *host, Source *s) {
-    *host = (ParserHost){.context = s, .classify = classify, .macro_binding = binding, .pull = pull, .after = after,
+    *host = (ParserHost){.context = s, .classify = classify, .macro_binding = binding, .macro_is_block = is_block, .pull = pull, .after = after,
                          .take_body = take_body, .fold = fold, .groups_ended = groups_ended};
 }
 

@@ -257,9 +257,21 @@ static Value block_function(Eval *ev, const Node *node, const Node *body) {
         return internal_function(ev, node, (int)double_clamp(id, -1, 1000));
     }
     Keyword word = keyword_of(&ev->keywords, body->as.block.word);
-    Value v = eval_node(ev, body);
+    Value v = {.kind = VALUE_BLOCK};
+    if (word == KW_pattern) {
+        ArenaMark mark = arena_mark(&ev->blocks);
+        eval_block_items(ev, body->as.block.word, body->as.block.word_span, body->span, body->as.block.body);
+        arena_reset_to(&ev->blocks, mark);
+    } else {
+        v = eval_node(ev, body);
+    }
     if (v.kind == VALUE_ERROR) return v;
     if (v.kind == VALUE_SPLINE) return spline_function(ev, node, v.as.spline);
+    if (v.kind == VALUE_PIGMENT && ev->options->geometry && ev->options->geometry->pigment_function) {
+        const EvalGeometry *g = ev->options->geometry;
+        TapeExternal *external = arena_new(ev->build.arena, TapeExternal);
+        if (g->pigment_function(g->context, ev->build.arena, v.as.pigment, external)) return external_function(ev, node, external);
+    }
     if (v.kind == VALUE_TRANSFORM) return transform_function(ev, node, v.as.transform);
     EvalFunction *f = function_new(ev, node, 3);
     f->missing = word == KW_pigment || word == KW_pattern ? "pigments and patterns as functions are not available in this version"

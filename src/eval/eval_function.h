@@ -21,6 +21,8 @@ typedef struct KnownFunction {
 } KnownFunction;
 const KnownFunction *known_function_find(Name name);
 
+/* A function that is nothing but one external. */
+Value external_function(Eval *ev, const Node *node, const TapeExternal *external);
 /* function { internal(id) }, function { spline { S } }, function { transform { T } } */
 Value internal_function(Eval *ev, const Node *node, int id);
 Value spline_function(Eval *ev, const Node *node, const Spline *spline);

@@ -18,6 +18,7 @@ void run_define_macro(Eval *ev, const Node *node) {
 typedef struct Shape {
     int values;      /* 0, 1, or 2 for more or unknown */
     Binding binding; /* of the value */
+    bool block;      /* the value is a block */
 } Shape;
 
 static Shape body_shape(Eval *ev, const Body *body);
@@ -39,28 +40,28 @@ static Binding node_binding(Eval *ev, const Node *n) {
 }
 
 static Shape both(Shape a, Shape b) {
-    if (a.values + b.values >= 2) return (Shape){2, BIND_NONE};
+    if (a.values + b.values >= 2) return (Shape){2, BIND_NONE, false};
     return a.values ? a : b;
 }
 
 static Shape either(Shape a, Shape b) {
-    if (a.values != b.values) return (Shape){2, BIND_NONE};
-    return (Shape){a.values, a.binding < b.binding ? a.binding : b.binding};
+    if (a.values != b.values) return (Shape){2, BIND_NONE, false};
+    return (Shape){a.values, a.binding < b.binding ? a.binding : b.binding, a.block || b.block};
 }
 
 static Shape branches_shape(Eval *ev, const Node *n) {
-    Shape shape = {0, BIND_PRIMARY};
+    Shape shape = {0, BIND_PRIMARY, false};
     bool has_else = false;
     for (size_t i = 0; i < n->as.branches.count; i++) {
         Shape one = body_shape(ev, &n->as.branches.branches[i].body);
         shape = i == 0 ? one : either(shape, one);
         has_else = has_else || !n->as.branches.branches[i].condition;
     }
-    return has_else ? shape : either(shape, (Shape){0, BIND_PRIMARY});
+    return has_else ? shape : either(shape, (Shape){0, BIND_PRIMARY, false});
 }
 
 static Shape cases_shape(Eval *ev, const Node *n) {
-    Shape shape = {0, BIND_PRIMARY};
+    Shape shape = {0, BIND_PRIMARY, false};
     for (size_t i = 0; i < n->as.switch_.count; i++) {
         Shape one = body_shape(ev, &n->as.switch_.cases[i].body);
         shape = i == 0 ? one : either(shape, one);
@@ -71,10 +72,10 @@ static Shape cases_shape(Eval *ev, const Node *n) {
 static Shape call_shape(Eval *ev, const Node *n) {
     const Macro *macro;
     if (n->as.apply.base->kind != NODE_NAME || scope_classify(ev, n->as.apply.base->as.name, &macro) != NAME_MACRO)
-        return (Shape){1, BIND_PRIMARY};
+        return (Shape){1, BIND_PRIMARY, false};
     Macro *m = (Macro *)(uintptr_t)macro;
-    if (m->measuring) return (Shape){1, BIND_PRIMARY};
-    if (!m->whole) return (Shape){2, BIND_NONE};
+    if (m->measuring) return (Shape){1, BIND_PRIMARY, false};
+    if (!m->whole) return (Shape){2, BIND_NONE, false};
     m->measuring = true;
     Shape shape = body_shape(ev, &m->body);
     m->measuring = false;
@@ -84,26 +85,26 @@ static Shape call_shape(Eval *ev, const Node *n) {
 static Shape node_shape(Eval *ev, const Node *n) {
     switch (n->kind) {
     case NODE_DECLARE: case NODE_UNDEF: case NODE_BREAK: case NODE_MACRO: case NODE_VERSION: case NODE_DEFAULT: case NODE_MESSAGE:
-    case NODE_FOPEN: case NODE_FCLOSE: case NODE_READ: case NODE_WRITE: return (Shape){0, BIND_PRIMARY};
+    case NODE_FOPEN: case NODE_FCLOSE: case NODE_READ: case NODE_WRITE: return (Shape){0, BIND_PRIMARY, false};
     case NODE_IF: return branches_shape(ev, n);
     case NODE_SWITCH: return cases_shape(ev, n);
-    case NODE_WHILE: return body_shape(ev, &n->as.loop.body).values ? (Shape){2, BIND_NONE} : (Shape){0, BIND_PRIMARY};
-    case NODE_FOR: return body_shape(ev, &n->as.for_loop.body).values ? (Shape){2, BIND_NONE} : (Shape){0, BIND_PRIMARY};
-    case NODE_INCLUDE: case NODE_WORD: case NODE_ENTRY: case NODE_LIST: case NODE_EMPTY: case NODE_ERROR: return (Shape){2, BIND_NONE};
+    case NODE_WHILE: return body_shape(ev, &n->as.loop.body).values ? (Shape){2, BIND_NONE, false} : (Shape){0, BIND_PRIMARY, false};
+    case NODE_FOR: return body_shape(ev, &n->as.for_loop.body).values ? (Shape){2, BIND_NONE, false} : (Shape){0, BIND_PRIMARY, false};
+    case NODE_INCLUDE: case NODE_WORD: case NODE_ENTRY: case NODE_LIST: case NODE_EMPTY: case NODE_ERROR: return (Shape){2, BIND_NONE, false};
     case NODE_CALL: return call_shape(ev, n);
-    default: return (Shape){1, node_binding(ev, n)};
+    default: return (Shape){1, node_binding(ev, n), n->kind == NODE_BLOCK};
     }
 }
 
 /* Bodies are parsed here before they run, when names that they declare themselves mean nothing yet: those trees are not kept. */
 static Shape body_shape(Eval *ev, const Body *body) {
-    Shape shape = {0, BIND_PRIMARY};
-    if (!body->tokens) return (Shape){2, BIND_NONE};
+    Shape shape = {0, BIND_PRIMARY, false};
+    if (!body->tokens) return (Shape){2, BIND_NONE, false};
     Parser p = {.arena = &ev->temp, .diags = ev->diags, .keywords = &ev->keywords, .host = &ev->fast_host, .list = body->tokens,
-                .at = body->begin, .end = body->end};
+                .at = body->begin, .end = body->end, .guessing = true};
     while (p.at < p.end && shape.values < 2) {
         Node *n = parser_statement(&p);
-        if (!n) return (Shape){2, BIND_NONE};
+        if (!n) return (Shape){2, BIND_NONE, false};
         shape = both(shape, node_shape(ev, n));
     }
     return shape;
@@ -121,6 +122,7 @@ Binding macro_binding(Eval *ev, const Macro *macro) {
         m->measuring = false;
         arena_reset_to(&ev->temp, mark);
         if (shape.values == 1) m->binding = shape.binding;
+        m->is_block = shape.block;
     }
     m->stamp = ev->macro_stamp;
     return m->binding;

@@ -92,12 +92,15 @@ Flow run_body(Eval *ev, const Body *body, Sink *sink) {
         return flow;
     }
     Program *program = eval_program(ev, body->tokens);
+    uint64_t outer = ev->body;
+    ev->body = ++ev->body_count;
     for (uint32_t at = body->begin; at < body->end && flow == FLOW_NEXT;) {
         ArenaMark mark = arena_mark(&ev->temp);
         flow = run_statement(ev, program, &at, body->end, sink);
         if (!(sink->kind == SINK_SINGLE && sink->filled)) arena_reset_to(&ev->temp, mark);
-        if (ev->stopped) return FLOW_STOP;
+        if (ev->stopped) flow = FLOW_STOP;
     }
+    ev->body = outer;
     return flow;
 }
 

@@ -13,8 +13,9 @@ static Value keep(Eval *ev, Value v) {
 
 /* A number, colour or text that directives brought in right after a word continues that word's arguments, as it would if it stood
  * there. */
-static bool continues_word(const ItemList *items, const Value *v) {
-    if (items->count == 0 || items->items[items->count - 1].kind != ITEM_WORD || items->items[items->count - 1].body) return false;
+static bool continues_word(const Eval *ev, const Sink *sink, const Value *v) {
+    const ItemList *items = sink->items;
+    if (sink->word_body == ev->body || items->count == 0 || items->items[items->count - 1].kind != ITEM_WORD || items->items[items->count - 1].body) return false;
     return value_is_numeric(v) || v->kind == VALUE_STRING;
 }
 
@@ -27,7 +28,7 @@ static void add_argument(Eval *ev, BlockItem *item, Value v, Span span) {
 
 static void add_item(Eval *ev, Sink *sink, Value v, Span span) {
     v = keep(ev, v);
-    if (continues_word(sink->items, &v)) add_argument(ev, &sink->items->items[sink->items->count - 1], v, span);
+    if (continues_word(ev, sink, &v)) add_argument(ev, &sink->items->items[sink->items->count - 1], v, span);
     else *list_push(&ev->blocks, sink->items) = (BlockItem){.kind = ITEM_VALUE, .span = span, .value = v};
 }
 
@@ -134,6 +135,7 @@ void sink_word(Eval *ev, Sink *sink, const Node *node) {
     }
     if (node->as.word.body) item.body = eval_block_items(ev, item.word, item.word_span, item.span, node->as.word.body);
     *list_push(&ev->blocks, sink->items) = item;
+    sink->word_body = ev->body;
 }
 
 void sink_entry(Eval *ev, Sink *sink, const Node *node) {

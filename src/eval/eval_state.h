@@ -46,6 +46,7 @@ struct Macro {
     /* Whether a call stands for one expression and how tightly it binds; found on first need, and again when `stamp` is old. */
     Binding binding;
     uint32_t stamp;
+    bool is_block;           /* its value is a block: an item of its own, never an argument of a word before it */
     bool measuring;
 };
 
@@ -75,6 +76,7 @@ typedef struct Sink {
     SinkKind kind;
     Name block;       /* SINK_ITEMS */
     ItemList *items;  /* SINK_ITEMS */
+    uint64_t word_body; /* SINK_ITEMS: the run of a body that brought the last word */
     Value value;      /* SINK_SINGLE */
     bool filled;
     Array *array;     /* SINK_ARRAY */
@@ -143,6 +145,7 @@ struct Eval {
     uint32_t macro_stamp; /* counts definitions of macros */
     CallRecord *calls;
     uint32_t call_depth, include_depth;
+    uint64_t body, body_count; /* the run of a body that is going on, and how many there were */
     int nesting; /* C stack: bodies and expressions within each other */
 
     Program **programs; /* by file id */
@@ -209,6 +212,8 @@ Value eval_builtin_string(Eval *ev, const Node *node);
 Value eval_constant(Eval *ev, const Node *node);
 /* min_extent, max_extent (eval_extent.c). */
 Value eval_extent(Eval *ev, const Node *node);
+/* trace, inside: by way of EvalOptions.geometry. */
+Value eval_geometry(Eval *ev, const Node *node);
 bool builtin_argument_count(Eval *ev, const Node *node, size_t least, size_t most);
 
 /* ---- eval_array.c ---- */

@@ -151,7 +151,10 @@ void slot_set(Eval *ev, Slot *slot, const Value *value) {
     Value v = *value;
     if (v.kind == VALUE_VECTOR || v.kind == VALUE_COLOR) {
         size_t bytes = v.size * sizeof(double);
-        v.as.components = memcpy(slot_buffer(ev, slot, size_max(bytes, 5 * sizeof(double))), v.as.components, bytes);
+        double *own = memcpy(slot_buffer(ev, slot, size_max(bytes, 5 * sizeof(double))), v.as.components, bytes);
+        /* POV-Ray keeps colours in single precision. */
+        for (int i = 0; v.kind == VALUE_COLOR && i < v.size; i++) own[i] = (double)(float)own[i];
+        v.as.components = own;
     } else if (v.kind == VALUE_STRING) {
         char *text = slot_buffer(ev, slot, v.as.string.length + 1);
         memcpy(text, v.as.string.text, v.as.string.length);

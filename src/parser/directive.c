@@ -237,14 +237,14 @@ static Node *declare_directive(Parser *p, Token head) {
     Node *n = parser_node(p, NODE_DECLARE, head.span);
     n->as.declare.local = head.keyword == KW_local;
     p->brackets = 0;
-    size_t groups = p->slow ? p->host->groups_ended(p->host->context) : 0;
+    p->crossed = false;
     n->as.declare.target = parser_target(p);
     if (!n->as.declare.target || !parser_expect(p, '=', "'='")) return NULL;
     Node *value = n->as.declare.value = parser_expression(p);
     if (!value) return NULL;
     n->span = span_join(head.span, p->last.span);
     if (p->slow && p->closed && !p->has_window && p->host->after(p->host->context, 0)->kind != ';') return n;
-    if (p->slow && p->host->groups_ended(p->host->context) != groups && needs_semicolon(value) && !p->closed) {
+    if (p->crossed && needs_semicolon(value)) {
         Diagnostic *d = diag_error(p->diags, value->span, "a directive ends in the middle of this value");
         diag_hint(p->diags, d, "put the value into parentheses");
         p->failed = true;

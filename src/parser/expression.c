@@ -261,46 +261,62 @@ static int dot_component(const Token *t) {
     }
 }
 
-/* postfix = primary { "." component | "[" expression "]" } */
+static bool is_text(const Node *n) {
+    if (n->kind == NODE_STRING) return true;
+    if (n->kind != NODE_BUILTIN) return false;
+    return n->op == KW_concat || n->op == KW_str || n->op == KW_vstr || n->op == KW_chr || n->op == KW_substr || n->op == KW_strlwr ||
+           n->op == KW_strupr || n->op == KW_datetime;
+}
+
+/* On the slow road, looking at the next token runs the directives before it. Outside of brackets an operand therefore ends where
+ * a directive follows it, and after values that no operator can follow nothing is looked at. */
+static bool operand_ends(Parser *p, const Node *n) {
+    if (n->kind == NODE_BLOCK || n->kind == NODE_FUNCTION || n->kind == NODE_ARRAY || is_text(n)) return true;
+    return p->slow && p->brackets == 0 && !p->has_window && p->host->after(p->host->context, 0)->kind == TOKEN_DIRECTIVE &&
+           p->host->after(p->host->context, 0)->keyword != KW_end;
+}
+
+static Node *dot(Parser *p, Node *n) {
+    parser_take(p);
+    p->raw = true;
+    Token part = parser_take(p);
+    int component = part.kind == TOKEN_WORD ? dot_component(&part) : -1;
+    if (component < 0) return parser_fail(p, part.span, "expected a component (x, y, z, red, filter …) after '.'");
+    require(n, BIND_PRIMARY);
+    Node *result = parser_node(p, NODE_DOT, span_join(n->span, part.span));
+    result->op = (uint16_t)component;
+    result->as.operand.a = n;
+    return result;
+}
+
+/* "[" expression "]" ["(" arguments ")"]: an element, possibly a function that is called */
+static Node *index(Parser *p, Node *n) {
+    parser_take(p);
+    p->brackets++;
+    Node *e = parser_expression(p);
+    if (!e || !parser_expect(p, ']', "']'")) return NULL;
+    p->brackets--;
+    Node *result = parser_node(p, NODE_INDEX, span_join(n->span, p->last.span));
+    result->as.apply.base = n;
+    *list_push(p->arena, &result->as.apply.list) = e;
+    if (operand_ends(p, result) || parser_peek(p)->kind != '(') return result;
+    Node *call = parser_node(p, NODE_CALL, result->span);
+    call->as.apply.base = result;
+    return plain_arguments(p, &call->as.apply.list) ? call : NULL;
+}
+
+/* postfix = primary { "." component | index } */
 static Node *postfix(Parser *p) {
     Node *n = primary(p);
-    /* Nothing can follow these, so nothing is looked at: on the slow road that would run the directives that come next. */
-    p->closed = n && (n->kind == NODE_BLOCK || n->kind == NODE_FUNCTION || n->kind == NODE_ARRAY);
-    if (p->closed) return fold(p, n);
+    size_t groups = p->slow ? p->host->groups_ended(p->host->context) : 0;
     for (;;) {
         if (!n || p->failed) return NULL;
-        const Token *t = parser_peek(p);
-        if (t->kind == '.') {
-            parser_take(p);
-            p->raw = true;
-            Token part = parser_take(p);
-            int component = part.kind == TOKEN_WORD ? dot_component(&part) : -1;
-            if (component < 0) return parser_fail(p, part.span, "expected a component (x, y, z, red, filter …) after '.'");
-            require(n, BIND_PRIMARY);
-            Node *dot = parser_node(p, NODE_DOT, span_join(n->span, part.span));
-            dot->op = (uint16_t)component;
-            dot->as.operand.a = n;
-            n = dot;
-        } else if (t->kind == '[' && (n->kind == NODE_NAME || n->kind == NODE_INDEX || n->kind == NODE_VALUE)) {
-            parser_take(p);
-            p->brackets++;
-            Node *e = parser_expression(p);
-            if (!e || !parser_expect(p, ']', "']'")) return NULL;
-            p->brackets--;
-            Node *index = parser_node(p, NODE_INDEX, span_join(n->span, p->last.span));
-            index->as.apply.base = n;
-            *list_push(p->arena, &index->as.apply.list) = e;
-            n = index;
-            if (parser_peek(p)->kind == '(') {
-                /* an array of functions: A[I](x) */
-                Node *call = parser_node(p, NODE_CALL, n->span);
-                call->as.apply.base = n;
-                if (!plain_arguments(p, &call->as.apply.list)) return NULL;
-                n = call;
-            }
-        } else {
-            return fold(p, n);
-        }
+        p->closed = operand_ends(p, n);
+        int next = p->closed ? TOKEN_END : parser_peek(p)->kind;
+        if (p->slow && p->brackets == 0 && p->host->groups_ended(p->host->context) != groups) p->crossed = true;
+        if (next == '.') n = dot(p, n);
+        else if (next == '[' && (n->kind == NODE_NAME || n->kind == NODE_INDEX || n->kind == NODE_VALUE)) n = index(p, n);
+        else return fold(p, n);
     }
 }
 
@@ -482,8 +498,10 @@ bool parser_begins_expression(Parser *p, bool after_comma) {
     if (!after_comma && context_is_item(p->block, t->as.name)) return false;
     const void *macro;
     switch (parser_classify(p, t->as.name, &macro)) {
-    case NAME_UNKNOWN: return after_comma ? !brace : parser_peek_after(p)->kind == '(';
-    case NAME_MACRO: return parser_peek_after(p)->kind == '(' && p->host->macro_binding(p->host->context, macro) != BIND_NONE;
+    case NAME_UNKNOWN: return after_comma ? !brace : after == '(';
+    case NAME_MACRO:
+        if (after != '(' || p->host->macro_binding(p->host->context, macro) == BIND_NONE) return false;
+        return after_comma || !p->host->macro_is_block(p->host->context, macro);
     default: return true;
     }
 }

@@ -85,7 +85,7 @@ static Node *named_item(Parser *p) {
     switch (parser_classify(p, t->as.name, &macro)) {
     case NAME_UNKNOWN:
         if (brace) return parser_block(p);
-        return after->kind == '(' ? parser_expression(p) : word_item(p);
+        return after->kind == '(' || p->guessing ? parser_expression(p) : word_item(p);
     case NAME_MACRO:
         if (after->kind != '(') return parser_fail(p, t->span, "'%s' is a macro: it is called with ( )", t->as.name->text);
         return call_item(p, macro);

@@ -37,6 +37,7 @@ typedef struct ParserHost {
     NameClass (*classify)(void *context, Name name, const void **macro);
     /* Whether a call of this macro stands for one expression, and how tightly it binds; BIND_NONE if it does not. */
     Binding (*macro_binding)(void *context, const void *macro);
+    bool (*macro_is_block)(void *context, const void *macro); /* after macro_binding() */
     /* Slow road only. The next token, macros expanded and names replaced by their values unless the parser's `raw` is set. */
     Token (*pull)(void *context, Parser *parser);
     /* The raw token after the one that was pulled last, or the one `skip` tokens further; not taken. */
@@ -67,7 +68,9 @@ struct Parser {
     size_t parameter_count;
     bool in_function;
     bool heads_only;    /* branches of directives need not be whole: the text after #end may complete them */
-    bool closed;        /* the last operand was a block, a function or an array: no operator follows */
+    bool guessing;      /* names that mean nothing yet are taken for values */
+    bool crossed;       /* slow road: a group ended between an operand and what follows it, outside of brackets */
+    bool closed;        /* the last operand was a block, a function, an array or a text: no operator follows */
     int depth;          /* nesting, against the C stack */
     int brackets;       /* open ( < [ of the expression being read */
     AssumptionList assumptions;

@@ -62,7 +62,7 @@ static bool warn_first(SceneDraft *draft, BuildContext *context, const char *wor
     return true;
 }
 
-static const char *what_happens(const char *word) {
+static const char *what_happens(const BuildContext *context, const char *word) {
     static const struct { const char *word, *text; } effects[] = {
         {"area_light", "is drawn as a point light"}, {"fisheye", "is drawn as a perspective camera"},
         {"ultra_wide_angle", "is drawn as a perspective camera"}, {"spherical", "is drawn as a perspective camera"},
@@ -71,13 +71,17 @@ static const char *what_happens(const char *word) {
     };
     for (size_t i = 0; i < VTS_ARRAY_COUNT(effects); i++)
         if (strcmp(effects[i].word, word) == 0) return effects[i].text;
-    return "is not modelled yet: it has no effect";
+    bool known;
+    BlockBuilder *builder = block_builder_find(context, intern_cstr(context->names, word), &known);
+    return builder == build_unmodelled ? "is not modelled yet: it is left out" : "is not modelled yet: it has no effect";
 }
 
+/* The newest note is the first of its list: the text's order is from the end. */
 static void warn_inert(SceneDraft *draft, BuildContext *context, const InertNote *notes) {
-    for (; notes; notes = notes->next)
-        if (warn_first(draft, context, notes->word))
-            diag_warning(context->diags, notes->span, "'%s' %s", notes->word, what_happens(notes->word));
+    if (!notes) return;
+    warn_inert(draft, context, notes->next);
+    if (warn_first(draft, context, notes->word))
+        diag_warning(context->diags, notes->span, "'%s' %s", notes->word, what_happens(context, notes->word));
 }
 
 static void walk_pigment(SceneDraft *draft, BuildContext *context, const Pigment *pigment) {

@@ -20,7 +20,7 @@ static void read_diffuse(Reader *reader, const Word *word, void *target) {
     Word source;
     if (!amount(reader, word, 2, &source) || !word_float(reader, &source, 0, &finish->diffuse)) return;
     finish->transmission = 0;
-    if (source.count == 2) word_float(reader, &source, 1, &finish->transmission);
+    if (source.count >= 2) word_float(reader, &source, 1, &finish->transmission);
 }
 
 static void read_specular(Reader *reader, const Word *word, void *target) {

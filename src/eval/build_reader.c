@@ -184,12 +184,19 @@ bool argument_function(Reader *reader, const Argument *argument, const char *wha
 
 /* ---- words ---- */
 
+/* `distance 25000 rgb 1`: the evaluator cannot know that the colour is no argument of `distance`. */
+static bool take_surplus(Reader *reader, const Word *word, size_t from) {
+    for (size_t i = from; i < word->count; i++)
+        if (!reader->on_value || !reader->on_value(reader, &word->arguments[i], reader->value_target)) return false;
+    return true;
+}
+
 bool word_arguments(Reader *reader, const Word *word, size_t low, size_t high) {
     if (word->count < low) {
         reader_error(reader, word->span, "'%s' needs %zu value%s, found %zu", word->text, low, low == 1 ? "" : "s", word->count);
         return false;
     }
-    if (word->count > high) {
+    if (word->count > high && !take_surplus(reader, word, high)) {
         reader_error(reader, word->arguments[high].span, "'%s' takes at most %zu value%s, found %zu", word->text, high,
                      high == 1 ? "" : "s", word->count);
         return false;
@@ -255,7 +262,8 @@ bool word_string(Reader *reader, const Word *word, size_t index, const char **ou
 
 static void read_flag(Reader *reader, const Word *word, bool *out) {
     double value = 1;
-    if (word_arguments(reader, word, 0, 1) && (word->count == 0 || word_float(reader, word, 0, &value))) *out = value != 0;
+    bool number = word->count && word->arguments[0].value.kind == VALUE_FLOAT;
+    if (word_arguments(reader, word, 0, number ? 1 : 0) && (!number || word_float(reader, word, 0, &value))) *out = value != 0;
 }
 
 static void read_positive(Reader *reader, const Word *word, double *out) {
@@ -265,6 +273,13 @@ static void read_positive(Reader *reader, const Word *word, double *out) {
         *out = value;
     else
         reader_error(reader, word->arguments[0].span, "'%s' must be greater than 0, found %g", word->text, value);
+}
+
+/* A word that is skipped with its numbers may have a colour behind them that is none of its. */
+static void skip_arguments(Reader *reader, const Word *word) {
+    for (size_t i = 1; i < word->count; i++)
+        if (word->arguments[i].value.kind == VALUE_COLOR && reader->on_value)
+            reader->on_value(reader, &word->arguments[i], reader->value_target);
 }
 
 static void apply_rule(Reader *reader, const Word *word, const WordRule *rule, void *target) {
@@ -278,8 +293,11 @@ static void apply_rule(Reader *reader, const Word *word, const WordRule *rule, v
     case WORD_INT: word_int(reader, word, 0, field); break;
     case WORD_VECTOR: word_vector(reader, word, 0, field); break;
     case WORD_COLOR: word_color(reader, word, 0, field); break;
-    case WORD_IGNORED: break;
-    case WORD_INERT: inert_add(reader->context, field, rule->text, word->span); break;
+    case WORD_IGNORED: skip_arguments(reader, word); break;
+    case WORD_INERT:
+        skip_arguments(reader, word);
+        inert_add(reader->context, field, rule->text, word->span);
+        break;
     case WORD_CUSTOM: rule->handler(reader, word, target); break;
     }
 }

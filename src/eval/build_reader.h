@@ -90,7 +90,7 @@ bool word_int(Reader *reader, const Word *word, size_t index, int *out);
 bool word_vector(Reader *reader, const Word *word, size_t index, Vec3 *out);
 bool word_color(Reader *reader, const Word *word, size_t index, Color *out);
 bool word_string(Reader *reader, const Word *word, size_t index, const char **out);
-/* At least `low` and at most `high` arguments. */
+/* At least `low` and at most `high` arguments; what is more goes to the block as values, if it takes them. */
 bool word_arguments(Reader *reader, const Word *word, size_t low, size_t high);
 
 /* Promotions; a value of the wrong kind is an error that begins with `what` ("'threshold'"). Not finite is one too. */

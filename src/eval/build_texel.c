@@ -23,6 +23,11 @@ static void set_bounds(Reader *reader, TexelDraft *draft, Box3 box, Span span) {
         draft->texel.bounds = box;
 }
 
+static void note_unmodelled(Reader *reader, TexelDraft *draft, const Object *object) {
+    for (const InertNote *note = object->inert; note; note = note->next)
+        inert_add(reader->context, &draft->texel.inert, note->word, note->span);
+}
+
 /* `bounds A, B`, `bounds OBJECT`, or `bounds { OBJECT }` read as `bounds` and an object behind it. */
 static void read_bounds(Reader *reader, const Word *word, void *target) {
     Vec3 a, b;
@@ -39,7 +44,9 @@ static void read_bounds(Reader *reader, const Word *word, void *target) {
         return;
     }
     const Object *object = object_from_value(reader->context, &value);
-    if (object)
+    if (object && object->kind == OBJECT_UNMODELLED)
+        note_unmodelled(reader, target, object); /* the unit cube stays */
+    else if (object)
         set_bounds(reader, target, object_bounds(object), value.span);
     else
         reader_mismatch(reader, value.span, "'bounds'", "two corners or an object", value.value.kind);
@@ -73,7 +80,9 @@ static void read_cyclic(Reader *reader, const Word *word, void *target) {
 /* ---- layers ---- */
 
 typedef struct LayerDraft {
+    TexelDraft *texel;
     TexelLayer layer;
+    bool unmodelled; /* holds something that is not drawn */
     struct { const Object **items; size_t count, capacity; } contents;
     Transform place;
 } LayerDraft;
@@ -85,6 +94,11 @@ static bool on_layer_value(Reader *reader, const Argument *value, void *target) 
                                ? NULL
                                : object_from_value(reader->context, value);
     if (!object) return take_looks(reader->context, value, &draft->layer.texture, &ignored, &draft->place);
+    if (object->kind == OBJECT_UNMODELLED) {
+        note_unmodelled(reader, draft->texel, object);
+        draft->unmodelled = true;
+        return true;
+    }
     if (object->kind == OBJECT_PLANE)
         reader_error(reader, value->span, "a plane has no end: a layer's contents must have bounds");
     *list_push(reader->context->arena, &draft->contents) = object;
@@ -92,11 +106,12 @@ static bool on_layer_value(Reader *reader, const Argument *value, void *target) 
 }
 
 static void read_density(Reader *reader, const Word *word, void *target) {
-    (void)target;
-    diag_warning(reader->context->diags, word->span, "'density' in a layer is not modelled yet: it stays empty");
+    LayerDraft *draft = target;
+    inert_add(reader->context, &draft->texel->texel.inert, "density", word->span);
+    draft->unmodelled = true;
 }
 
-/* A layer may stand empty (its note was given); what is missing is anything between its braces. */
+/* A layer of nothing but what is not drawn is left out; one without anything is an error. */
 static void read_layer(Reader *reader, const Word *word, void *target) {
     static const WordRule layer_rules[] = {{"density", WORD_CUSTOM, 0, read_density, false}};
     TexelDraft *draft = target;
@@ -104,15 +119,15 @@ static void read_layer(Reader *reader, const Word *word, void *target) {
         reader_error(reader, word->span, "'layer' needs its contents { … }");
         return;
     }
-    LayerDraft layer = {.layer.span = word->whole, .place = transform_identity()};
+    LayerDraft layer = {.texel = draft, .layer.span = word->whole, .place = transform_identity()};
     Reader body = reader_nested(reader, word->body);
     reader_add_table(&body, layer_rules, VTS_ARRAY_COUNT(layer_rules), &layer);
     body.on_value = on_layer_value;
     body.value_target = &layer;
     reader_run(&body);
     if (!reader_end_nested(reader, &body)) return;
-    if (layer.contents.count == 0 && body.met == 0) {
-        reader_error(reader, word->span, "this layer holds no object");
+    if (layer.contents.count == 0) {
+        if (!layer.unmodelled) reader_error(reader, word->span, "this layer holds no object");
         return;
     }
     layer.layer.contents = layer.contents.items;

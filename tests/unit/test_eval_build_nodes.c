@@ -342,6 +342,44 @@ static void test_lawn(void **state) {
     assert_near(scene->settings.max_error, 0.004);
 }
 
+/* A colour behind a word and its number belongs to the block, not to the word. */
+static void test_colours_behind_words(void **state) {
+    BlockText *t = *state;
+    const Fog *fog = block_text_value(t, "fog { fog_type 1 distance 25000 rgb <0.25, 0.5, 1> }").as.fog;
+    assert_near(fog->distance, 25000);
+    assert_near(fog->color.green, 0.5);
+    const Light *light = block_text_value(t, "light_source { y, parallel rgb 0.5 point_at 0 }").as.light;
+    assert_int_equal(light->kind, LIGHT_PARALLEL);
+    assert_near(light->color.blue, 0.5);
+    light = block_text_value(t, "light_source { y, shadowless rgb 0.25 }").as.light;
+    assert_true(light->shadowless);
+    assert_near(light->color.blue, 0.25);
+}
+
+static void test_spotlight(void **state) {
+    const Light *l = block_text_value(*state, "light_source { 0, rgb 1 spotlight point_at <0, 0, 5> radius 12 falloff 20 fade_distance 3 fade_power 2 rotate <0, 90, 0> translate y }").as.light;
+    assert_int_equal(l->kind, LIGHT_SPOT);
+    assert_vec(l->location, vec3(0, 1, 0));
+    assert_vec(l->point_at, vec3(5, 1, 0)); /* z turns to x about y */
+    assert_vec(l->to_light, vec3(-1, 0, 0));
+    assert_near(l->falloff, 20);
+    assert_near(l->fade_power, 2);
+}
+
+static void test_sky_layers_and_settings(void **state) {
+    const Scene *scene = block_text_scene(*state, "sky_sphere { pigment { rgb 1 } pigment { bozo } rotate x }\n"
+                                                  "global_settings { max_error 0.01 opacity_model mean detail \"voxels\" samples 4 ambient_light 2 }\n"
+                                                  "global_settings { assumed_gamma 2 } sphere { 0, 1 }");
+    assert_non_null(scene);
+    assert_int_equal(scene->sky_layer_count, 2);
+    assert_int_equal(scene->sky_layers[1]->kind, PATTERN_BOZO);
+    assert_string_equal(scene->settings.opacity_model, "mean");
+    assert_string_equal(scene->settings.detail, "voxels");
+    assert_int_equal(scene->settings.samples, 4);
+    assert_near(scene->settings.assumed_gamma, 2);
+    assert_near(scene->settings.ambient_light.blue, 2);
+}
+
 /* ---- scene ---- */
 
 static void test_lights_in_unions_move_with_them(void **state) {
@@ -431,6 +469,9 @@ int main(void) {
         TEST(test_texel_bounds_of_object),
         TEST(test_particles_one_word_each),
         TEST(test_lawn),
+        TEST(test_colours_behind_words),
+        TEST(test_spotlight),
+        TEST(test_sky_layers_and_settings),
         TEST(test_lights_in_unions_move_with_them),
         TEST(test_mesh_of_triangles),
         TEST(test_default_texture),

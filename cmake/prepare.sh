@@ -67,11 +67,23 @@ configure() {
   }
 }
 
-# build FOLDER [ninja arguments...]: silent when nothing is to do.
+# Ninja's words on stderr: its steps as one changing line on a terminal and not elsewhere, errors and warnings in full.
+show_steps() {
+  local line shown=
+  while IFS= read -r line; do
+    case $line in
+      'ninja: no work to do.' | 'ninja: Entering directory'* | '[0/'* | '') ;;
+      '['[0-9]*) [ -t 2 ] && shown=1 && printf '\r\033[K%.78s' "$line" >&2 ;;
+      *) printf '%s%s\n' "${shown:+$'\r\033[K'}" "$line" >&2; shown= ;;
+    esac
+  done
+  [ -z "$shown" ] || printf '\r\033[K' >&2
+}
+
+# build FOLDER [ninja arguments...]: silent when nothing is to do. Callers set pipefail.
 build() {
   local folder=$1
   shift
-  ninja -C "$folder" -n "$@" 2>/dev/null | grep -q 'no work to do' && return
-  say "Building in $folder ..."
-  if [ -t 2 ]; then ninja -C "$folder" "$@" >&2; else ninja -C "$folder" --quiet "$@" >&2; fi
+  [ -f "$folder/.ninja_log" ] || say "Building in $folder ..."
+  ninja -C "$folder" "$@" 2>&1 | show_steps
 }

@@ -211,6 +211,8 @@ TokenList *lexer_run(const SourceFile *file, const KeywordTable *keywords, Arena
     Lexer lx = {.file = file, .keywords = keywords, .arena = arena, .diags = diags, .text = file->text, .size = file->size};
     if (lx.size >= 3 && memcmp(lx.text, "\xEF\xBB\xBF", 3) == 0) lx.at = 3;
     for (skip_blanks(&lx); lx.at < lx.size; skip_blanks(&lx)) lex_one(&lx);
+    /* The end is blamed for what is missing: it lies right after the last token, not behind blank lines. */
+    if (lx.tokens.count) lx.at = lx.tokens.items[lx.tokens.count - 1].span.end;
     push(&lx, TOKEN_END, lx.at);
     TokenList *list = arena_new(arena, TokenList);
     *list = (TokenList){.file = file, .items = lx.tokens.items, .count = (uint32_t)lx.tokens.count};

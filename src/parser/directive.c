@@ -7,10 +7,21 @@ typedef struct Group {
     uint32_t end; /* the directive that ends it */
 } Group;
 
+/* Blamed on the end of the file, where #end is missing, with a note where the group begins. */
+static Node *never_ends(Parser *p, TokenList *list, uint32_t index) {
+    if (p->slow && !p->failed) {
+        const Token *t = &list->items[index], *end = &list->items[list->count - 1];
+        Diagnostic *d = diag_error(p->diags, end->span, "the file ends, but #end is missing for a #%s", t->as.name->text);
+        diag_note(p->diags, d, t->span, "this #%s has no #end", t->as.name->text);
+    }
+    p->failed = true;
+    return NULL;
+}
+
 static bool group_begin(Parser *p, TokenList *list, uint32_t index, uint32_t body, Group *out) {
     const Token *t = &list->items[index];
     if (t->match == 0) {
-        parser_fail(p, t->span, "this #%s has no #end", t->as.name->text);
+        never_ends(p, list, index);
         return false;
     }
     *out = (Group){list, body, t->match};
@@ -108,7 +119,7 @@ static Node *if_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *
             if (!p->slow) p->assumptions = inner.assumptions;
             if (!other) return parser_fail(p, t->span, "the condition of #elseif cannot be read");
         }
-        if (t->match == 0) return parser_fail(p, head->span, "this #%s has no #end", head->as.name->text);
+        if (t->match == 0) return never_ends(p, list, index);
         g.end = t->match;
         *list_push(p->arena, &branches) = (Branch){other, group_body(&g)};
     }
@@ -168,7 +179,7 @@ static Node *switch_directive(Parser *p, TokenList *list, uint32_t index, uint32
     while (list->items[g.end].keyword != KW_end) {
         const Token *t = &list->items[g.end];
         if (t->keyword == KW_elseif) return parser_fail(p, t->span, "this #elseif does not belong to an #if");
-        if (t->match == 0) return parser_fail(p, n->span, "this #switch has no #end");
+        if (t->match == 0) return never_ends(p, list, index);
         SwitchCase one = {0};
         Parser inner = *p;
         inner.slow = false;
@@ -207,7 +218,7 @@ static Node *macro_directive(Parser *p, TokenList *list, uint32_t index, uint32_
         Token name = parser_take(p);
         if (name.keyword) return parser_fail(p, name.span, "'%s' is a word of the language: it cannot be a parameter", name.as.name->text);
         *list_push(p->arena, &names) = name.as.name;
-        if (!parser_accept(p, ',')) break;
+        parser_accept(p, ','); /* POV-Ray does not miss it, and its own includes leave it out */
     }
     if (!parser_expect(p, ')', "',' or ')'")) return NULL;
     Group g;
@@ -232,15 +243,55 @@ static bool needs_semicolon(const Node *n) {
     }
 }
 
-/* declare = ("#declare" | "#local") target "=" expression [";"] */
+/* "deprecated" ["once"] [string]: a note for users of the name, which is not checked here */
+static void skip_deprecation(Parser *p) {
+    p->raw = true;
+    if (!parser_accept_keyword(p, KW_deprecated)) return;
+    p->raw = true;
+    if (parser_accept_keyword(p, KW_once)) p->raw = true;
+    parser_accept(p, TOKEN_STRING);
+}
+
+static bool texture_follows(Parser *p) {
+    const Token *t, *after;
+    if (!p->slow || p->has_window) {
+        t = parser_peek(p);
+        after = parser_peek_after(p);
+    } else {
+        t = p->host->after(p->host->context, 0);
+        after = p->host->after(p->host->context, 1);
+    }
+    return t->kind == TOKEN_WORD && t->keyword == KW_texture && after->kind == '{';
+}
+
+/* texture { … } texture { … }: layers, made into one texture block that holds them. */
+static Node *layers(Parser *p, Node *first, Token word) {
+    Node *n = parser_node(p, NODE_BLOCK, first->span);
+    n->as.block.word = word.as.name;
+    n->as.block.word_span = word.span;
+    n->as.block.body = arena_new(p->arena, Body);
+    *list_push(p->arena, &n->as.block.body->items) = first;
+    while (!p->failed && texture_follows(p)) {
+        Node *layer = parser_expression(p);
+        if (!layer) return NULL;
+        *list_push(p->arena, &n->as.block.body->items) = layer;
+    }
+    return n;
+}
+
+/* declare = ("#declare" | "#local") ["deprecated" …] target "=" expression { texture } [";"] */
 static Node *declare_directive(Parser *p, Token head) {
     Node *n = parser_node(p, NODE_DECLARE, head.span);
     n->as.declare.local = head.keyword == KW_local;
     p->brackets = 0;
     p->crossed = false;
+    skip_deprecation(p);
     n->as.declare.target = parser_target(p);
     if (!n->as.declare.target || !parser_expect(p, '=', "'='")) return NULL;
-    Node *value = n->as.declare.value = parser_expression(p);
+    Token first = p->slow ? *p->host->after(p->host->context, 0) : *parser_peek(p);
+    Node *value = parser_expression(p);
+    if (value && p->closed && first.kind == TOKEN_WORD && first.keyword == KW_texture && texture_follows(p)) value = layers(p, value, first);
+    n->as.declare.value = value;
     if (!value) return NULL;
     n->span = span_join(head.span, p->last.span);
     if (p->slow && p->closed && !p->has_window && p->host->after(p->host->context, 0)->kind != ';') return n;

@@ -32,7 +32,8 @@ static Node *vector(Parser *p) {
     if (!parser_expect(p, '>', "',' or '>'")) return NULL;
     p->brackets--;
     n->span = span_join(open.span, p->last.span);
-    if (n->as.list.count < 2 || (n->as.list.count > 5 && n->as.list.count != 12))
+    /* Long ones are coefficients: of a matrix, of a quartic. */
+    if (n->as.list.count < 2 || n->as.list.count > VECTOR_LONGEST)
         return parser_fail(p, n->span, "a vector has 2 to 5 components, this one %zu", n->as.list.count);
     return n;
 }

@@ -95,6 +95,12 @@ NameClass parser_classify(Parser *p, Name name, const void **macro) {
     return class;
 }
 
+static void never_closed(Parser *p, const Token *open, Span end, const char *name) {
+    p->failed = true;
+    Diagnostic *d = diag_error(p->diags, end, "the text ends, but '%c' is missing for '%s'", open->kind == '[' ? ']' : '}', name);
+    diag_note(p->diags, d, open->span, "opened here");
+}
+
 /* body = "{" … "}" | "[" … "]": a range of tokens where its end is known, else its statements now. */
 Body *parser_body(Parser *p, Name block) {
     Token open = parser_take(p);
@@ -126,7 +132,7 @@ Body *parser_body(Parser *p, Name block) {
     if (!p->failed && !parser_accept(p, close)) {
         const char *name = block ? block->text : "it";
         const Token *t = parser_peek(p);
-        if (t->kind == TOKEN_END) parser_fail(p, open.span, "this '%c' of '%s' is never closed", open.kind, name);
+        if (t->kind == TOKEN_END) never_closed(p, &open, t->span, name);
         else parser_expect(p, close, close == ']' ? "']'" : "'}'");
     }
     return p->failed ? NULL : body;

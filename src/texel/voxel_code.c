@@ -8,8 +8,8 @@ static uint32_t density_code(float density) {
     union {
         float value;
         uint32_t bits;
-    } u = {float_clamp(density, 0x1.04p-24f, 0x1.fcp7f)};
-    uint32_t code = (u.bits + (1u << 16) - (103u << 23)) >> 17;
+    } u = {float_clamp(density, 0x1p-18f, 0x1.fcp13f)};
+    uint32_t code = (u.bits + (1u << 16) - (VOXEL_DENSITY_BIAS << 23)) >> 17;
     return code > VOXEL_DENSITY_LARGEST ? VOXEL_DENSITY_LARGEST : code;
 }
 

@@ -11,6 +11,9 @@
 
 #include "texel/texel.h"
 
+/* Densities from 2⁻¹⁸ to 2¹⁴: that of the lowest code is 2 to this less 127. */
+#define VOXEL_DENSITY_BIAS 109u
+
 typedef struct VoxelCode {
     uint32_t diagonal; /* bytes, lowest first: Bxx Byy Bzz Bxy */
     uint32_t rest;     /* bytes Bxz Byz; 11 bits density; 5 bits gamma */
@@ -42,7 +45,7 @@ static inline float voxel_code_density(uint32_t rest) {
         uint32_t bits;
         float value;
     } u = {(rest >> VOXEL_DENSITY_SHIFT & 2047u) << 17};
-    u.bits += 103u << 23; /* exponents −24 … 7 */
+    u.bits += VOXEL_DENSITY_BIAS << 23;
     return u.value;
 }
 static inline float voxel_code_gamma(uint32_t rest) {

@@ -49,7 +49,8 @@ static inline void scene_free(TestMesh *m) {
 }
 
 static inline TexelMesh scene_view(const TestMesh *m) {
-    return (TexelMesh){m->vertices, (const uint32_t(*)[3])m->triangles, m->vertex_count, m->triangle_count, m->solid};
+    return (TexelMesh){m->vertices, (const uint32_t(*)[3])m->triangles, m->vertex_count, m->triangle_count,
+                       m->solid};
 }
 
 static inline Vec3 scene_direction(RandomStream *r) {
@@ -69,7 +70,8 @@ static inline void scene_leaf(TestMesh *m, Vec3 c, Vec3 n, double radius) {
     uint32_t rim[6];
     vec3_frame(n, &s, &t);
     for (int i = 0; i < 6; i++)
-        rim[i] = scene_vertex(m, vec3_madd(vec3_madd(c, s, radius * cos(i * VTS_PI / 3)), t, radius * sin(i * VTS_PI / 3)));
+        rim[i] = scene_vertex(
+            m, vec3_madd(vec3_madd(c, s, radius * cos(i * VTS_PI / 3)), t, radius * sin(i * VTS_PI / 3)));
     for (int i = 1; i < 5; i++) scene_triangle(m, rim[0], rim[i], rim[i + 1], false);
 }
 
@@ -77,7 +79,8 @@ static inline TestMesh scene_leaves(int count, double radius, uint64_t seed) {
     TestMesh m = {0};
     RandomStream r = {seed};
     for (int i = 0; i < count; i++) {
-        Vec3 c = vec3(.1 + .8 * random_next_unit(&r), .1 + .8 * random_next_unit(&r), .1 + .8 * random_next_unit(&r));
+        Vec3 c = vec3(.1 + .8 * random_next_unit(&r), .1 + .8 * random_next_unit(&r),
+                      .1 + .8 * random_next_unit(&r));
         scene_leaf(&m, c, scene_direction(&r), radius);
     }
     return m;
@@ -89,15 +92,17 @@ static inline TestMesh scene_grass(int count, double height, double width, uint6
     TestMesh m = {0};
     RandomStream r = {seed};
     for (int b = 0; b < count; b++) {
-        Vec3 root = vec3(.1 + .8 * random_next_unit(&r), 0.01, .1 + .8 * random_next_unit(&r));
-        double phi = 2 * VTS_PI * random_next_unit(&r), bend = (.2 + .5 * random_next_unit(&r)) * height;
+        Vec3 root = vec3(.3 + .4 * random_next_unit(&r), 0.01, .3 + .4 * random_next_unit(&r));
+        double phi = 2 * VTS_PI * random_next_unit(&r), bend = (.1 + .3 * random_next_unit(&r)) * height;
         double tall = (.6 + .4 * random_next_unit(&r)) * height;
         Vec3 out = vec3(cos(phi), 0, sin(phi)), side = vec3(-sin(phi), 0, cos(phi));
         uint32_t last[3] = {0};
         for (int i = 0; i <= STEPS; i++) {
             double t = (double)i / STEPS, w = width * (1 - t);
-            Vec3 mid = vec3_madd(vec3_add(root, vec3(0, tall * t, 0)), out, bend * t * t), fold = vec3_scale(out, .5 * w);
-            uint32_t now[3] = {scene_vertex(&m, vec3_add(vec3_madd(mid, side, -w), fold)), scene_vertex(&m, mid),
+            Vec3 mid = vec3_madd(vec3_add(root, vec3(0, tall * t, 0)), out, bend * t * t),
+                 fold = vec3_scale(out, .5 * w);
+            uint32_t now[3] = {scene_vertex(&m, vec3_add(vec3_madd(mid, side, -w), fold)),
+                               scene_vertex(&m, mid),
                                scene_vertex(&m, vec3_add(vec3_madd(mid, side, w), fold))};
             if (i) {
                 scene_quad(&m, last[0], last[1], now[1], now[0], false);
@@ -118,7 +123,8 @@ static inline TestMesh scene_sphere(Vec3 c, double radius, int steps) {
         }
     for (int i = 0; i < steps; i++)
         for (int j = 0; j < 2 * steps; j++) {
-            uint32_t n = (uint32_t)(2 * steps), a = (uint32_t)i * n + (uint32_t)j, b = (uint32_t)i * n + (uint32_t)(j + 1) % n;
+            uint32_t n = (uint32_t)(2 * steps), a = (uint32_t)i * n + (uint32_t)j,
+                     b = (uint32_t)i * n + (uint32_t)(j + 1) % n;
             scene_quad(&m, a, b, b + n, a + n, true);
         }
     return m;
@@ -146,9 +152,11 @@ static inline TestMesh scene_cylinder(Vec3 a, Vec3 b, double radius, int sides) 
 }
 
 static inline TestMesh scene_box(Vec3 lo, Vec3 hi) {
-    static const uint32_t faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    static const uint32_t faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                         {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     TestMesh m = {0};
-    for (int i = 0; i < 8; i++) scene_vertex(&m, vec3(i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z));
+    for (int i = 0; i < 8; i++)
+        scene_vertex(&m, vec3(i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z));
     for (int f = 0; f < 6; f++) scene_quad(&m, faces[f][0], faces[f][1], faces[f][2], faces[f][3], true);
     return m;
 }
@@ -160,7 +168,8 @@ static inline TestMesh scene_sheet(Vec3 n, double half) {
     vec3_frame(n, &s, &t);
     uint32_t v[4];
     for (int i = 0; i < 4; i++)
-        v[i] = scene_vertex(&m, vec3_madd(vec3_madd(c, s, i == 1 || i == 2 ? half : -half), t, i >= 2 ? half : -half));
+        v[i] = scene_vertex(
+            &m, vec3_madd(vec3_madd(c, s, i == 1 || i == 2 ? half : -half), t, i >= 2 ? half : -half));
     scene_quad(&m, v[0], v[1], v[2], v[3], false);
     return m;
 }
@@ -169,7 +178,8 @@ static inline TestMesh scene_sheet(Vec3 n, double half) {
 static inline double scene_projected_area(const TestMesh *m, Vec3 d) {
     double sum = 0;
     for (size_t t = 0; t < m->triangle_count; t++) {
-        Vec3 a = vec3_from_f(m->vertices[m->triangles[t][0]]), b = vec3_from_f(m->vertices[m->triangles[t][1]]);
+        Vec3 a = vec3_from_f(m->vertices[m->triangles[t][0]]),
+             b = vec3_from_f(m->vertices[m->triangles[t][1]]);
         Vec3 c = vec3_from_f(m->vertices[m->triangles[t][2]]);
         sum += fabs(vec3_dot(vec3_cross(vec3_sub(b, a), vec3_sub(c, a)), d)) * (m->solid[t] ? .25 : .5);
     }
@@ -202,7 +212,8 @@ static inline void scene_picture_triangle(ScenePicture *p, const Vec3 v[3]) {
             a = fmin(a, at);
             b = fmax(b, at);
         }
-        for (int column = (int)fmax(0, ceil(a)); column < p->side && column < b; column++) p->hit[row * p->side + column] = 1;
+        for (int column = (int)fmax(0, ceil(a)); column < p->side && column < b; column++)
+            p->hit[row * p->side + column] = 1;
     }
 }
 
@@ -218,7 +229,8 @@ static inline ScenePicture scene_picture(const TestMesh *m, Vec3 d, double width
 }
 
 /* Transmittance of the layer's unit cube along d through the point `at` of the picture's plane, by steps of `step`. */
-static inline double scene_march(const VoxelLayer *layer, float lod, OpacityModel model, float h, Vec3 at, Vec3 d, double step) {
+static inline double scene_march(const VoxelLayer *layer, float lod, OpacityModel model, float h, Vec3 at,
+                                 Vec3 d, double step) {
     double t0 = -1e9, t1 = 1e9, through = 1;
     Ray ray = {at, d};
     if (!box3_clip_ray((Box3){{0, 0, 0}, {1, 1, 1}}, &ray, &t0, &t1)) return 1;

@@ -376,6 +376,21 @@ static void no_ray_slips_through_rims_and_edges(void **state) {
     }
 }
 
+static void rays_nearly_along_a_generator_keep_their_digits(void **state) {
+    (void)state;
+    Object object = {.kind = OBJECT_CONE, .as.cone = {{0, 0, 0}, {0, 1, 0}, 1, 0, false}};
+    for (int i = 1; i < 18; i++) {
+        /* Down beside the generator x = 1 - y: in by the side, out by the base. */
+        double tilt = (i & 1 ? 1 : -1) * pow(10, -i);
+        Ray ray = {{-1, 1.5, 0.1}, {2 + tilt, -2, 0}};
+        ShapeCrossing found[SHAPE_MOST_CROSSINGS];
+        double expected[8];
+        assert_int_equal(shape_crossings(&object, &ray, found), 2);
+        assert_int_equal(march(&object, &ray, 1000, expected), 2);
+        assert_true(fabs(found[0].t - expected[0]) < 1e-14 && fabs(found[1].t - expected[1]) < 1e-14);
+    }
+}
+
 static void thin_rings_and_spindles_are_met(void **state) {
     (void)state;
     for (double minor = 1e-1; minor > 1e-10; minor /= 10) {
@@ -569,6 +584,7 @@ int main(void) {
         cmocka_unit_test(rays_that_start_on_a_convex_solid_leave_it),
         cmocka_unit_test(spheres_are_met_to_the_last_digits_of_their_rim),
         cmocka_unit_test(no_ray_slips_through_rims_and_edges),
+        cmocka_unit_test(rays_nearly_along_a_generator_keep_their_digits),
         cmocka_unit_test(thin_rings_and_spindles_are_met),
         cmocka_unit_test(sheets_and_planes),
         cmocka_unit_test(what_is_degenerate_is_missed_without_harm),

@@ -331,6 +331,41 @@ static void given_normals_and_vectors_are_kept(void **state) {
     }
 }
 
+/* The outside wins over normals that look in; the larger area wins where normals of an open part disagree. */
+static void normals_that_disagree_are_overruled(void **state) {
+    static const Vec3 corners[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    static const uint32_t sides[4][3] = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
+    static const Vec3 strip[5] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 5, 0}},
+                      ways[2] = {{0, 0, -1}, {0, 0, 1}};
+    static const uint32_t pieces[3][3] = {{0, 1, 2}, {1, 3, 2}, {2, 3, 4}},
+                          piece_ways[3][3] = {{0, 0, 0}, {1, 1, 1}, {1, 1, 1}};
+    Vec3 inwards[4];
+    for (int i = 0; i < 4; i++) inwards[i] = vec3_normalize(vec3_sub(vec3_splat(0.25), corners[i]));
+    const MeshData closed = {.vertices = corners,
+                             .vertex_count = 4,
+                             .normals = inwards,
+                             .normal_count = 4,
+                             .triangles = sides,
+                             .triangle_count = 4};
+    const MeshData open = {.vertices = strip,
+                           .vertex_count = 5,
+                           .normals = ways,
+                           .normal_count = 2,
+                           .triangles = pieces,
+                           .triangle_count = 3,
+                           .normal_triangles = piece_ways};
+    Object object = object_of(OBJECT_TRIANGLES);
+    Surface surface = of_object(&object);
+    object.as.mesh = &closed;
+    SurfaceMesh mesh = mesh_of(*state, &surface, 1);
+    assert_true(volume(&mesh) > 0.1);
+    for (size_t i = 0; i < 4; i++)
+        assert_true(vec3_dot(mesh.normals[i], vec3_sub(mesh.vertices[i], vec3_splat(0.25))) > 0);
+    object.as.mesh = &open;
+    mesh = mesh_of(*state, &surface, 1);
+    for (size_t c = 0; c < 3; c++) assert_true(area_vector(&mesh, c).z > 0);
+}
+
 static void generated_coordinates_cover_the_unit_square(void **state) {
     Object box = object_of(OBJECT_BOX);
     Surface surface = of_object(&box);
@@ -474,6 +509,7 @@ int main(void) {
         TEST(windings_are_made_consistent),
         TEST(edges_of_three_cells_are_borders_and_thin_cells_are_marked),
         TEST(given_normals_and_vectors_are_kept),
+        TEST(normals_that_disagree_are_overruled),
         TEST(generated_coordinates_cover_the_unit_square),
         TEST(deforms_are_followed_within_tolerance),
         TEST(height_vectors_follow_the_derivative_of_a_deform),

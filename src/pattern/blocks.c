@@ -59,8 +59,8 @@ void brick_shares(const Spot *spot, double shares[BLOCK_KINDS]) {
 static int hexagon_index(double x, double z) {
     double height = sqrt(3) / 2, column = floor(x / 1.5 + 0.5), best = (double)INFINITY;
     int index = 0;
-    for (double i = column - 1; i <= column + 1; i++) {
-        double j = floor((z / height - i) / 2 + 0.5);
+    for (int side = -1; side <= 1; side++) {
+        double i = column + side, j = floor((z / height - i) / 2 + 0.5);
         double dx = x - 1.5 * i, dz = z - height * (i + 2 * j), square = dx * dx + dz * dz;
         if (!(square < best)) continue;
         best = square;

@@ -60,43 +60,66 @@ static void add_phase(MapPieces *pieces, Wave wave, double lo, double hi, double
     add_piece(pieces, 2 - 2 * hi, 2 - 2 * turn, (hi - turn) * per_length);
 }
 
-/* A single value goes through POV-Ray's formula to the letter; its period of 1.00001 keeps a value of 1 from being 0. */
-static MapPieces point_piece(const Pigment *pigment, PatternTraits traits, double value) {
-    double phase = fmod(value * (double)(float)pigment->frequency + (double)(float)pigment->phase, 1.00001);
-    if (phase < 0) phase -= floor(phase);
-    if (traits.wave == WAVE_TRIANGLE) {
-        phase -= floor(phase);
-        phase = phase >= 0.5 ? 2 * (1 - phase) : 2 * phase;
-    }
-    MapPieces pieces = {.count = 0};
-    add_piece(&pieces, phase, phase, 1);
-    return pieces;
+static double restarted(Restart restart, double value) {
+    return restart == RESTART_AT_ONE || (restart == RESTART_PAST_ONE && value > 1) ? fmod(value, 1) : value;
 }
 
-static MapPieces interval_pieces(const Pigment *pigment, PatternTraits traits, double lo, double hi) {
-    MapPieces pieces = {.count = 0};
+/* A single value goes through POV-Ray's formula to the letter; its period of 1.00001 keeps a value of 1 from being 0. */
+static double point_phase(const Pigment *pigment, PatternTraits traits, double value) {
+    value = restarted(traits.restart, value);
+    double phase = fmod(value * (double)(float)pigment->frequency + (double)(float)pigment->phase, 1.00001);
+    if (phase < 0) phase -= floor(phase);
+    if (traits.wave == WAVE_RAMP) return phase;
+    phase -= floor(phase);
+    return phase >= 0.5 ? 2 * (1 - phase) : 2 * phase;
+}
+
+/* Values from lo to hi, all before a restart. */
+static void add_values(MapPieces *pieces, const Pigment *pigment, PatternTraits traits, double lo, double hi,
+                       double weight) {
     double a = lo * pigment->frequency + pigment->phase, b = hi * pigment->frequency + pigment->phase;
     double length = fabs(b - a), start = fmin(a, b), whole = floor(length), rest = length - whole;
-    if (whole > 0) add_phase(&pieces, traits.wave, 0, 1, whole / length);
-    if (traits.bounded && start >= 0 &&
-        start + length <= 1) { /* a value of 1 is no beginning of another period */
-        if (rest > 0) add_phase(&pieces, traits.wave, start, start + rest, rest / length);
-        return pieces;
+    if (!(length > 1e-12)) {
+        double phase = point_phase(pigment, traits, lo);
+        add_piece(pieces, phase, phase, weight);
+        return;
     }
+    weight /= length;
+    if (start < 0 || start + length > 1) start -= floor(start); /* a value of 1 begins no other period */
+    double first = fmin(rest, 1 - start);
+    add_phase(pieces, traits.wave, 0, 1, whole * weight);
+    add_phase(pieces, traits.wave, start, start + first, first * weight);
+    add_phase(pieces, traits.wave, 0, rest - first, (rest - first) * weight);
+}
+
+/* The same for values that start again at each whole number, from 0 on. */
+static void add_restarting(MapPieces *pieces, const Pigment *pigment, PatternTraits traits, double lo,
+                           double hi) {
+    double length = hi - lo, below = double_clamp(-lo, 0, length);
+    if (below > 0) add_values(pieces, pigment, traits, lo, lo + below, below / length);
+    double start = fmax(lo, 0), left = length - below, whole = floor(left), rest = left - whole;
     start -= floor(start);
     double first = fmin(rest, 1 - start);
-    if (first > 0) add_phase(&pieces, traits.wave, start, start + first, first / length);
-    if (rest > first) add_phase(&pieces, traits.wave, 0, rest - first, (rest - first) / length);
-    return pieces;
+    if (whole > 0) add_values(pieces, pigment, traits, 0, 1, whole / length);
+    if (first > 0) add_values(pieces, pigment, traits, start, start + first, first / length);
+    if (rest > first) add_values(pieces, pigment, traits, 0, rest - first, (rest - first) / length);
 }
 
 MapPieces colormap_pieces(const Pigment *pigment, Spread spread) {
+    MapPieces pieces = {.count = 0};
     PatternTraits traits = pattern_traits(pigment->kind);
-    double lo = spread.value - spread.width / 2, hi = spread.value + spread.width / 2;
-    if (traits.bounded) lo = double_clamp(lo, 0, 1), hi = double_clamp(hi, 0, 1);
-    if (!(hi - lo > 1e-9) || fabs((hi - lo) * pigment->frequency) < 1e-9)
-        return point_piece(pigment, traits, spread.value);
-    return interval_pieces(pigment, traits, lo, hi);
+    double half = spread.width / 2;
+    /* A range that would leave [0, 1] is narrowed, which keeps its mean. */
+    if (traits.bounded) half = fmin(half, fmax(fmin(spread.value, 1 - spread.value), 0));
+    double lo = spread.value - half, hi = spread.value + half;
+    if (!(hi - lo > 1e-9 * fmax(1, fabs(lo)))) {
+        double phase = point_phase(pigment, traits, spread.value);
+        add_piece(&pieces, phase, phase, 1);
+    } else if (traits.restart == RESTART_NEVER)
+        add_values(&pieces, pigment, traits, lo, hi, 1);
+    else
+        add_restarting(&pieces, pigment, traits, lo, hi);
+    return pieces;
 }
 
 /* ---- weights ---- */

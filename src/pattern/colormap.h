@@ -13,7 +13,7 @@ typedef struct ColorMap {
 ColorMap colormap_of(const Pigment *pigment);
 
 /* Pieces of the range of values, each filled uniformly; weights add up to 1. */
-enum { MAX_PIECES = 8 };
+enum { MAX_PIECES = 16 };
 typedef struct MapPieces {
     struct {
         double lo, hi, weight;
@@ -21,7 +21,7 @@ typedef struct MapPieces {
     int count;
 } MapPieces;
 
-/* The values, after the pigment's frequency and phase and the pattern's wave, that `spread` stands for. */
+/* The values, after the pattern's restart, the pigment's frequency and phase and the wave, that `spread` stands for. */
 MapPieces colormap_pieces(const Pigment *pigment, Spread spread);
 /* The weight of entry k in the mean over the pieces. Weights of all entries add up to 1. */
 double colormap_weight(ColorMap map, size_t k, const MapPieces *pieces);

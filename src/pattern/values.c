@@ -7,19 +7,16 @@
 PatternTraits pattern_traits(PatternKind kind) {
     switch (kind) {
     case PATTERN_MARBLE:
-    case PATTERN_WOOD: return (PatternTraits){WAVE_TRIANGLE, false, true};
-    case PATTERN_GRADIENT:
-    case PATTERN_ONION:
+    case PATTERN_WOOD: return (PatternTraits){.wave = WAVE_TRIANGLE, .warps_itself = true};
+    case PATTERN_GRADIENT: return (PatternTraits){.restart = RESTART_PAST_ONE};
+    case PATTERN_ONION: return (PatternTraits){.restart = RESTART_AT_ONE};
     case PATTERN_RADIAL:
-    case PATTERN_FUNCTION: return (PatternTraits){WAVE_RAMP, false, false};
-    default: return (PatternTraits){WAVE_RAMP, true, false};
+    case PATTERN_FUNCTION: return (PatternTraits){.wave = WAVE_RAMP};
+    default: return (PatternTraits){.bounded = true};
     }
 }
 
 static Spread exactly(double value) { return (Spread){value, 0}; }
-
-/* Values past 1 start again, though 1 itself stays. */
-static double part_past_one(double value) { return value > 1 ? fmod(value, 1) : value; }
 
 /* The mean of sin over an interval of this width is this times its value at the centre. */
 static double sine_kept(double width) { return width > 1e-6 ? sin(width / 2) / (width / 2) : 1; }
@@ -125,12 +122,7 @@ static Spread crackle(const Spot *spot) {
 
 static Spread gradient(const Pigment *pigment, const Spot *spot) {
     Vec3 direction = vec3_normalize(pigment->direction);
-    return (Spread){part_past_one(vec3_dot(spot->p, direction)), spot_width(spot, direction)};
-}
-
-static Spread onion(const Spot *spot) {
-    Spread r = distance_from(spot, spot->p);
-    return (Spread){fmod(r.value, 1), r.width};
+    return (Spread){vec3_dot(spot->p, direction), spot_width(spot, direction)};
 }
 
 static Spread radial(const Spot *spot) {
@@ -191,10 +183,10 @@ Spread pattern_value(const Pigment *pigment, const Spot *spot) {
     case PATTERN_WOOD: return wood(pigment, spot);
     case PATTERN_CRACKLE: return crackle(spot);
     case PATTERN_LEOPARD: return leopard(spot);
-    case PATTERN_ONION: return onion(spot);
     case PATTERN_RADIAL: return radial(spot);
     case PATTERN_BOXED: return boxed(spot);
     case PATTERN_CYLINDRICAL: return falling(distance_from(spot, vec3(spot->p.x, 0, spot->p.z)));
+    case PATTERN_ONION: return distance_from(spot, spot->p);
     case PATTERN_SPHERICAL: return falling(distance_from(spot, spot->p));
     case PATTERN_PLANAR: return falling((Spread){fabs(spot->p.y), spot_width(spot, vec3(0, 1, 0))});
     case PATTERN_SLOPE: return exactly(slope(pigment, spot));

@@ -393,6 +393,60 @@ static void generated_coordinates_cover_the_unit_square(void **state) {
     }
 }
 
+/* Few places and many triangles: duplicates, slivers, edges of many cells, one-sided parts. */
+static void any_heap_of_triangles_gives_a_consistent_mesh(void **state) {
+    RandomStream random = {12};
+    for (int round = 0; round < 400; round++) {
+        Vec3 places[12];
+        uint32_t faces[24][3];
+        size_t count = 1 + (size_t)(random_next(&random) % 24), seams;
+        uint64_t most = 4 + random_next(&random) % 9;
+        for (int i = 0; i < 12; i++) {
+            places[i] = vec3((double)(random_next(&random) % 3), (double)(random_next(&random) % 3),
+                             (double)(random_next(&random) % 3));
+        }
+        for (size_t t = 0; t < count; t++) {
+            for (int i = 0; i < 3; i++) faces[t][i] = (uint32_t)(random_next(&random) % most);
+        }
+        const MeshData data = {.vertices = places,
+                               .vertex_count = 12,
+                               .triangles = (const uint32_t(*)[3])faces,
+                               .triangle_count = count};
+        Object object = object_of(OBJECT_TRIANGLES);
+        Surface surface = of_object(&object);
+        object.as.mesh = &data;
+        surface.subdivide = 1 + round % 2;
+        surface.uv = (SurfaceUv)(round % 4);
+        SurfaceMesh mesh = mesh_of(*state, &surface, 1);
+        check_mesh(&mesh, &seams);
+        assert_int_equal(mesh.cell_count <= count * (size_t)(surface.subdivide * surface.subdivide), true);
+        for (size_t i = 0; i < mesh.uv_count; i++)
+            assert_true(isfinite(mesh.uvs[i].u) && isfinite(mesh.uvs[i].v));
+        for (size_t c = 0; c < mesh.cell_count; c++) {
+            assert_int_equal(mesh.cells[c].degenerate, vec3_length(area_vector(&mesh, c)) < 1e-9);
+        }
+    }
+}
+
+/* Grids whose points fall together at random: patches with collapsed sides, patches that are their own neighbours. */
+static void any_grid_gives_a_consistent_mesh(void **state) {
+    RandomStream random = {13};
+    for (int round = 0; round < 400; round++) {
+        Surface surface =
+            patches(*state, 1 + (int)(random_next(&random) % 4), 1 + (int)(random_next(&random) % 4), hill);
+        Vec3 *points = arena_new_array(*state, Vec3, (size_t)((surface.nu + 1) * (surface.nv + 1)));
+        for (int i = 0; i < (surface.nu + 1) * (surface.nv + 1); i++) {
+            points[i] = vec3((double)(random_next(&random) % 2), (double)(random_next(&random) % 3),
+                             (double)(random_next(&random) % 2));
+        }
+        surface.points = points;
+        size_t seams;
+        SurfaceMesh mesh = mesh_of(*state, &surface, 1);
+        check_mesh(&mesh, &seams);
+        assert_int_equal(mesh.cell_count, surface.nu * surface.nv);
+    }
+}
+
 /* ---- deform ---- */
 
 static void wave(const void *data, const double *in, double *out) {
@@ -511,6 +565,8 @@ int main(void) {
         TEST(given_normals_and_vectors_are_kept),
         TEST(normals_that_disagree_are_overruled),
         TEST(generated_coordinates_cover_the_unit_square),
+        TEST(any_heap_of_triangles_gives_a_consistent_mesh),
+        TEST(any_grid_gives_a_consistent_mesh),
         TEST(deforms_are_followed_within_tolerance),
         TEST(height_vectors_follow_the_derivative_of_a_deform),
         TEST(what_has_no_surface_is_refused),

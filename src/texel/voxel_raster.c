@@ -46,31 +46,66 @@ static double ray_offset(int row) {
     return offsets[row & 7];
 }
 
-/* Where the line v = at meets the triangle's outline; each edge is computed from its lower end, so that two triangles that
- * share it agree and a closed surface is met an even number of times. */
-static bool cross_outline(const ClipPolygon *t, int u, int v, double at, double *lo, double *hi) {
-    *lo = HUGE_VAL;
-    *hi = -HUGE_VAL;
-    for (int i = 0; i < 3; i++) {
-        const double *a = t->at[i], *b = t->at[(i + 1) % 3];
-        if (a[v] > b[v]) {
-            const double *swap = a;
-            a = b;
-            b = swap;
-        }
-        if (!(a[v] <= at && at < b[v])) continue;
-        double x = a[u] + (at - a[v]) * ((b[u] - a[u]) / (b[v] - a[v]));
-        *lo = fmin(*lo, x);
-        *hi = fmax(*hi, x);
+/* An edge as a function of v, from its lower end, so that two triangles that share it agree and a closed surface is met an
+ * even number of times. */
+typedef struct Edge {
+    double v0, v1, u0, slope;
+} Edge;
+
+static Edge make_edge(const double *a, const double *b, int u, int v) {
+    if (a[v] > b[v]) {
+        const double *swap = a;
+        a = b;
+        b = swap;
     }
-    return *lo < *hi;
+    return (Edge){a[v], b[v], a[u], a[v] < b[v] ? (b[u] - a[u]) / (b[v] - a[v]) : 0};
 }
 
-static void meet(VoxelCell *cell, int axis, uint64_t ray, bool solid) {
-    cell->cover[axis] |= ray;
+/* Where the line v = at meets the triangle's outline. */
+static bool cross_outline(const Edge edges[3], double at, double *lo, double *hi) {
+    int crossings = 0;
+    double x[3];
+    for (int i = 0; i < 3; i++)
+        if (edges[i].v0 <= at && at < edges[i].v1)
+            x[crossings++] = edges[i].u0 + (at - edges[i].v0) * edges[i].slope;
+    if (crossings != 2) return false;
+    *lo = double_min(x[0], x[1]);
+    *hi = double_max(x[0], x[1]);
+    return true;
+}
+
+static void meet(VoxelCell *cell, int axis, uint64_t rays, bool solid) {
+    cell->cover[axis] |= rays;
     if (!solid) return;
-    cell->walls += 1;
-    cell->inside[axis] ^= ray;
+    cell->walls += (float)count_bits(rays);
+    cell->inside[axis] ^= rays;
+}
+
+/* A row of rays across the triangle. depth_at: the plane's depth at column 0. */
+typedef struct RayRow {
+    int row, begin, end; /* columns */
+    double depth_at, slope;
+    bool flat; /* the triangle faces the rays exactly */
+} RayRow;
+
+static void add_row(VoxelCell *cells, const RayRow *r, bool solid, const int size[3], int axis) {
+    static const int strides[3] = {1, BRICK_SIDE, BRICK_SIDE * BRICK_SIDE};
+    int u = (axis + 1) % 3, v = (axis + 2) % 3, current = -1;
+    uint64_t rays = 0, first = (uint64_t)1 << ((r->row & 7) * 8);
+    for (int column = r->begin; column < r->end; column++) {
+        double depth = r->depth_at + r->slope * (column / 8.0);
+        /* What lies in the very last plane belongs to the last cell; what only touches it, to the next brick. */
+        if (!(depth >= 0 && (depth < size[axis] || (depth == size[axis] && r->flat)))) continue;
+        int cell = int_min((int)depth, size[axis] - 1) * strides[axis] + (column >> 3) * strides[u] +
+                   (r->row >> 3) * strides[v];
+        if (cell != current) {
+            if (rays) meet(&cells[current], axis, rays, solid);
+            current = cell;
+            rays = 0;
+        }
+        rays |= first << (column & 7);
+    }
+    if (rays) meet(&cells[current], axis, rays, solid);
 }
 
 static void add_rays(VoxelCell *cells, const ClipPolygon *t, bool solid, const int size[3], int axis) {
@@ -78,27 +113,23 @@ static void add_rays(VoxelCell *cells, const ClipPolygon *t, bool solid, const i
     double facing = clip_projected_area(t, axis);
     if (facing == 0) return;
     double slope_u = -clip_projected_area(t, u) / facing, slope_v = -clip_projected_area(t, v) / facing;
-    double v_lo = fmin(t->at[0][v], fmin(t->at[1][v], t->at[2][v])),
-           v_hi = fmax(t->at[0][v], fmax(t->at[1][v], t->at[2][v]));
+    double v_lo = double_min(t->at[0][v], double_min(t->at[1][v], t->at[2][v]));
+    double v_hi = double_max(t->at[0][v], double_max(t->at[1][v], t->at[2][v]));
+    Edge edges[3];
+    for (int i = 0; i < 3; i++) edges[i] = make_edge(t->at[i], t->at[(i + 1) % 3], u, v);
     int row_end = (int)ceil(double_min(8 * v_hi - 0.5, 8 * size[v]));
     for (int row = (int)ceil(double_max(8 * v_lo - 0.5, 0)); row < row_end; row++) {
         double at = (row + 0.5) / 8, lo, hi, offset = ray_offset(row);
-        if (!cross_outline(t, u, v, at, &lo, &hi)) continue;
-        int column_end = (int)ceil(double_min(8 * hi - offset, 8 * size[u]));
-        double depth_at =
-            t->at[0][axis] + slope_v * (at - t->at[0][v]) + slope_u * (offset / 8 - t->at[0][u]);
-        for (int column = (int)ceil(double_max(8 * lo - offset, 0)); column < column_end; column++) {
-            double depth = depth_at + slope_u * (column / 8.0);
-            /* What lies in the very last plane belongs to the last cell; what only touches it, to the next brick. */
-            if (!(depth >= 0 &&
-                  (depth < size[axis] || (depth == size[axis] && slope_u == 0 && slope_v == 0))))
-                continue;
-            int cell[3];
-            cell[axis] = int_min((int)depth, size[axis] - 1);
-            cell[u] = column >> 3;
-            cell[v] = row >> 3;
-            meet(&cells[cell_index(cell)], axis, (uint64_t)1 << ((row & 7) * 8 + (column & 7)), solid);
-        }
+        if (!cross_outline(edges, at, &lo, &hi)) continue;
+        RayRow r = {
+            .row = row,
+            .begin = (int)ceil(double_max(8 * lo - offset, 0)),
+            .end = (int)ceil(double_min(8 * hi - offset, 8 * size[u])),
+            .depth_at = t->at[0][axis] + slope_v * (at - t->at[0][v]) + slope_u * (offset / 8 - t->at[0][u]),
+            .slope = slope_u,
+            .flat = slope_u == 0 && slope_v == 0,
+        };
+        add_row(cells, &r, solid, size, axis);
     }
 }
 

@@ -20,28 +20,59 @@ static size_t cell_brick(const VoxelCells *cells, int x, int y, int z) {
            (size_t)(x / BRICK_SIDE);
 }
 
+static int32_t number_brick(VoxelCells *cells, size_t brick) {
+    if (cells->index[brick] < 0) cells->index[brick] = (int32_t)cells->count++;
+    return cells->index[brick];
+}
+
+static void visit_voxel(const VoxelLayer *layer, VoxelLevel *level, const int voxel[3], bool set) {
+    VoxelCells *cells = &level->cells;
+    int at[3][4], count[3];
+    for (int k = 0; k < 3; k++) count[k] = cells_of(level, layer->cyclic, k, voxel[k], at[k]);
+    for (int c = 0; c < count[0] * count[1] * count[2]; c++) {
+        int x = at[0][c % count[0]], y = at[1][c / count[0] % count[1]], z = at[2][c / count[0] / count[1]];
+        int32_t brick = number_brick(cells, cell_brick(cells, x, y, z));
+        if (set) cells->bits[brick][z & 7] |= (uint64_t)1 << (8 * (y & 7) + (x & 7));
+    }
+}
+
+/* Voxels of a slice whose eight cells are all in the brick of cells with the same number. */
+static uint64_t inner_voxels(const VoxelLayer *layer, const int corner[3], int z) {
+    uint64_t inner = 0x007f7f7f7f7f7f7fu;
+    if (z == BRICK_SIDE - 1 || (z == 0 && layer->cyclic[2] && corner[2] == 0)) return 0;
+    if (layer->cyclic[0] && corner[0] == 0) inner &= 0xfefefefefefefefeu;
+    if (layer->cyclic[1] && corner[1] == 0) inner &= 0xffffffffffffff00u;
+    return inner;
+}
+
+static void visit_slice(const VoxelLayer *layer, VoxelLevel *level, const int corner[3], uint64_t slice,
+                        int z, bool set) {
+    bool small = level->size[0] < BRICK_SIDE || level->size[1] < BRICK_SIDE || level->size[2] < BRICK_SIDE;
+    uint64_t inner = small ? 0 : slice & inner_voxels(layer, corner, z);
+    if (inner) {
+        VoxelCells *cells = &level->cells;
+        int32_t brick = number_brick(cells, cell_brick(cells, corner[0], corner[1], corner[2]));
+        uint64_t spread = inner | inner << 1;
+        spread |= spread << BRICK_SIDE;
+        if (set) cells->bits[brick][z] |= spread, cells->bits[brick][z + 1] |= spread;
+    }
+    for (uint64_t rest = slice & ~inner; rest; rest &= rest - 1) {
+        int bit = (int)count_bits((rest & (~rest + 1)) - 1);
+        const int voxel[3] = {corner[0] + (bit & 7), corner[1] + (bit >> 3), corner[2] + z};
+        visit_voxel(layer, level, voxel, set);
+    }
+}
+
 /* One pass over all occupied voxels: numbers the bricks of cells (no bits yet), or sets the bits. */
 static void visit_cells(const VoxelLayer *layer, VoxelLevel *level, bool set) {
-    VoxelCells *cells = &level->cells;
     size_t nx = (size_t)level->brick_size[0], ny = (size_t)level->brick_size[1];
     for (size_t i = 0; i < voxel_level_bricks(level); i++) {
         if (level->index[i] < 0) continue;
         const VoxelBrick *brick = &level->bricks[level->index[i]];
-        int corner[3] = {(int)(i % nx) * BRICK_SIDE, (int)(i / nx % ny) * BRICK_SIDE,
-                         (int)(i / nx / ny) * BRICK_SIDE};
-        for (int v = 0; v < BRICK_VOXELS; v++) {
-            if (!(brick->slice[v >> 6] >> (v & 63) & 1)) continue;
-            int at[3][4], count[3],
-                voxel[3] = {corner[0] + (v & 7), corner[1] + (v >> 3 & 7), corner[2] + (v >> 6)};
-            for (int k = 0; k < 3; k++) count[k] = cells_of(level, layer->cyclic, k, voxel[k], at[k]);
-            for (int c = 0; c < count[0] * count[1] * count[2]; c++) {
-                int x = at[0][c % count[0]], y = at[1][c / count[0] % count[1]],
-                    z = at[2][c / count[0] / count[1]];
-                int32_t *index = &cells->index[cell_brick(cells, x, y, z)];
-                if (*index < 0) *index = (int32_t)cells->count++;
-                if (set) cells->bits[*index][z & 7] |= (uint64_t)1 << (8 * (y & 7) + (x & 7));
-            }
-        }
+        const int corner[3] = {(int)(i % nx) * BRICK_SIDE, (int)(i / nx % ny) * BRICK_SIDE,
+                               (int)(i / nx / ny) * BRICK_SIDE};
+        for (int z = 0; z < BRICK_SIDE; z++)
+            if (brick->slice[z]) visit_slice(layer, level, corner, brick->slice[z], z, set);
     }
 }
 

@@ -119,13 +119,36 @@ static void init(Eval *ev, const EvalOptions *options, SourceSet *sources, DiagL
     diags->context = ev;
 }
 
-static void destroy(Eval *ev) {
+static void release(Eval *ev) {
+    MemoryBudget *budget = ev->parse->budget;
+    if (budget) {
+        budget->on_exhausted = ev->outer_exhausted;
+        budget->context = ev->outer_context;
+    }
     files_close_all(ev);
     ev->diags->add_context_notes = NULL;
     ev->diags->context = NULL;
     arena_destroy(&ev->temp);
     arena_destroy(&ev->blocks);
 }
+
+/* Running out of memory leaves this function by a jump of the caller's: what only the evaluator knows is released first. */
+static void on_exhausted(void *context) {
+    Eval *ev = context;
+    MemoryBudget *budget = ev->parse->budget;
+    release(ev);
+    memory_budget_fail(budget);
+}
+
+static void watch_memory(Eval *ev) {
+    MemoryBudget *budget = ev->parse->budget;
+    if (!budget) return;
+    ev->outer_exhausted = budget->on_exhausted;
+    ev->outer_context = budget->context;
+    budget->on_exhausted = on_exhausted;
+    budget->context = ev;
+}
+
 
 static bool load_scene(Eval *ev, const char *path, const SourceFile **file, EvalStatus *status) {
     SourceStatus loaded = source_load(ev->sources, path, NULL, file);
@@ -192,10 +215,11 @@ EvalStatus eval_file(const char *path, const EvalOptions *options, SourceSet *so
     if (filled.limits.loops == 0) filled.limits = eval_limits_default();
     *scene = NULL;
     init(&ev, &filled, sources, diags, names, parse_arena, scene_arena);
+    watch_memory(&ev);
     eval_set_scene_path(&ev, path);
     scope_enter(&ev, &global);
     declare_options(&ev);
     if (load_scene(&ev, path, &file, &status)) status = evaluate(&ev, file, scene);
-    destroy(&ev);
+    release(&ev);
     return status;
 }

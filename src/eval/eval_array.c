@@ -1,17 +1,20 @@
 #include "eval/eval_state.h"
 
+/* The first row; NULL where the elements are no arrays (any more: each element may be set to anything). */
+static const Array *first_row(const Array *array) {
+    if (!array->rows || array->count == 0 || !array->items[0].set || array->items[0].value.kind != VALUE_ARRAY) return NULL;
+    return array->items[0].value.as.array;
+}
+
 int array_rank(const Array *array) {
-    int rank = 1;
-    for (; array->rows && array->count && array->items[0].set; rank++) array = array->items[0].value.as.array;
+    int rank = 0;
+    for (; array; array = first_row(array)) rank++;
     return rank;
 }
 
 size_t array_extent(const Array *array, int dimension) {
-    for (; dimension > 0; dimension--) {
-        if (!array->rows || array->count == 0 || !array->items[0].set) return 0;
-        array = array->items[0].value.as.array;
-    }
-    return array->count;
+    for (; array && dimension > 0; dimension--) array = first_row(array);
+    return array ? array->count : 0;
 }
 
 const Value *array_element(const Array *array, const size_t *indices, int count) {

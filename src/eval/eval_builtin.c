@@ -72,7 +72,9 @@ static Value float_function(Eval *ev, const Node *node) {
 }
 
 static bool two_floats(Eval *ev, const Node *node, double *a, double *b) {
-    return builtin_argument_count(ev, node, 2, 2) && (eval_float(ev, node->as.list.items[0], a) & eval_float(ev, node->as.list.items[1], b));
+    if (!builtin_argument_count(ev, node, 2, 2)) return false;
+    bool first = eval_float(ev, node->as.list.items[0], a);
+    return eval_float(ev, node->as.list.items[1], b) && first;
 }
 
 static Value two_arguments(Eval *ev, const Node *node) {

@@ -16,23 +16,10 @@ void eval_undeclared(Eval *ev, Name name, Span span) {
     if (closest) diag_hint(ev->diags, d, "did you mean '%s'?", closest);
 }
 
-static Value eval_name(Eval *ev, const Node *node) {
-    VarBinding *b = scope_find(ev, node->as.name);
-    if (!b || !b->slot->set) {
-        eval_undeclared(ev, node->as.name, node->span);
-        return value_error();
-    }
-    if (b->slot->value.kind == VALUE_FLOAT) return b->slot->value;
-    if (b->slot->value.kind == VALUE_MACRO) {
-        diag_error(ev->diags, node->span, "'%s' is a macro: it is called with ( )", node->as.name->text);
-        return value_error();
-    }
-    return slot_get(ev, b->slot);
-}
-
 static Value eval_vector(Eval *ev, const Node *node) {
-    double out[12];
+    double few[5];
     int size = (int)node->as.list.count;
+    double *out = size <= 5 ? few : arena_new_array(&ev->temp, double, (size_t)size);
     bool ok = true;
     for (int i = 0; i < size; i++) ok = eval_float(ev, node->as.list.items[i], &out[i]) && ok;
     return ok ? value_vector(ev, out, size) : value_error();
@@ -78,21 +65,13 @@ static Value eval_choice(Eval *ev, const Node *node) {
     return !ok ? value_error() : yes ? b : c;
 }
 
-Value eval_node(Eval *ev, const Node *node) {
+Value eval_compound(Eval *ev, const Node *node) {
     switch (node->kind) {
-    case NODE_NUMBER: return value_float(node->as.number);
     case NODE_STRING: return (Value){.kind = VALUE_STRING, .as.string = {node->as.string->text, node->as.string->length}};
-    case NODE_VALUE: return *node->as.value;
-    case NODE_NAME: return eval_name(ev, node);
     case NODE_CONSTANT: return eval_constant(ev, node);
     case NODE_VECTOR: return eval_vector(ev, node);
     case NODE_INDEX: return eval_index(ev, node);
     case NODE_DOT: return eval_dot(ev, node);
-    case NODE_UNARY: return value_unary(ev, node->op, eval_node(ev, node->as.operand.a), node->span);
-    case NODE_BINARY: {
-        Value a = eval_node(ev, node->as.operand.a);
-        return value_binary(ev, node->op, a, eval_node(ev, node->as.operand.b), node->span);
-    }
     case NODE_CONDITION: return eval_choice(ev, node);
     case NODE_CALL: return eval_call(ev, node);
     case NODE_BUILTIN: return eval_builtin(ev, node);
@@ -102,11 +81,6 @@ Value eval_node(Eval *ev, const Node *node) {
     case NODE_BLOCK: return eval_block(ev, node, NULL);
     default: return value_error();
     }
-}
-
-bool eval_float(Eval *ev, const Node *node, double *out) {
-    Value v = eval_node(ev, node);
-    return value_to_float(ev, &v, node->span, out);
 }
 
 bool eval_condition(Eval *ev, const Node *node, bool *out) {

@@ -146,7 +146,8 @@ static Flow run_while(Eval *ev, const Node *node, Sink *sink) {
 
 static Flow run_for(Eval *ev, const Node *node, Sink *sink) {
     double from, to, step = 1;
-    if (!(eval_float(ev, node->as.for_loop.from, &from) & eval_float(ev, node->as.for_loop.to, &to))) return FLOW_NEXT;
+    bool ok = eval_float(ev, node->as.for_loop.from, &from);
+    if (!eval_float(ev, node->as.for_loop.to, &to) || !ok) return FLOW_NEXT;
     if (node->as.for_loop.step && !eval_float(ev, node->as.for_loop.step, &step)) return FLOW_NEXT;
     if (!value_is_true(step)) {
         diag_error(ev->diags, node->as.for_loop.step->span, "the step of #for is 0");
@@ -245,7 +246,8 @@ static void run_message(Eval *ev, const Node *node) {
     case KW_statistics: stream = EVAL_STREAM_STATISTICS; break;
     default: break;
     }
-    if (ev->options->on_text) ev->options->on_text(ev->options->context, stream, text);
+    /* After an error the program goes on only to find more errors. */
+    if (ev->options->on_text && ev->diags->error_count == 0) ev->options->on_text(ev->options->context, stream, text);
 }
 
 static void run_version(Eval *ev, const Node *node) {

@@ -86,7 +86,8 @@ NameClass scope_classify(const Eval *ev, Name name, const Macro **macro) {
     if (!b || !b->slot->set) return NAME_UNKNOWN;
     switch (b->slot->value.kind) {
     case VALUE_MACRO: *macro = b->slot->value.as.macro; return NAME_MACRO;
-    case VALUE_FUNCTION: case VALUE_SPLINE: return NAME_CALLABLE;
+    case VALUE_FUNCTION: case VALUE_SPLINE:
+    case VALUE_ERROR: /* might have been one */ return NAME_CALLABLE;
     default: return NAME_PLAIN;
     }
 }

@@ -53,6 +53,7 @@ static void add_element(Eval *ev, Sink *sink, Value v, Span span) {
 void sink_value(Eval *ev, Sink *sink, Value v, Span span) {
     if (v.kind == VALUE_ERROR) {
         sink->filled = sink->kind == SINK_SINGLE || sink->filled;
+        if (sink->kind == SINK_ARRAY) sink->next++;
         return;
     }
     switch (sink->kind) {

@@ -158,7 +158,9 @@ struct Eval {
     struct MemoryFile *memory;
     double version;
     bool stopped, interrupted;
-    Name index_name, phase_name, count_name, particles_name;
+    void (*outer_exhausted)(void *context); /* the memory budget's own handler */
+    void *outer_context;
+    Name index_name, count_name, particles_name;
 };
 
 /* ---- eval_value.c ---- */
@@ -196,8 +198,9 @@ Slot *scope_bind(Eval *ev, Name name, Slot *reference);
 void scope_undef(Eval *ev, Name name);
 NameClass scope_classify(const Eval *ev, Name name, const Macro **macro);
 
-/* ---- eval_expression.c ---- */
+/* ---- eval_node.c, eval_expression.c ---- */
 Value eval_node(Eval *ev, const Node *node);
+Value eval_compound(Eval *ev, const Node *node);
 bool eval_float(Eval *ev, const Node *node, double *out);
 bool eval_condition(Eval *ev, const Node *node, bool *out);
 bool eval_string(Eval *ev, const Node *node, const char **text, size_t *length);

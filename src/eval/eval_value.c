@@ -54,15 +54,18 @@ static double unary(int op, double a) {
     }
 }
 
-Value value_unary(Eval *ev, int op, Value a, Span span) {
-    if (a.kind == VALUE_FLOAT) return value_float(unary(op, a.as.number));
-    if (op == '(' || a.kind == VALUE_ERROR) return a;
+static Value vector_unary(Eval *ev, int op, Value a, Span span) {
     if (!value_is_numeric(&a)) return mismatch(ev, span, "a float or a vector", &a);
-    double out[12];
+    double out[UINT8_MAX];
     for (int i = 0; i < a.size; i++) out[i] = unary(op, a.as.components[i]);
     Value v = value_vector(ev, out, a.size);
     v.kind = a.kind;
     return v;
+}
+
+Value value_unary(Eval *ev, int op, Value a, Span span) {
+    if (a.kind == VALUE_FLOAT) return value_float(unary(op, a.as.number));
+    return op == '(' || a.kind == VALUE_ERROR ? a : vector_unary(ev, op, a, span);
 }
 
 static double binary(Eval *ev, int op, double a, double b, Span span) {
@@ -96,18 +99,22 @@ static Value compare_strings(Eval *ev, int op, const Value *a, const Value *b, S
     return value_float(binary(ev, op, order, 0, span));
 }
 
-Value value_binary(Eval *ev, int op, Value a, Value b, Span span) {
-    if (a.kind == VALUE_FLOAT && b.kind == VALUE_FLOAT) return value_float(binary(ev, op, a.as.number, b.as.number, span));
+static Value vector_binary(Eval *ev, int op, Value a, Value b, Span span) {
     if (a.kind == VALUE_ERROR || b.kind == VALUE_ERROR) return value_error();
     if (a.kind == VALUE_STRING && b.kind == VALUE_STRING) return compare_strings(ev, op, &a, &b, span);
     if (!value_is_numeric(&a)) return mismatch(ev, span, "a float or a vector", &a);
     if (!value_is_numeric(&b)) return mismatch(ev, span, "a float or a vector", &b);
     int size = a.kind == VALUE_FLOAT ? b.size : b.kind == VALUE_FLOAT ? a.size : int_max(a.size, b.size);
-    double out[12];
+    double out[UINT8_MAX];
     for (int i = 0; i < size; i++) out[i] = binary(ev, op, value_component(&a, i), value_component(&b, i), span);
     Value v = value_vector(ev, out, size);
     if (a.kind == VALUE_COLOR || b.kind == VALUE_COLOR) v.kind = VALUE_COLOR;
     return v;
+}
+
+Value value_binary(Eval *ev, int op, Value a, Value b, Span span) {
+    if (a.kind == VALUE_FLOAT && b.kind == VALUE_FLOAT) return value_float(binary(ev, op, a.as.number, b.as.number, span));
+    return vector_binary(ev, op, a, b, span);
 }
 
 bool value_to_float(Eval *ev, const Value *v, Span span, double *out) {
@@ -148,6 +155,11 @@ static void *slot_buffer(Eval *ev, Slot *slot, size_t size) {
 }
 
 void slot_set(Eval *ev, Slot *slot, const Value *value) {
+    if (value->kind == VALUE_FLOAT) {
+        slot->value = *value;
+        slot->set = true;
+        return;
+    }
     Value v = *value;
     if (v.kind == VALUE_VECTOR || v.kind == VALUE_COLOR) {
         size_t bytes = v.size * sizeof(double);

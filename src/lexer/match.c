@@ -19,7 +19,7 @@ typedef struct Matcher {
     bool balanced;
 } Matcher;
 
-enum { PHANTOM = UINT32_MAX };
+static const uint32_t PHANTOM = UINT32_MAX;
 
 static void open_one(Matcher *m, uint32_t index, uint8_t kind) {
     *list_push(m->arena, m) = (Open){.index = index, .kind = kind, .last = index};

@@ -63,7 +63,7 @@ bool parser_arguments(Parser *p, NodeList *out) {
             if (!e) return false;
             *list_push(p->arena, out) = e;
         }
-        if (!parser_accept(p, ',')) break;
+        if (!parser_accept(p, ',') && !(p->closed && parser_begins_expression(p, false))) break;
     }
     if (!parser_expect(p, ')', "',' or ')'")) return false;
     p->brackets--;
@@ -440,12 +440,23 @@ static bool is_color_component(int keyword) {
            keyword == KW_alpha;
 }
 
-/* color = { "color" | "colour" | ("rgb" | … | "srgbft") expression | component expression | expression }, at most one
- * expression that is not a component */
-Node *parser_color(Parser *p) {
-    Node *n = parser_node(p, NODE_COLOR, parser_peek(p)->span);
-    struct { ColorPart *items; size_t count, capacity; } parts = {0};
-    bool have_base = false, named = false;
+bool parser_begins_component(Parser *p) {
+    const Token *t = parser_peek(p);
+    if (t->kind != TOKEN_WORD || !is_color_component(t->keyword)) return false;
+    const Token *after = parser_peek_after(p);
+    return after->kind == TOKEN_NUMBER || after->kind == '(' || after->kind == '-' || after->kind == '.' ||
+           (after->kind == TOKEN_WORD && (!after->keyword || keyword_class((Keyword)after->keyword) == KEYWORD_CONSTANT ||
+                                          keyword_class((Keyword)after->keyword) == KEYWORD_FUNCTION));
+}
+
+typedef struct ColorPartList {
+    ColorPart *items;
+    size_t count, capacity;
+} ColorPartList;
+
+static Node *color_parts(Parser *p, Span begin, ColorPartList parts) {
+    Node *n = parser_node(p, NODE_COLOR, begin);
+    bool have_base = parts.count > 0, named = have_base;
     while (!p->failed) {
         const Token *t = parser_peek(p);
         int keyword = t->kind == TOKEN_WORD ? t->keyword : KW_NONE;
@@ -475,6 +486,16 @@ Node *parser_color(Parser *p) {
     n->as.color.count = parts.count;
     n->span = span_join(n->span, p->last.span);
     return fold(p, n);
+}
+
+/* color = { "color" | "colour" | ("rgb" | … | "srgbft") expression | component expression | expression }, at most one
+ * expression that is not a component */
+Node *parser_color(Parser *p) { return color_parts(p, parser_peek(p)->span, (ColorPartList){0}); }
+
+Node *parser_color_from(Parser *p, Node *base) {
+    ColorPartList parts = {0};
+    *list_push(p->arena, &parts) = (ColorPart){KW_color, base};
+    return color_parts(p, base->span, parts);
 }
 
 /* What can stand for an operand. Names count after a comma; elsewhere when they are known to be values. */
@@ -526,6 +547,9 @@ Node *parser_function(Parser *p) {
     }
     n->as.function.parameters = names.items;
     n->as.function.count = names.count;
+    /* function 300, 300 { … }: a resolution, for pictures made of it */
+    if (parser_peek(p)->kind != '{' && names.count == 0)
+        if (!parser_expression(p) || !parser_expect(p, ',', "'{'") || !parser_expression(p)) return NULL;
     Parser outer = *p;
     p->parameters = names.items;
     p->parameter_count = names.count;

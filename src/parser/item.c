@@ -1,5 +1,7 @@
 #include "parser/parser.h"
 
+#include <string.h>
+
 /* Colours are arguments where a colour is likely meant: first, after a comma, or after another colour. So `distance 50 color rgb 1` is
  * a word with one argument, and a colour. */
 static bool argument_follows(Parser *p, const NodeList *list, bool after_comma) {
@@ -28,8 +30,8 @@ static Node *word_item(Parser *p) {
     n->as.word.word_span = word.span;
     NodeList *list = &n->as.word.list;
     bool comma = false;
-    while (!p->failed && argument_follows(p, list, comma)) {
-        Node *e = parser_expression(p);
+    while (!p->failed && (argument_follows(p, list, comma) || (list->count == 0 && parser_begins_component(p)))) {
+        Node *e = parser_begins_component(p) ? parser_color(p) : parser_expression(p);
         if (!e) return NULL;
         *list_push(p->arena, list) = e;
         comma = false;
@@ -76,6 +78,22 @@ static Node *call_item(Parser *p, const void *macro) {
     return parser_expression(p);
 }
 
+/* `red 1 green 0.5` is a colour, but in a picture's block `filter 3, 0.5` is about the palette's entry 3. */
+static bool components_make_colors(const Parser *p) {
+    static const char *const pictures[] = {"image_map", "bump_map", "material_map", "image_pattern", "texture"};
+    for (size_t i = 0; p->block && i < VTS_ARRAY_COUNT(pictures); i++)
+        if (strcmp(p->block->text, pictures[i]) == 0) return false;
+    return true;
+}
+
+/* A declared colour with other components: `White filter 0.7`. */
+static Node *value_item(Parser *p) {
+    bool name = parser_peek(p)->kind == TOKEN_WORD || parser_peek(p)->kind == TOKEN_VALUE;
+    Node *n = parser_expression(p);
+    if (!n || !name || p->closed || !parser_begins_component(p) || !components_make_colors(p)) return n;
+    return parser_color_from(p, n);
+}
+
 static Node *named_item(Parser *p) {
     const Token *t = parser_peek(p), *after = parser_peek_after(p);
     bool brace = after->kind == '{';
@@ -89,7 +107,7 @@ static Node *named_item(Parser *p) {
     case NAME_MACRO:
         if (after->kind != '(') return parser_fail(p, t->span, "'%s' is a macro: it is called with ( )", t->as.name->text);
         return call_item(p, macro);
-    default: return parser_expression(p);
+    default: return value_item(p);
     }
 }
 
@@ -105,6 +123,12 @@ static Node *keyword_item(Parser *p) {
     default: break;
     }
     if (t->keyword == KW_function || t->keyword == KW_array) return parser_expression(p);
+    if (parser_begins_component(p) && components_make_colors(p)) return parser_color(p);
+    if (t->keyword == KW_default && brace) { /* old scenes leave its # out */
+        uint32_t next;
+        parser_take(p);
+        return parser_directive(p, p->list, 0, &next);
+    }
     return brace ? parser_block(p) : word_item(p);
 }
 
@@ -127,6 +151,6 @@ Node *parser_statement(Parser *p) {
     }
     case TOKEN_WORD: return t->keyword ? keyword_item(p) : named_item(p);
     case '}': case ')': case ']': case '>': return parser_fail(p, t->span, "'%c' closes nothing that is open here", t->kind);
-    default: return parser_expression(p);
+    default: return value_item(p);
     }
 }

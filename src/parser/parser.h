@@ -118,6 +118,10 @@ Node *parser_target(Parser *parser);
 /* An expression at the place of an argument of a word: does the next token begin one? `after_comma`: then names count whatever they are. */
 bool parser_begins_expression(Parser *parser, bool after_comma);
 bool parser_begins_color(Parser *parser);
+/* red, green, blue, filter, transmit, alpha with a value after it. */
+bool parser_begins_component(Parser *parser);
+/* The components that follow a colour's value. */
+Node *parser_color_from(Parser *parser, Node *base);
 
 /* The vocabulary of vts's own blocks, which is reserved only where it means something (context.c). */
 bool context_is_block(Name word);

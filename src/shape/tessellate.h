@@ -2,8 +2,8 @@
  *
  * Flat and round shapes are placed so that what is seen of them is right on average: the vertices of round ones stand a
  * little outside the true surface, its faces a little inside. A convex body shows, averaged over directions, a quarter of
- * its area (Cauchy), so spheres, tori and the walls of cylinders and cones have the true area, however coarse they are;
- * so have discs. */
+ * its area (Cauchy), so spheres, tori, cylinders and cones, open or closed, and discs have the true area, however coarse
+ * they are. */
 #ifndef VTS_SHAPE_TESSELLATE_H
 #define VTS_SHAPE_TESSELLATE_H
 

@@ -8,8 +8,9 @@ enum { FEWEST_SIDES = 5, MOST_SIDES = 4 * TESSELLATE_MOST_PARTS - 1 };
 /* ---- circles ---- */
 
 int tessellate_sides(double radius, double tolerance) {
-    /* With x = π/n the middles of the sides stand r (1 - x cot x) ≈ r x²/3 inside, the corners half as much outside. */
-    double sides = VTS_PI / sqrt(3 * tolerance / radius);
+    /* With x = π/n and the circle's perimeter the middles of the sides stand r (1 - x cot x) ≈ r x²/3 inside; with its area
+     * the corners stand r (sqrt(x / (sin x cos x)) - 1) outside, which is below r x²/2.6 for five sides and more. */
+    double sides = VTS_PI / sqrt(2.6 * tolerance / radius);
     if (!(sides > FEWEST_SIDES)) return FEWEST_SIDES;
     return sides >= MOST_SIDES ? MOST_SIDES : (int)ceil(sides) | 1;
 }
@@ -80,7 +81,7 @@ static double soup_area_since(const TriangleSoup *soup, SoupMark since) {
 static int sphere_parts(double radius, double tolerance) {
     /* The largest distance of a polyhedron of unit sphere's area with n parts is below 0.62/n² (measured, n >= 2). */
     double parts = sqrt(0.62 * radius / tolerance);
-    return parts > 2 ? (int)double_min(ceil(parts), TESSELLATE_MOST_PARTS) : 2;
+    return parts > 3 ? (int)double_min(ceil(parts), TESSELLATE_MOST_PARTS) : 3;
 }
 
 void tessellate_sphere(const Object *object, double tolerance, int parts, Arena *arena, TriangleSoup *out) {
@@ -185,12 +186,29 @@ static void cone_end(Arena *arena, TriangleSoup *out, CircleGrid wall, Vec3 cent
     circle_grid(arena, out, &end, true);
 }
 
-/* Circumradius over radius for walls of the true area. Trapezoids of n sides have the area n·chord·slant; with x = π/n and
- * f = g x/sin x it is π g (r0 + r1) sqrt(h² + (g x cot x)² (r0 - r1)²): a quadratic in g². */
-static double wall_factor(int sides, double length, double difference) {
-    double x = VTS_PI / sides, flat = x / tan(x) * difference, h2 = length * length,
-           s2 = h2 + difference * difference;
-    return tessellate_perimeter_factor(sides) * sqrt(2 * s2 / (h2 + sqrt(h2 * h2 + 4 * flat * flat * s2)));
+/* Of the wall, and the ends of a closed one, when the circles are polygons of n sides with `factor` times the radii. */
+static double cone_area(const Object *object, double length, int n, double factor) {
+    double r0 = fabs(object->as.cone.base_radius) * factor, r1 = fabs(object->as.cone.cap_radius) * factor;
+    double x = VTS_PI / n, chords = 2 * n * sin(x) * (r0 + r1) / 2,
+           ends = n * sin(2 * x) / 2 * (r0 * r0 + r1 * r1);
+    return chords * hypot(length, (r0 - r1) * cos(x)) + (object->as.cone.open ? 0 : ends);
+}
+
+static double round_cone_area(const Object *object, double length) {
+    double r0 = fabs(object->as.cone.base_radius), r1 = fabs(object->as.cone.cap_radius);
+    return VTS_PI * ((r0 + r1) * hypot(length, r0 - r1) + (object->as.cone.open ? 0 : r0 * r0 + r1 * r1));
+}
+
+/* Circumradius over radius for the true area. Area goes as a power of it between 1 (a long wall) and 2 (flat ends); taking
+ * it for 3/2 leaves at most a third of the error each time. */
+static double cone_factor(const Object *object, double length, int sides) {
+    double factor = tessellate_perimeter_factor(sides), wanted = round_cone_area(object, length);
+    for (int i = 0; i < 30 && wanted > 0; i++) {
+        double ratio = wanted / cone_area(object, length, sides, factor);
+        if (fabs(ratio - 1) < 1e-13) break;
+        factor *= pow(ratio, 2.0 / 3);
+    }
+    return factor;
 }
 
 void tessellate_cone(const Object *object, double tolerance, int parts, Arena *arena, TriangleSoup *out) {
@@ -199,7 +217,7 @@ void tessellate_cone(const Object *object, double tolerance, int parts, Arena *a
     double length = vec3_length(axis);
     if (length == 0) return; /* no inside, and no direction for a wall */
     int sides = parts > 0 ? 4 * parts : tessellate_sides(double_max(base_radius, cap_radius), tolerance);
-    double factor = wall_factor(sides, length, base_radius - cap_radius);
+    double factor = cone_factor(object, length, sides);
     CircleGrid wall = {.base = object->as.cone.base,
                        .axis = axis,
                        .r0 = base_radius * factor,

@@ -15,7 +15,8 @@ void tessellate_cone(const Object *object, double tolerance, int parts, Arena *a
 void tessellate_disc(const Object *object, double tolerance, int parts, Arena *arena, TriangleSoup *out);
 void tessellate_torus(const Object *object, double tolerance, int parts, Arena *arena, TriangleSoup *out);
 
-/* Sides of a regular polygon that has the perimeter of a circle of this radius and stays within tolerance of it; odd, as
+/* Sides of a regular polygon that has the perimeter or the area of a circle of this radius and stays within tolerance of
+ * it; odd, as
  * the width of such a polygon varies four times less over directions than that of the next even one. */
 int tessellate_sides(double radius, double tolerance);
 /* Its circumradius over the circle's. */

@@ -177,6 +177,8 @@ static void closed_cones_are_closed_and_walls_have_their_area(void **state) {
         assert_true(is_watertight(arena, &soup));
         assert_near(soup_volume(&soup), VTS_PI * h / 3 * (r0 * r0 + r0 * r1 + r1 * r1),
                     1e-4 * (soup_area(&soup) + h));
+        double slant = sqrt(h * h + (r0 - r1) * (r0 - r1));
+        assert_near(soup_area(&soup), VTS_PI * ((r0 + r1) * slant + r0 * r0 + r1 * r1), 1e-11);
         object.as.cone.open = true;
         TriangleSoup wall = soup_of(arena, &object, 1e-4, 0);
         assert_near(soup_area(&wall), VTS_PI * (r0 + r1) * sqrt(h * h + (r0 - r1) * (r0 - r1)), 1e-12);

@@ -205,7 +205,7 @@ static double cone_factor(const Object *object, double length, int sides) {
     double factor = tessellate_perimeter_factor(sides), wanted = round_cone_area(object, length);
     for (int i = 0; i < 30 && wanted > 0; i++) {
         double ratio = wanted / cone_area(object, length, sides, factor);
-        if (fabs(ratio - 1) < 1e-13) break;
+        if (fabs(ratio - 1) < 1e-14) break;
         factor *= pow(ratio, 2.0 / 3);
     }
     return factor;

@@ -6,9 +6,11 @@
  *
  * Per voxel and level (design: texels.md; Neyret 1998 sec. IV with its errata; Heitz et al. 2015):
  *   density  surface area per unit volume of texel space, averaged over directions when seen: sigma(w) =
- *            density · sqrt(wᵗ S w) for unit w is the projected area per volume, and mean sigma over directions = density
- *   S        SGGX matrix normalised to unit mean projected area (the p = 1.6075 formula)
- *   gamma    share of the voxel that behaves as one sheet rather than as random matter
+ *            density · sqrt(wᵗ S w) for unit w is the projected area per volume, and mean sigma over directions = density.
+ *            The two walls of a solid count one each where it is thicker than two voxels, one together where it is
+ *            thinner than one: a thin stem is seen once
+ *   S        SGGX matrix normalised to unit mean projected area (within 0.6 %); axis ratios at least 0.01
+ *   gamma    share of the voxel that behaves as a sheet rather than as random matter: for opacity.h alone
  * Voxels are centred: voxel (i, j, k) of level L covers [i, i+1)·h(L) … and its value stands at its centre. */
 #ifndef VTS_TEXEL_TEXEL_H
 #define VTS_TEXEL_TEXEL_H

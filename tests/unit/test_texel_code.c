@@ -19,7 +19,8 @@ static double next_normal(RandomStream *r) {
 }
 
 static Vec3 random_direction(RandomStream *r) {
-    return vec3_normalize(vec3(next_normal(r), next_normal(r), next_normal(r)));
+    double x = next_normal(r), y = next_normal(r), z = next_normal(r);
+    return vec3_normalize(vec3(x, y, z));
 }
 
 static Shape random_shape(RandomStream *r, double a, double b, double c) {

@@ -58,6 +58,12 @@ static inline Vec3 scene_direction(RandomStream *r) {
     return vec3(s * cos(phi), s * sin(phi), z);
 }
 
+/* Drawn one after the other: the order in which arguments are evaluated is the compiler's. */
+static inline Vec3 scene_point(RandomStream *r, double margin) {
+    double x = random_next_unit(r), y = random_next_unit(r), z = random_next_unit(r), w = 1 - 2 * margin;
+    return vec3(margin + w * x, margin + w * y, margin + w * z);
+}
+
 /* n directions spread over the sphere. */
 static inline Vec3 scene_spread_direction(int i, int n) {
     double z = 1 - (2 * i + 1.0) / n, phi = i * VTS_PI * (3 - sqrt(5.0)), s = sqrt(1 - z * z);
@@ -79,8 +85,7 @@ static inline TestMesh scene_leaves(int count, double radius, uint64_t seed) {
     TestMesh m = {0};
     RandomStream r = {seed};
     for (int i = 0; i < count; i++) {
-        Vec3 c = vec3(.1 + .8 * random_next_unit(&r), .1 + .8 * random_next_unit(&r),
-                      .1 + .8 * random_next_unit(&r));
+        Vec3 c = scene_point(&r, .1);
         scene_leaf(&m, c, scene_direction(&r), radius);
     }
     return m;
@@ -92,7 +97,8 @@ static inline TestMesh scene_grass(int count, double height, double width, uint6
     TestMesh m = {0};
     RandomStream r = {seed};
     for (int b = 0; b < count; b++) {
-        Vec3 root = vec3(.3 + .4 * random_next_unit(&r), 0.01, .3 + .4 * random_next_unit(&r));
+        Vec3 root = scene_point(&r, .3);
+        root.y = 0.01;
         double phi = 2 * VTS_PI * random_next_unit(&r), bend = (.1 + .3 * random_next_unit(&r)) * height;
         double tall = (.6 + .4 * random_next_unit(&r)) * height;
         Vec3 out = vec3(cos(phi), 0, sin(phi)), side = vec3(-sin(phi), 0, cos(phi));

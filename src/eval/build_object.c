@@ -77,7 +77,10 @@ bool build_object(BuildContext *context, const EvalBlock *block, Value *out) {
     Reader reader = reader_begin(context, block);
     const BlockItem *first = reader_peek(&reader);
     if (!first || first->kind != ITEM_VALUE) {
-        reader_error(&reader, first ? first->span : block->word_span, "'%s' begins with an object", block->word->text);
+        if (first && first->kind == ITEM_WORD)
+            reader_error(&reader, first->word_span, "'%s' is not declared", first->word->text);
+        else
+            reader_error(&reader, block->word_span, "'%s' begins with an object", block->word->text);
         return false;
     }
     reader.next++;

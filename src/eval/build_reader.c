@@ -88,8 +88,12 @@ static bool next_value(Reader *reader, const char *what, const char *wanted, Arg
         reader->next++;
         return true;
     }
-    reader_error(reader, item ? item->span : block_end(reader->block), "'%s' wants %s here (%s)", reader->block->word->text,
-                 what, wanted);
+    if (item && item->kind == ITEM_WORD)
+        reader_error(reader, item->word_span, "'%s' wants %s here (%s), found the word '%s'", reader->block->word->text, what,
+                     wanted, item->word->text);
+    else
+        reader_error(reader, item ? item->span : block_end(reader->block), "'%s' wants %s here (%s)",
+                     reader->block->word->text, what, wanted);
     return false;
 }
 
@@ -330,7 +334,8 @@ void reader_unknown_word(Reader *reader, const Word *word) {
     for (size_t t = 0; t < reader->table_count; t++)
         for (size_t i = 0; i < reader->tables[t].count && count < VTS_ARRAY_COUNT(words); i++)
             words[count++] = reader->tables[t].rules[i].text;
-    Diagnostic *d = reader_error(reader, word->span, "'%s' has no meaning in '%s'", word->text, reader->block->word->text);
+    Diagnostic *d = reader_error(reader, word->span, "'%s' is neither declared nor a word of '%s'", word->text,
+                                 reader->block->word->text);
     const char *closest = closest_word(word->text, words, count);
     if (closest) diag_hint(reader->context->diags, d, "did you mean '%s'?", closest);
 }

@@ -330,12 +330,16 @@ static Token pull(void *context, Parser *p) {
     return (Token){.kind = TOKEN_END, .span = {last.file, last.end, last.end}};
 }
 
+/* Past the end of a macro's or a branch's text, the text that it stood in goes on. */
 static const Token *after(void *context, uint32_t skip) {
     static const Token end = {.kind = TOKEN_END};
-    Source *s = context;
+    const Source *s = context;
     const Frame *f = s->top;
-    return f->at + skip < f->list->count ? &f->list->items[f->at + skip] : &end;
+    while (f->at >= f->end && (f->kind == FRAME_BRANCH || f->kind == FRAME_MACRO || f->kind == FRAME_INCLUDE)) f = f->outer;
+    return f->at + skip < f->end ? &f->list->items[f->at + skip] : &end;
 }
+
+static uint32_t position(void *context) { return ((const Source *)context)->top->at; }
 
 static bool take_body(void *context, Body *body) {
     Source *s = context;
@@ -377,7 +381,7 @@ static bool is_block(void *context, const void *macro) {
 }
 
 static void make_host(ParserHost *host, Source *s) {
-    *host = (ParserHost){.context = s, .classify = classify, .macro_binding = binding, .macro_is_block = is_block, .pull = pull, .after = after,
+    *host = (ParserHost){.context = s, .classify = classify, .macro_binding = binding, .macro_is_block = is_block, .pull = pull, .after = after, .position = position,
                          .take_body = take_body, .fold = fold, .groups_ended = groups_ended};
 }
 
@@ -424,21 +428,18 @@ Flow run_slow(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink
         s.at_start = false;
         if (parser_at_end(&p) && !p.failed) goto done;
     }
-    do {
-        s.at_start = s.at_start && s.base.at == begin;
-        bool directive = s.top == &s.base && s.base.at == begin && first->kind == TOKEN_DIRECTIVE && !p.has_window;
-        Node *n;
-        if (directive) {
-            uint32_t next;
-            parser_take(&p);
-            n = parser_directive(&p, program->tokens, begin, &next);
-            if (n && next) s.base.at = next;
-        } else {
-            n = parser_statement(&p);
-        }
+    for (;;) {
+        bool directive = s.at_start && first->kind == TOKEN_DIRECTIVE;
+        uint32_t next = 0;
+        if (directive) parser_take(&p);
+        Node *n = directive ? parser_directive(&p, program->tokens, begin, &next) : parser_statement(&p);
         if (p.failed) break;
+        if (next) s.base.at = next;
         flow = run_node(ev, n, sink);
-    } while (flow == FLOW_NEXT && !p.failed && (s.top != &s.base || (p.has_window && s.window_frame != &s.base && p.window.kind != TOKEN_END)));
+        /* What is left of the macros that were expanded belongs here too. */
+        if (flow != FLOW_NEXT || (s.top == &s.base && !(p.has_window && s.window_frame != &s.base))) break;
+        if (parser_at_end(&p) || s.window_frame == &s.base) break;
+    }
 done:
     while (s.top != &s.base) pop(&s);
     if (p.failed) *at = recover(program->tokens, s.base.at > begin ? s.base.at : begin + 1, end);

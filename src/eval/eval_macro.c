@@ -164,6 +164,11 @@ bool macro_enter(Eval *ev, const Macro *m, const NodeList *arguments, Span span,
     if (!count_matches(ev, m, arguments->count, span)) return false;
     if (ev->call_depth >= ev->options->limits.recursion) {
         diag_error(ev->diags, span, "macro calls are nested more than %u deep", ev->options->limits.recursion);
+        ev->stopped = true; /* what called itself this often would go on to do so on every level */
+        return false;
+    }
+    if (ev->options->interrupted && *ev->options->interrupted) {
+        ev->interrupted = ev->stopped = true;
         return false;
     }
     Passed few[FEW_ARGUMENTS] = {{0}};

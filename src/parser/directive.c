@@ -31,11 +31,7 @@ static bool group_begin(Parser *p, TokenList *list, uint32_t index, uint32_t bod
 static Body group_body(const Group *g) { return (Body){.tokens = g->list, .begin = g->at, .end = g->end}; }
 
 /* The raw position after a head: the fast road's own, or what the host has not pulled yet. */
-static uint32_t raw_position(Parser *p, TokenList *list) {
-    if (!p->slow) return p->at;
-    const Token *next = p->host->after(p->host->context, 0);
-    return (uint32_t)(next - list->items);
-}
+static uint32_t raw_position(Parser *p) { return p->slow ? p->host->position(p->host->context) : p->at; }
 
 /* On the fast road a branch must make sense by itself. */
 static bool bodies_whole(Parser *p, const Node *n, bool unbalanced) {
@@ -95,7 +91,7 @@ static Node *if_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *
     Node *n = parser_node(p, NODE_IF, head->span);
     Node *test = condition(p, head->keyword);
     Group g;
-    if (!test || !group_begin(p, list, index, raw_position(p, list), &g)) return NULL;
+    if (!test || !group_begin(p, list, index, raw_position(p), &g)) return NULL;
     BranchList branches = {0};
     *list_push(p->arena, &branches) = (Branch){test, group_body(&g)};
     bool else_seen = false;
@@ -133,7 +129,7 @@ static Node *while_directive(Parser *p, TokenList *list, uint32_t index, uint32_
     Node *n = parser_node(p, NODE_WHILE, list->items[index].span);
     n->as.loop.condition = in_parentheses(p);
     Group g;
-    if (!n->as.loop.condition || !group_begin(p, list, index, raw_position(p, list), &g)) return NULL;
+    if (!n->as.loop.condition || !group_begin(p, list, index, raw_position(p), &g)) return NULL;
     n->as.loop.body = group_body(&g);
     go_on_after(p, g.end, next);
     return bodies_whole(p, n, list->items[index].unbalanced) ? n : NULL;
@@ -154,7 +150,7 @@ static Node *for_directive(Parser *p, TokenList *list, uint32_t index, uint32_t 
     if (!parser_expect(p, ')', "',' or ')'")) return NULL;
     p->brackets--;
     Group g;
-    if (!group_begin(p, list, index, raw_position(p, list), &g)) return NULL;
+    if (!group_begin(p, list, index, raw_position(p), &g)) return NULL;
     n->as.for_loop.body = group_body(&g);
     go_on_after(p, g.end, next);
     return bodies_whole(p, n, list->items[index].unbalanced) ? n : NULL;
@@ -172,7 +168,7 @@ static Node *switch_directive(Parser *p, TokenList *list, uint32_t index, uint32
     Node *n = parser_node(p, NODE_SWITCH, list->items[index].span);
     n->as.switch_.subject = in_parentheses(p);
     Group g;
-    if (!n->as.switch_.subject || !group_begin(p, list, index, raw_position(p, list), &g)) return NULL;
+    if (!n->as.switch_.subject || !group_begin(p, list, index, raw_position(p), &g)) return NULL;
     if (g.at < g.end && list->items[g.at].kind != ';')
         return parser_fail(p, list->items[g.at].span, "expected #case or #range after #switch");
     struct { SwitchCase *items; size_t count, capacity; } cases = {0};
@@ -222,7 +218,7 @@ static Node *macro_directive(Parser *p, TokenList *list, uint32_t index, uint32_
     }
     if (!parser_expect(p, ')', "',' or ')'")) return NULL;
     Group g;
-    if (!group_begin(p, list, index, raw_position(p, list), &g)) return NULL;
+    if (!group_begin(p, list, index, raw_position(p), &g)) return NULL;
     if (list->items[g.end].keyword != KW_end)
         return parser_fail(p, list->items[g.end].span, "this #%s stands in a macro, outside of its #if", list->items[g.end].as.name->text);
     n->as.macro.parameters = names.items;

@@ -2,9 +2,20 @@
 
 #include <string.h>
 
+/* A word of this block that a scene also declares, `height height/2`: the second is the scene's, as what follows it shows. */
+static bool is_value_of_same_name(Parser *p) {
+    const Token *t = parser_peek(p);
+    const void *macro;
+    if (t->kind != TOKEN_WORD || t->keyword || !context_is_item(p->block, t->as.name)) return false;
+    int after = parser_peek_after(p)->kind;
+    bool ends = after == '+' || after == '-' || after == '*' || after == '/' || after == '.' || after == '[' || after == ',' || after == '}' || after == TOKEN_END;
+    return ends && parser_classify(p, t->as.name, &macro) == NAME_PLAIN;
+}
+
 /* Colours are arguments where a colour is likely meant: first, after a comma, or after another colour. So `distance 50 color rgb 1` is
  * a word with one argument, and a colour. */
 static bool argument_follows(Parser *p, const NodeList *list, bool after_comma) {
+    if (list->count == 0 && is_value_of_same_name(p)) return true;
     if (!parser_begins_expression(p, after_comma)) return false;
     if (after_comma || list->count == 0 || !parser_begins_color(p)) return true;
     return list->items[list->count - 1]->kind == NODE_COLOR;

@@ -42,6 +42,8 @@ typedef struct ParserHost {
     Token (*pull)(void *context, Parser *parser);
     /* The raw token after the one that was pulled last, or the one `skip` tokens further; not taken. */
     const Token *(*after)(void *context, uint32_t skip);
+    /* The index of the next raw token of the text that is being read. */
+    uint32_t (*position)(void *context);
     /* When the last pulled token is an opening bracket whose match lies in the same text: that text, which is then skipped. */
     bool (*take_body)(void *context, Body *body);
     /* Evaluates a finished operand at once, so that effects happen in the order of the text. */

@@ -9,7 +9,7 @@ enum { NDF_RING_POINTS = 8 };
 
 /* How the points of the integral are laid. Measured errors of the Lambert term are in doc/texels.md. */
 typedef enum Quadrature {
-    QUADRATURE_RING8,  /* two rings of 3 and 5 points: the default */
+    QUADRATURE_RING8,  /* two rings of 3 and 5 points, turned towards the light: the default */
     QUADRATURE_RING16, /* two rings of 8 */
     QUADRATURE_GRID16, /* Neyret 1998: a 4 × 4 grid over the rectangle that bounds the apparent ellipse */
 } Quadrature;

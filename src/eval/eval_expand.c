@@ -412,6 +412,15 @@ static uint32_t recover(const TokenList *list, uint32_t at, uint32_t end) {
     return end;
 }
 
+/* After a #declare that cannot be read, uses of its name stay silent. */
+static void declare_error(Eval *ev, const TokenList *list, uint32_t at) {
+    const Token *head = &list->items[at], *name = &list->items[at + 1];
+    if (head->kind != TOKEN_DIRECTIVE || (head->keyword != KW_declare && head->keyword != KW_local)) return;
+    if (name->kind != TOKEN_WORD || name->keyword || scope_find(ev, name->as.name)) return;
+    Value v = value_error();
+    slot_set(ev, scope_declare(ev, name->as.name, head->keyword == KW_local), &v);
+}
+
 Flow run_slow(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink) {
     Source s;
     Parser p;
@@ -442,6 +451,7 @@ Flow run_slow(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink
     }
 done:
     while (s.top != &s.base) pop(&s);
+    if (p.failed) declare_error(ev, program->tokens, begin);
     if (p.failed) *at = recover(program->tokens, s.base.at > begin ? s.base.at : begin + 1, end);
     else *at = p.has_window && s.window_frame == &s.base && p.window.kind != TOKEN_END ? s.window_at : s.base.at;
     if (p.failed && sink->kind == SINK_SINGLE) sink->filled = true;

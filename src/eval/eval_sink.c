@@ -53,6 +53,7 @@ static void add_element(Eval *ev, Sink *sink, Value v, Span span) {
 void sink_value(Eval *ev, Sink *sink, Value v, Span span) {
     if (v.kind == VALUE_ERROR) {
         sink->filled = sink->kind == SINK_SINGLE || sink->filled;
+        ev->silent_errors++;
         if (sink->kind == SINK_ARRAY) sink->next++;
         return;
     }
@@ -129,7 +130,10 @@ void sink_word(Eval *ev, Sink *sink, const Node *node) {
     BlockItem item = {.kind = ITEM_WORD, .span = node->span, .word_span = node->as.word.word_span, .word = node->as.word.word};
     item.argument_count = node->as.word.list.count;
     item.arguments = eval_arguments(ev, &node->as.word.list, &ok);
-    if (!ok) return;
+    if (!ok) {
+        ev->silent_errors++;
+        return;
+    }
     if (node->as.word.body && item.word == ev->count_name && sink->block == ev->particles_name) {
         add_particles(ev, sink, node, item);
         return;

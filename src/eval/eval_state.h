@@ -157,6 +157,7 @@ struct Eval {
     UserFile *files;
     struct MemoryFile *memory;
     double version;
+    size_t silent_errors; /* erroneous values that were left out of blocks */
     bool stopped, interrupted;
     void (*outer_exhausted)(void *context); /* the memory budget's own handler */
     void *outer_context;

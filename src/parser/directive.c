@@ -290,16 +290,17 @@ static Node *declare_directive(Parser *p, Token head) {
     n->as.declare.value = value;
     if (!value) return NULL;
     n->span = span_join(head.span, p->last.span);
-    if (p->slow && p->closed && !p->has_window && p->host->after(p->host->context, 0)->kind != ';') return n;
+    bool unseen = p->slow && p->closed && !p->has_window;
+    if (unseen && !needs_semicolon(value) && p->host->after(p->host->context, 0)->kind != ';') return n;
     if (p->crossed && needs_semicolon(value)) {
         Diagnostic *d = diag_error(p->diags, value->span, "a directive ends in the middle of this value");
         diag_hint(p->diags, d, "put the value into parentheses");
         p->failed = true;
         return NULL;
     }
-    if (parser_accept(p, ';')) return n;
+    if (!(unseen && p->host->after(p->host->context, 0)->kind != ';') && parser_accept(p, ';')) return n;
     if (needs_semicolon(value)) {
-        const Token *t = parser_peek(p);
+        const Token *t = unseen ? p->host->after(p->host->context, 0) : parser_peek(p);
         Span after = {p->last.span.file, p->last.span.end, p->last.span.end};
         return parser_fail(p, t->kind == TOKEN_END || t->kind == TOKEN_DIRECTIVE ? after : t->span,
                            "expected ';' after the value of '%s', found %s", n->as.declare.target->kind == NODE_NAME ? n->as.declare.target->as.name->text : "an array's element",

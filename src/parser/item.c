@@ -105,6 +105,11 @@ static Node *value_item(Parser *p) {
     return parser_color_from(p, n);
 }
 
+static bool follows_comma(const Parser *p) {
+    if (p->slow) return p->last.kind == ',';
+    return p->at > 0 && p->list->items[p->at - 1].kind == ',';
+}
+
 static Node *named_item(Parser *p) {
     const Token *t = parser_peek(p), *after = parser_peek_after(p);
     bool brace = after->kind == '{';
@@ -114,7 +119,7 @@ static Node *named_item(Parser *p) {
     switch (parser_classify(p, t->as.name, &macro)) {
     case NAME_UNKNOWN:
         if (brace) return parser_block(p);
-        return after->kind == '(' || p->guessing ? parser_expression(p) : word_item(p);
+        return after->kind == '(' || p->guessing || follows_comma(p) ? parser_expression(p) : word_item(p);
     case NAME_MACRO:
         if (after->kind != '(') return parser_fail(p, t->span, "'%s' is a macro: it is called with ( )", t->as.name->text);
         return call_item(p, macro);

@@ -20,7 +20,8 @@ static void read_orthographic(Reader *reader, const Word *word, void *target) {
 
 static void read_right(Reader *reader, const Word *word, void *target) {
     CameraDraft *draft = target;
-    draft->has_right = word_arguments(reader, word, 1, 1) && word_vector(reader, word, 0, &draft->camera.right);
+    draft->has_right =
+        word_arguments(reader, word, 1, 1) && word_vector(reader, word, 0, &draft->camera.right);
 }
 
 static void read_up(Reader *reader, const Word *word, void *target) {
@@ -41,12 +42,15 @@ static void read_angle(Reader *reader, const Word *word, void *target) {
     if (angle > 0 && angle < 180)
         draft->angle = angle;
     else
-        reader_error(reader, word->arguments[0].span, "the camera's angle must lie between 0 and 180 degrees, found %g", angle);
+        reader_error(reader, word->arguments[0].span,
+                     "the camera's angle must lie between 0 and 180 degrees, found %g", angle);
 }
 
 #define FIELD(name) offsetof(CameraDraft, name)
-#define INERT(word) {word, WORD_INERT, FIELD(camera.inert), NULL, false}
-#define IGNORED(word) {word, WORD_IGNORED, 0, NULL, false}
+#define INERT(word)                                                                                          \
+    { word, WORD_INERT, FIELD(camera.inert), NULL, false }
+#define IGNORED(word)                                                                                        \
+    { word, WORD_IGNORED, 0, NULL, false }
 static const WordRule rules[] = {
     IGNORED("perspective"),
     {"orthographic", WORD_CUSTOM, 0, read_orthographic, false},
@@ -57,9 +61,21 @@ static const WordRule rules[] = {
     {"sky", WORD_VECTOR, FIELD(sky), NULL, false},
     {"look_at", WORD_CUSTOM, 0, read_look_at, false},
     {"angle", WORD_CUSTOM, 0, read_angle, false},
-    INERT("fisheye"), INERT("ultra_wide_angle"), INERT("omnimax"), INERT("panoramic"), INERT("spherical"), INERT("cylinder"),
-    INERT("mesh_camera"), INERT("aperture"), INERT("bokeh"), INERT("user_defined"),
-    IGNORED("focal_point"), IGNORED("blur_samples"), IGNORED("confidence"), IGNORED("variance"), IGNORED("smooth"),
+    INERT("fisheye"),
+    INERT("ultra_wide_angle"),
+    INERT("omnimax"),
+    INERT("panoramic"),
+    INERT("spherical"),
+    INERT("cylinder"),
+    INERT("mesh_camera"),
+    INERT("aperture"),
+    INERT("bokeh"),
+    INERT("user_defined"),
+    IGNORED("focal_point"),
+    IGNORED("blur_samples"),
+    IGNORED("confidence"),
+    IGNORED("variance"),
+    IGNORED("smooth"),
 };
 
 static void apply_angle(CameraDraft *draft) {
@@ -70,7 +86,8 @@ static void apply_angle(CameraDraft *draft) {
 /* Keeps the lengths of the three vectors and their handedness. */
 static bool apply_look_at(Reader *reader, CameraDraft *draft) {
     Camera *c = &draft->camera;
-    double direction_length = vec3_length(c->direction), up_length = vec3_length(c->up), right_length = vec3_length(c->right);
+    double direction_length = vec3_length(c->direction), up_length = vec3_length(c->up),
+           right_length = vec3_length(c->right);
     double handedness = vec3_dot(vec3_cross(c->up, c->direction), c->right);
     Vec3 view = vec3_sub(draft->look_at, c->location);
     if (vec3_length_squared(view) < 1e-10) {
@@ -116,7 +133,8 @@ static bool check_frame(Reader *reader, const Camera *c) {
         return false;
     }
     if (fabs(volume) < (1 - 1e-8) * lengths)
-        diag_warning(reader->context->diags, reader->block->word_span, "the camera's vectors are not perpendicular");
+        diag_warning(reader->context->diags, reader->block->word_span,
+                     "the camera's vectors are not perpendicular");
     return true;
 }
 
@@ -134,7 +152,9 @@ static bool store(BuildContext *context, const EvalBlock *block, Camera camera, 
 }
 
 bool build_camera(BuildContext *context, const EvalBlock *block, Value *out) {
-    CameraDraft draft = {.camera = camera_default(DEFAULT_ASPECT), .sky = {0, 1, 0}, .look_at = {0, 0, 1},
+    CameraDraft draft = {.camera = camera_default(DEFAULT_ASPECT),
+                         .sky = {0, 1, 0},
+                         .look_at = {0, 0, 1},
                          .transform = transform_identity()};
     Reader reader = reader_begin(context, block);
     Argument declared;

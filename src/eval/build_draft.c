@@ -5,12 +5,27 @@
 
 struct SceneDraft {
     const char *name;
-    struct { const Object **items; size_t count, capacity; } objects;
-    struct { Light *items; size_t count, capacity; } lights;
-    struct { const Skin **items; size_t count, capacity; } skins;
-    struct { const Pigment **items; size_t count, capacity; } sky;
-    struct { const char **items; size_t count, capacity; } warned; /* words named in a warning */
-    const void **visited;                                          /* nodes walked already: a set of pointers */
+    struct {
+        const Object **items;
+        size_t count, capacity;
+    } objects;
+    struct {
+        Light *items;
+        size_t count, capacity;
+    } lights;
+    struct {
+        const Skin **items;
+        size_t count, capacity;
+    } skins;
+    struct {
+        const Pigment **items;
+        size_t count, capacity;
+    } sky;
+    struct {
+        const char **items;
+        size_t count, capacity;
+    } warned;             /* words named in a warning */
+    const void **visited; /* nodes walked already: a set of pointers */
     size_t visited_count, visited_slots;
     const Texture *first_default;
     const Camera *camera;
@@ -23,7 +38,8 @@ SceneDraft *scene_draft_create(BuildContext *context, const char *scene_name) {
     SceneDraft *draft = arena_new(context->arena, SceneDraft);
     if (!context->default_texture) context->default_texture = texture_default(context);
     *draft = (SceneDraft){.name = arena_strdup(context->arena, scene_name ? scene_name : "scene"),
-                          .first_default = context->default_texture, .settings = global_settings_default()};
+                          .first_default = context->default_texture,
+                          .settings = global_settings_default()};
     return draft;
 }
 
@@ -63,17 +79,24 @@ static bool warn_first(SceneDraft *draft, BuildContext *context, const char *wor
 }
 
 static const char *what_happens(const BuildContext *context, const char *word) {
-    static const struct { const char *word, *text; } effects[] = {
-        {"area_light", "is drawn as a point light"}, {"fisheye", "is drawn as a perspective camera"},
-        {"ultra_wide_angle", "is drawn as a perspective camera"}, {"spherical", "is drawn as a perspective camera"},
-        {"panoramic", "is drawn as a perspective camera"}, {"omnimax", "is drawn as a perspective camera"},
-        {"tiling wang", "is drawn as 'tiling plain'"}, {"wind_field", "is not modelled yet: nothing moves"},
+    static const struct {
+        const char *word, *text;
+    } effects[] = {
+        {"area_light", "is drawn as a point light"},
+        {"fisheye", "is drawn as a perspective camera"},
+        {"ultra_wide_angle", "is drawn as a perspective camera"},
+        {"spherical", "is drawn as a perspective camera"},
+        {"panoramic", "is drawn as a perspective camera"},
+        {"omnimax", "is drawn as a perspective camera"},
+        {"tiling wang", "is drawn as 'tiling plain'"},
+        {"wind_field", "is not modelled yet: nothing moves"},
     };
     for (size_t i = 0; i < VTS_ARRAY_COUNT(effects); i++)
         if (strcmp(effects[i].word, word) == 0) return effects[i].text;
     bool known;
     BlockBuilder *builder = block_builder_find(context, intern_cstr(context->names, word), &known);
-    return builder == build_unmodelled ? "is not modelled yet: it is left out" : "is not modelled yet: it has no effect";
+    return builder == build_unmodelled ? "is not modelled yet: it is left out"
+                                       : "is not modelled yet: it has no effect";
 }
 
 /* The newest note is the first of its list: the text's order is from the end. */
@@ -87,7 +110,8 @@ static void warn_inert(SceneDraft *draft, BuildContext *context, const InertNote
 static void walk_pigment(SceneDraft *draft, BuildContext *context, const Pigment *pigment) {
     if (!visit(draft, context, pigment)) return;
     warn_inert(draft, context, pigment->inert);
-    for (size_t i = 0; i < pigment->entry_count; i++) walk_pigment(draft, context, pigment->entries[i].pigment);
+    for (size_t i = 0; i < pigment->entry_count; i++)
+        walk_pigment(draft, context, pigment->entries[i].pigment);
 }
 
 static void walk_texture(SceneDraft *draft, BuildContext *context, const Texture *texture) {
@@ -104,7 +128,8 @@ static void walk_texel(SceneDraft *draft, BuildContext *context, const TexelDef 
     warn_inert(draft, context, texel->inert);
     for (size_t i = 0; i < texel->layer_count; i++) {
         walk_texture(draft, context, texel->layers[i].texture);
-        for (size_t k = 0; k < texel->layers[i].content_count; k++) walk_object(draft, context, texel->layers[i].contents[k]);
+        for (size_t k = 0; k < texel->layers[i].content_count; k++)
+            walk_object(draft, context, texel->layers[i].contents[k]);
     }
     for (size_t i = 0; i < texel->choice_count; i++) walk_texel(draft, context, texel->choices[i]);
 }
@@ -117,17 +142,21 @@ static void walk_surface(SceneDraft *draft, BuildContext *context, const Surface
 }
 
 static bool has_children(const Object *o) {
-    return o->kind == OBJECT_UNION || o->kind == OBJECT_INTERSECTION || o->kind == OBJECT_DIFFERENCE || o->kind == OBJECT_MERGE;
+    return o->kind == OBJECT_UNION || o->kind == OBJECT_INTERSECTION || o->kind == OBJECT_DIFFERENCE ||
+           o->kind == OBJECT_MERGE;
 }
 
 static void walk_object(SceneDraft *draft, BuildContext *context, const Object *object) {
     if (!visit(draft, context, object)) return;
     warn_inert(draft, context, object->inert);
     walk_texture(draft, context, object->texture);
-    if (has_children(object) && (object->as.children.count == 0 || visit(draft, context, object->as.children.items)))
-        for (size_t i = 0; i < object->as.children.count; i++) walk_object(draft, context, object->as.children.items[i]);
+    if (has_children(object) &&
+        (object->as.children.count == 0 || visit(draft, context, object->as.children.items)))
+        for (size_t i = 0; i < object->as.children.count; i++)
+            walk_object(draft, context, object->as.children.items[i]);
     if (object->kind == OBJECT_TRIANGLES && visit(draft, context, object->as.mesh))
-        for (size_t i = 0; i < object->as.mesh->texture_count; i++) walk_texture(draft, context, object->as.mesh->textures[i]);
+        for (size_t i = 0; i < object->as.mesh->texture_count; i++)
+            walk_texture(draft, context, object->as.mesh->textures[i]);
     if (object->kind == OBJECT_SURFACE) walk_surface(draft, context, object->as.surface);
     if (object->kind == OBJECT_TEXEL) walk_texel(draft, context, object->as.texel);
 }
@@ -140,7 +169,8 @@ static void add_light(SceneDraft *draft, BuildContext *context, const Light *lig
 }
 
 /* Lights in unions shine where the transforms of the unions around them put them. */
-static void add_lights_of(SceneDraft *draft, BuildContext *context, const Object *object, const Transform *outer) {
+static void add_lights_of(SceneDraft *draft, BuildContext *context, const Object *object,
+                          const Transform *outer) {
     if (!has_children(object)) return;
     Transform t = transform_then(&object->transform, outer);
     for (size_t i = 0; i < object->as.children.light_count; i++)
@@ -232,13 +262,18 @@ static bool add_block(SceneDraft *draft, BuildContext *context, const EvalBlock 
 
 static bool refuse(BuildContext *context, const Value *value, Span span) {
     if (value->kind == VALUE_ERROR) return false;
-    Diagnostic *d = diag_error(context->diags, span, "%s has no meaning at top level", value_kind_text(value->kind));
+    Diagnostic *d =
+        diag_error(context->diags, span, "%s has no meaning at top level", value_kind_text(value->kind));
     switch (value->kind) {
-    case VALUE_TEXEL: diag_hint(context->diags, d, "give it a name with #declare, then lay it on a surface by a skin"); break;
+    case VALUE_TEXEL:
+        diag_hint(context->diags, d, "give it a name with #declare, then lay it on a surface by a skin");
+        break;
     case VALUE_SURFACE: diag_hint(context->diags, d, "write object { surface { … } } to draw it"); break;
     case VALUE_TEXTURE:
     case VALUE_PIGMENT:
-    case VALUE_FINISH: diag_hint(context->diags, d, "it belongs into an object, or give it a name with #declare"); break;
+    case VALUE_FINISH:
+        diag_hint(context->diags, d, "it belongs into an object, or give it a name with #declare");
+        break;
     default: break;
     }
     return false;
@@ -293,15 +328,25 @@ bool scene_draft_default(SceneDraft *draft, BuildContext *context, const EvalBlo
 const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context, double clock) {
     Scene *scene = arena_new(context->arena, Scene);
     if (!draft->objects.count && !draft->skins.count)
-        diag_warning(context->diags, (Span){0}, "the scene holds nothing to draw: the picture is its background");
+        diag_warning(context->diags, (Span){0},
+                     "the scene holds nothing to draw: the picture is its background");
     double aspect = context->image_aspect > 0 ? context->image_aspect : 4.0 / 3;
-    *scene = (Scene){
-        .name = draft->name, .camera = draft->camera ? *draft->camera : camera_default(aspect),
-        .has_camera = draft->camera != NULL, .lights = draft->lights.items, .light_count = draft->lights.count,
-        .objects = draft->objects.items, .object_count = draft->objects.count, .skins = draft->skins.items,
-        .skin_count = draft->skins.count, .sky_layers = draft->sky.items, .sky_layer_count = draft->sky.count,
-        .background = draft->background, .has_fog = draft->fog != NULL, .default_texture = draft->first_default,
-        .settings = draft->settings, .clock = clock};
+    *scene = (Scene){.name = draft->name,
+                     .camera = draft->camera ? *draft->camera : camera_default(aspect),
+                     .has_camera = draft->camera != NULL,
+                     .lights = draft->lights.items,
+                     .light_count = draft->lights.count,
+                     .objects = draft->objects.items,
+                     .object_count = draft->objects.count,
+                     .skins = draft->skins.items,
+                     .skin_count = draft->skins.count,
+                     .sky_layers = draft->sky.items,
+                     .sky_layer_count = draft->sky.count,
+                     .background = draft->background,
+                     .has_fog = draft->fog != NULL,
+                     .default_texture = draft->first_default,
+                     .settings = draft->settings,
+                     .clock = clock};
     if (draft->fog) scene->fog = *draft->fog;
     return scene;
 }

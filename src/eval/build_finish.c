@@ -100,8 +100,12 @@ static const WordRule rules[] = {
 
 /* What each of the first rules sets: so many bytes from its offset on. */
 static const size_t rule_bytes[] = {
-    sizeof(Color), sizeof(Color), 2 * sizeof(double), sizeof(double),                          sizeof(double), sizeof(double),
-    sizeof(double), sizeof(double), sizeof(double),   FIELD(fresnel) + sizeof(bool) - FIELD(reflection_min), sizeof(bool),
+    sizeof(Color),      sizeof(Color),
+    2 * sizeof(double), sizeof(double),
+    sizeof(double),     sizeof(double),
+    sizeof(double),     sizeof(double),
+    sizeof(double),     FIELD(fresnel) + sizeof(bool) - FIELD(reflection_min),
+    sizeof(bool),
 };
 
 static bool on_value(Reader *reader, const Argument *value, void *target) {
@@ -121,7 +125,8 @@ const Finish *finish_over(const BuildContext *context, const Finish *base, const
     built->finish = *base;
     for (size_t i = 0; i < VTS_ARRAY_COUNT(rule_bytes); i++)
         if (change->set >> i & 1)
-            memcpy((char *)&built->finish + rules[i].offset, (const char *)block + rules[i].offset, rule_bytes[i]);
+            memcpy((char *)&built->finish + rules[i].offset, (const char *)block + rules[i].offset,
+                   rule_bytes[i]);
     finish_rehash(&built->finish);
     return &built->finish;
 }

@@ -15,8 +15,10 @@ static void read_spotlight(Reader *reader, const Word *word, void *target) {
 }
 
 #define FIELD(name) offsetof(LightDraft, light.name)
-#define INERT(word) {word, WORD_INERT, FIELD(inert), NULL, false}
-#define IGNORED(word) {word, WORD_IGNORED, 0, NULL, false}
+#define INERT(word)                                                                                          \
+    { word, WORD_INERT, FIELD(inert), NULL, false }
+#define IGNORED(word)                                                                                        \
+    { word, WORD_IGNORED, 0, NULL, false }
 static const WordRule rules[] = {
     {"parallel", WORD_CUSTOM, 0, read_parallel, false},
     {"spotlight", WORD_CUSTOM, 0, read_spotlight, false},
@@ -27,9 +29,22 @@ static const WordRule rules[] = {
     {"shadowless", WORD_FLAG, FIELD(shadowless), NULL, false},
     {"fade_distance", WORD_FLOAT, FIELD(fade_distance), NULL, false},
     {"fade_power", WORD_FLOAT, FIELD(fade_power), NULL, false},
-    INERT("area_light"), INERT("looks_like"), INERT("projected_through"), INERT("cylinder"), INERT("goniometric"), INERT("ies"),
-    IGNORED("adaptive"), IGNORED("jitter"), IGNORED("circular"), IGNORED("orient"), IGNORED("area_illumination"),
-    IGNORED("media_interaction"), IGNORED("media_attenuation"), IGNORED("groups"), IGNORED("photons"), IGNORED("global_lights"),
+    INERT("area_light"),
+    INERT("looks_like"),
+    INERT("projected_through"),
+    INERT("cylinder"),
+    INERT("goniometric"),
+    INERT("ies"),
+    IGNORED("adaptive"),
+    IGNORED("jitter"),
+    IGNORED("circular"),
+    IGNORED("orient"),
+    IGNORED("area_illumination"),
+    IGNORED("media_interaction"),
+    IGNORED("media_attenuation"),
+    IGNORED("groups"),
+    IGNORED("photons"),
+    IGNORED("global_lights"),
 };
 
 static bool on_value(Reader *reader, const Argument *value, void *target) {
@@ -53,7 +68,8 @@ static bool finish(Reader *reader, LightDraft *draft, Value *out) {
     Light *light = &draft->light;
     if (draft->parallel && light->kind == LIGHT_POINT) light->kind = LIGHT_PARALLEL;
     if (light->kind != LIGHT_POINT && vec3_length_squared(vec3_sub(light->location, light->point_at)) == 0) {
-        reader_error(reader, reader->block->word_span, "this light has no direction: it stands where it points at");
+        reader_error(reader, reader->block->word_span,
+                     "this light has no direction: it stands where it points at");
         return false;
     }
     *out = (Value){.kind = VALUE_LIGHT, .as.light = light_placed(reader->context, light, &draft->transform)};
@@ -61,8 +77,9 @@ static bool finish(Reader *reader, LightDraft *draft, Value *out) {
 }
 
 bool build_light(BuildContext *context, const EvalBlock *block, Value *out) {
-    LightDraft draft = {.light = {.color = {1, 1, 1, 0, 0}, .point_at = {0, 0, 1}, .radius = 30, .falloff = 45},
-                        .transform = transform_identity()};
+    LightDraft draft = {
+        .light = {.color = {1, 1, 1, 0, 0}, .point_at = {0, 0, 1}, .radius = 30, .falloff = 45},
+        .transform = transform_identity()};
     Reader reader = reader_begin(context, block);
     Argument declared;
     if (reader_take_value(&reader, VALUE_LIGHT, &declared))

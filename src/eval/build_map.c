@@ -8,14 +8,16 @@ typedef struct EntryList {
 } EntryList;
 
 static bool is_color(const BlockItem *item) {
-    return item && item->kind == ITEM_VALUE && (item->value.kind == VALUE_COLOR || item->value.kind == VALUE_VECTOR);
+    return item && item->kind == ITEM_VALUE &&
+           (item->value.kind == VALUE_COLOR || item->value.kind == VALUE_VECTOR);
 }
 
 static void read_color_entry(Reader *reader, EntryList *list, double position) {
     const BlockItem *item = reader_peek(reader);
     ColorMapEntry entry = {.position = position};
     if (!is_color(item)) {
-        reader_error(reader, item ? item->span : reader->block->span, "an entry of a colour map is [ position colour ]");
+        reader_error(reader, item ? item->span : reader->block->span,
+                     "an entry of a colour map is [ position colour ]");
         return;
     }
     Argument argument = {item->value, item->span};
@@ -28,16 +30,19 @@ static void read_color_entry(Reader *reader, EntryList *list, double position) {
 static void read_color_entries(Reader *reader, EntryList *list, double position) {
     Argument second;
     double end = position;
-    bool two = reader_take_value(reader, VALUE_FLOAT, &second) && argument_float(reader, &second, "the position", &end);
+    bool two = reader_take_value(reader, VALUE_FLOAT, &second) &&
+               argument_float(reader, &second, "the position", &end);
     read_color_entry(reader, list, position);
     if (two && !reader->failed) read_color_entry(reader, list, end);
     const BlockItem *extra = reader_peek(reader);
-    if (extra && !reader->failed) reader_error(reader, extra->span, "this entry of the colour map has too many values");
+    if (extra && !reader->failed)
+        reader_error(reader, extra->span, "this entry of the colour map has too many values");
 }
 
 static void read_pigment_entry(Reader *reader, EntryList *list, double position) {
     const Pigment *pigment = pigment_read(reader);
-    if (pigment) *list_push(reader->context->arena, list) = (ColorMapEntry){.position = position, .pigment = pigment};
+    if (pigment)
+        *list_push(reader->context->arena, list) = (ColorMapEntry){.position = position, .pigment = pigment};
 }
 
 /* Stable: two entries at one place are a step, in the order of the text. */
@@ -76,7 +81,8 @@ bool build_color_map(BuildContext *context, const EvalBlock *block, Value *out) 
             read_entry(&reader, item->entry, pigments, &list);
         else
             reader_error(&reader, item->span, "'%s' holds entries [ … ] only", block->word->text);
-    if (!reader.failed && list.count == 0) reader_error(&reader, block->word_span, "'%s' without entries", block->word->text);
+    if (!reader.failed && list.count == 0)
+        reader_error(&reader, block->word_span, "'%s' without entries", block->word->text);
     if (reader.failed) return false;
     sort_entries(&list);
     ColorMap *map = arena_new(context->arena, ColorMap);

@@ -15,8 +15,9 @@ static void read_repeat(Reader *reader, const Word *word, void *target) {
         return;
     }
     if (!(repeat.x > 0 && repeat.y > 0)) {
-        reader_error(reader, word->arguments[0].span, "'repeat' must be greater than 0 in both directions, found <%g, %g>",
-                     repeat.x, repeat.y);
+        reader_error(reader, word->arguments[0].span,
+                     "'repeat' must be greater than 0 in both directions, found <%g, %g>", repeat.x,
+                     repeat.y);
         return;
     }
     mapping->repeat_u = repeat.x;
@@ -29,7 +30,8 @@ static void read_tile(Reader *reader, const Word *word, void *target) {
     if (!word_arguments(reader, word, 1, 1) || !word_float(reader, word, 0, &mapping->tile_size)) return;
     mapping->by_tile_size = true;
     if (!(mapping->tile_size > 0))
-        reader_error(reader, word->arguments[0].span, "'tile' must be greater than 0, found %g", mapping->tile_size);
+        reader_error(reader, word->arguments[0].span, "'tile' must be greater than 0, found %g",
+                     mapping->tile_size);
 }
 
 /* A function or pigment that multiplies: behind the number, as argument or as an item of its own. */
@@ -45,10 +47,13 @@ static void read_height(Reader *reader, const Word *word, void *target) {
     SkinMapping *mapping = target;
     Argument next;
     if (!word_arguments(reader, word, 1, 2) || !word_float(reader, word, 0, &mapping->height)) return;
-    if (mapping->height < 0) reader_error(reader, word->arguments[0].span, "'height' cannot be negative: the texel would hang inside");
+    if (mapping->height < 0)
+        reader_error(reader, word->arguments[0].span,
+                     "'height' cannot be negative: the texel would hang inside");
     if (word->count == 2)
         height_factor(reader, mapping, &word->arguments[1]);
-    else if (reader_take_value(reader, VALUE_FUNCTION, &next) || reader_take_value(reader, VALUE_PIGMENT, &next))
+    else if (reader_take_value(reader, VALUE_FUNCTION, &next) ||
+             reader_take_value(reader, VALUE_PIGMENT, &next))
         height_factor(reader, mapping, &next);
 }
 
@@ -70,7 +75,8 @@ static void read_w(Reader *reader, const Word *word, void *target) {
         !word_float(reader, word, 1, &mapping->w_tip))
         return;
     if (mapping->w_foot == mapping->w_tip)
-        reader_error(reader, word->arguments[1].span, "w at foot and tip must differ, found %g for both", mapping->w_foot);
+        reader_error(reader, word->arguments[1].span, "w at foot and tip must differ, found %g for both",
+                     mapping->w_foot);
     if (word->count == 3)
         argument_function(reader, &word->arguments[2], "'w'", 3, 3, &mapping->w_function);
     else if (reader_take_value(reader, VALUE_FUNCTION, &function))
@@ -109,7 +115,8 @@ static void read_noise(Reader *reader, const Word *word, void *target) {
     draft->last = NULL;
     if (!word_arguments(reader, word, 1, 1) || !word_float(reader, word, 0, &noise->amplitude)) return;
     if (noise->amplitude < 0)
-        reader_error(reader, word->arguments[0].span, "'%s' cannot be negative, found %g", word->text, noise->amplitude);
+        reader_error(reader, word->arguments[0].span, "'%s' cannot be negative, found %g", word->text,
+                     noise->amplitude);
     draft->last = noise;
 }
 
@@ -117,10 +124,12 @@ static void read_scale(Reader *reader, const Word *word, void *target) {
     JitterDraft *draft = target;
     double scale;
     if (!draft->last) {
-        reader_error(reader, word->span, "'scale' of a jitter follows 'coordinates', 'height' or 'direction'");
+        reader_error(reader, word->span,
+                     "'scale' of a jitter follows 'coordinates', 'height' or 'direction'");
     } else if (word_arguments(reader, word, 1, 1) && word_float(reader, word, 0, &scale)) {
         draft->last->scale = scale;
-        if (!(scale > 0)) reader_error(reader, word->arguments[0].span, "'scale' must be greater than 0, found %g", scale);
+        if (!(scale > 0))
+            reader_error(reader, word->arguments[0].span, "'scale' must be greater than 0, found %g", scale);
     }
     draft->last = NULL;
 }
@@ -129,7 +138,8 @@ static void read_share(Reader *reader, const Word *word, void *target) {
     InstanceJitter *instance = target;
     if (!word_arguments(reader, word, 1, 1) || !word_float(reader, word, 0, &instance->density)) return;
     if (instance->density < 0 || instance->density > 1)
-        reader_error(reader, word->arguments[0].span, "'density' is a share from 0 to 1, found %g", instance->density);
+        reader_error(reader, word->arguments[0].span, "'density' is a share from 0 to 1, found %g",
+                     instance->density);
 }
 
 static void read_tint(Reader *reader, const Word *word, void *target) {
@@ -165,7 +175,8 @@ static void read_seed(Reader *reader, const Word *word, void *target) {
     JitterDraft *draft = target;
     int seed;
     draft->last = NULL;
-    if (word_arguments(reader, word, 1, 1) && word_int(reader, word, 0, &seed)) draft->jitter->seed = (uint32_t)seed;
+    if (word_arguments(reader, word, 1, 1) && word_int(reader, word, 0, &seed))
+        draft->jitter->seed = (uint32_t)seed;
 }
 
 static const WordRule jitter_rules[] = {

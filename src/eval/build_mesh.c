@@ -27,8 +27,12 @@ static MeshData *one_triangle(Arena *arena, const Vec3 *vertices, const Vec3 *no
     MeshData *mesh = arena_new(arena, MeshData);
     uint32_t(*triangles)[3] = arena_push(arena, sizeof *triangles);
     for (uint32_t i = 0; i < 3; i++) triangles[0][i] = i;
-    *mesh = (MeshData){.vertices = vertices, .vertex_count = 3, .normals = normals, .normal_count = normals ? 3 : 0,
-                       .triangles = (const uint32_t(*)[3])triangles, .triangle_count = 1};
+    *mesh = (MeshData){.vertices = vertices,
+                       .vertex_count = 3,
+                       .normals = normals,
+                       .normal_count = normals ? 3 : 0,
+                       .triangles = (const uint32_t(*)[3])triangles,
+                       .triangle_count = 1};
     return mesh;
 }
 
@@ -38,7 +42,8 @@ bool build_triangle(BuildContext *context, const EvalBlock *block, Value *out) {
     bool smooth = strcmp(block->word->text, "smooth_triangle") == 0;
     Reader reader = reader_begin(context, block);
     TriangleDraft draft = {.object = object_begin(block, OBJECT_TRIANGLES)};
-    Vec3 *vertices = arena_new_array(context->arena, Vec3, 3), *normals = arena_new_array(context->arena, Vec3, 3);
+    Vec3 *vertices = arena_new_array(context->arena, Vec3, 3),
+         *normals = arena_new_array(context->arena, Vec3, 3);
     for (int i = 0; i < 3; i++)
         if (!reader_vector(&reader, "a corner", &vertices[i], NULL) ||
             (smooth && !reader_vector(&reader, "a normal", &normals[i], NULL)))
@@ -67,14 +72,18 @@ bool build_triangle(BuildContext *context, const EvalBlock *block, Value *out) {
 
 typedef struct MeshDraft {
     Object object;
-    struct { const Object **items; size_t count, capacity; } parts;
+    struct {
+        const Object **items;
+        size_t count, capacity;
+    } parts;
     bool textured, smooth, mapped;
 } MeshDraft;
 
 static bool on_mesh_value(Reader *reader, const Argument *value, void *target) {
     MeshDraft *draft = target;
     if (value->value.kind != VALUE_OBJECT || value->value.as.object->kind != OBJECT_TRIANGLES)
-        return take_looks(reader->context, value, &draft->object.texture, &draft->object.inert, &draft->object.transform) ||
+        return take_looks(reader->context, value, &draft->object.texture, &draft->object.inert,
+                          &draft->object.transform) ||
                take_transform(value, &draft->object.transform);
     const Object *part = value->value.as.object;
     if (part->as.mesh->triangle_count == 0) return true;
@@ -91,12 +100,14 @@ static void fill_normals(const MeshData *part, Vec3 *normals) {
     for (int k = 0; k < 3; k++) normals[k] = part->normals ? part->normals[k] : flat;
 }
 
-static const Texture **gather_textures(Arena *arena, const MeshDraft *draft, MeshData *mesh, uint32_t *indices) {
+static const Texture **gather_textures(Arena *arena, const MeshDraft *draft, MeshData *mesh,
+                                       uint32_t *indices) {
     const Texture **textures = arena_new_array(arena, const Texture *, draft->parts.count + 1);
     for (size_t i = 0; i < draft->parts.count; i++) {
         const Texture *texture = draft->parts.items[i]->texture;
         if (!texture) texture = draft->object.texture;
-        if (mesh->texture_count == 0 || textures[mesh->texture_count - 1] != texture) textures[mesh->texture_count++] = texture;
+        if (mesh->texture_count == 0 || textures[mesh->texture_count - 1] != texture)
+            textures[mesh->texture_count++] = texture;
         indices[i] = (uint32_t)(mesh->texture_count - 1);
     }
     return textures;
@@ -117,9 +128,14 @@ static const MeshData *join_triangles(const BuildContext *context, const MeshDra
         if (uvs && part->uvs) memcpy(&uvs[3 * i], part->uvs, 3 * sizeof *uvs);
         for (uint32_t k = 0; k < 3; k++) triangles[i][k] = (uint32_t)(3 * i) + k;
     }
-    *mesh = (MeshData){.vertices = vertices, .vertex_count = 3 * count, .normals = normals, .uvs = uvs,
-                       .normal_count = normals ? 3 * count : 0, .uv_count = uvs ? 3 * count : 0,
-                       .triangles = (const uint32_t(*)[3])triangles, .triangle_count = count};
+    *mesh = (MeshData){.vertices = vertices,
+                       .vertex_count = 3 * count,
+                       .normals = normals,
+                       .uvs = uvs,
+                       .normal_count = normals ? 3 * count : 0,
+                       .uv_count = uvs ? 3 * count : 0,
+                       .triangles = (const uint32_t(*)[3])triangles,
+                       .triangle_count = count};
     if (draft->textured) {
         uint32_t *indices = arena_new_array(context->arena, uint32_t, count);
         mesh->textures = gather_textures(context->arena, draft, mesh, indices);
@@ -134,10 +150,12 @@ bool build_mesh(BuildContext *context, const EvalBlock *block, Value *out) {
         diag_error(context->diags, block->word_span, "'mesh' without triangles");
         return false;
     }
-    MeshDraft draft = {.object = object_begin(block, OBJECT_UNION)}; /* a kind without data until they are joined */
+    MeshDraft draft = {.object =
+                           object_begin(block, OBJECT_UNION)}; /* a kind without data until they are joined */
     Reader reader = reader_begin(context, block);
     const BlockItem *first = reader_peek(&reader);
-    bool copy = object_is_copy(block) && first->value.as.object->as.mesh && first->value.as.object->kind == OBJECT_TRIANGLES &&
+    bool copy = object_is_copy(block) && first->value.as.object->as.mesh &&
+                first->value.as.object->kind == OBJECT_TRIANGLES &&
                 strcmp(first->value.as.object->word, "mesh") == 0;
     if (copy) return build_object(context, block, out);
     reader.on_value = on_mesh_value;

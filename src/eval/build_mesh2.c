@@ -12,7 +12,8 @@ typedef struct Mesh2Draft {
 static bool stated_count(Reader *reader, const char *what, size_t *count) {
     double stated;
     Span span;
-    if (!reader_float(reader, arena_printf(reader->context->arena, "the number of %s", what), &stated, &span)) return false;
+    if (!reader_float(reader, arena_printf(reader->context->arena, "the number of %s", what), &stated, &span))
+        return false;
     if (stated < 0 || stated != floor(stated) || stated > 1e9) {
         reader_error(reader, span, "%g cannot be a number of %s", stated, what);
         return false;
@@ -26,8 +27,8 @@ static const Vec3 *read_vectors(Reader *reader, const char *what, size_t *count)
     if (!stated_count(reader, what, count)) return NULL;
     size_t found = reader->block->count - reader->next;
     if (found != *count) {
-        reader_error(reader, reader->block->word_span, "'%s' announces %zu %s, but %zu follow", reader->block->word->text, *count,
-                     what, found);
+        reader_error(reader, reader->block->word_span, "'%s' announces %zu %s, but %zu follow",
+                     reader->block->word->text, *count, what, found);
         return NULL;
     }
     Vec3 *vectors = arena_new_array(reader->context->arena, Vec3, *count);
@@ -52,12 +53,14 @@ static bool need_body(Reader *reader, const Word *word) {
 
 static void read_vertices(Reader *reader, const Word *word, void *target) {
     MeshData *mesh = &((Mesh2Draft *)target)->mesh;
-    if (need_body(reader, word)) mesh->vertices = vectors_read(reader, word->body, "vertices", &mesh->vertex_count);
+    if (need_body(reader, word))
+        mesh->vertices = vectors_read(reader, word->body, "vertices", &mesh->vertex_count);
 }
 
 static void read_normals(Reader *reader, const Word *word, void *target) {
     MeshData *mesh = &((Mesh2Draft *)target)->mesh;
-    if (need_body(reader, word)) mesh->normals = vectors_read(reader, word->body, "normals", &mesh->normal_count);
+    if (need_body(reader, word))
+        mesh->normals = vectors_read(reader, word->body, "normals", &mesh->normal_count);
 }
 
 static void read_uvs(Reader *reader, const Word *word, void *target) {
@@ -75,7 +78,8 @@ static void read_heights(Reader *reader, const Word *word, void *target) {
 static void read_ws(Reader *reader, const Word *word, void *target) {
     Mesh2Draft *draft = target;
     draft->ws = word->span;
-    if (need_body(reader, word)) draft->mesh.w_vectors = vectors_read(reader, word->body, "w vectors", &draft->w_count);
+    if (need_body(reader, word))
+        draft->mesh.w_vectors = vectors_read(reader, word->body, "w vectors", &draft->w_count);
 }
 
 static void read_textures(Reader *reader, const Word *word, void *target) {
@@ -84,10 +88,13 @@ static void read_textures(Reader *reader, const Word *word, void *target) {
     Reader body = reader_nested(reader, word->body);
     size_t count;
     if (stated_count(&body, "textures", &count)) {
-        const Texture **textures = arena_new_array(reader->context->arena, const Texture *, body.block->count);
+        const Texture **textures =
+            arena_new_array(reader->context->arena, const Texture *, body.block->count);
         Argument texture;
-        while (reader_take_value(&body, VALUE_TEXTURE, &texture)) textures[mesh->texture_count++] = texture.value.as.texture;
-        if (reader_peek(&body)) reader_error(&body, reader_peek(&body)->span, "'texture_list' holds textures only");
+        while (reader_take_value(&body, VALUE_TEXTURE, &texture))
+            textures[mesh->texture_count++] = texture.value.as.texture;
+        if (reader_peek(&body))
+            reader_error(&body, reader_peek(&body)->span, "'texture_list' holds textures only");
         mesh->textures = textures;
     }
     reader_end_nested(reader, &body);
@@ -104,10 +111,14 @@ static void keep_uv_faces(Reader *reader, const Word *word, void *target) {
 }
 
 static const WordRule rules[] = {
-    {"vertex_vectors", WORD_CUSTOM, 0, read_vertices, true},   {"normal_vectors", WORD_CUSTOM, 0, read_normals, true},
-    {"uv_vectors", WORD_CUSTOM, 0, read_uvs, true},            {"texture_list", WORD_CUSTOM, 0, read_textures, true},
-    {"face_indices", WORD_CUSTOM, 0, keep_faces, true},        {"normal_indices", WORD_CUSTOM, 0, keep_normal_faces, true},
-    {"uv_indices", WORD_CUSTOM, 0, keep_uv_faces, true},       {"height_vectors", WORD_CUSTOM, 0, read_heights, true},
+    {"vertex_vectors", WORD_CUSTOM, 0, read_vertices, true},
+    {"normal_vectors", WORD_CUSTOM, 0, read_normals, true},
+    {"uv_vectors", WORD_CUSTOM, 0, read_uvs, true},
+    {"texture_list", WORD_CUSTOM, 0, read_textures, true},
+    {"face_indices", WORD_CUSTOM, 0, keep_faces, true},
+    {"normal_indices", WORD_CUSTOM, 0, keep_normal_faces, true},
+    {"uv_indices", WORD_CUSTOM, 0, keep_uv_faces, true},
+    {"height_vectors", WORD_CUSTOM, 0, read_heights, true},
     {"w_vectors", WORD_CUSTOM, 0, read_ws, true},
 };
 
@@ -120,8 +131,8 @@ static bool read_triangle(Reader *reader, size_t number, const char *what, size_
     for (int i = 0; i < 3; i++) {
         double index = vec3_get(v, i);
         if (index < 0 || index >= (double)limit || index != floor(index)) {
-            reader_error(reader, span, "triangle %zu: there is no %s %g; they count from 0 to %zu", number, what, index,
-                         limit ? limit - 1 : 0);
+            reader_error(reader, span, "triangle %zu: there is no %s %g; they count from 0 to %zu", number,
+                         what, index, limit ? limit - 1 : 0);
             return false;
         }
         out[i] = (uint32_t)index;
@@ -135,7 +146,8 @@ static bool read_texture_index(Reader *reader, size_t number, size_t limit, uint
     for (int i = 0; reader_take_value(reader, VALUE_FLOAT, &argument); i++) {
         double index = argument.value.as.number;
         if (!(index >= 0 && index < (double)limit)) {
-            reader_error(reader, argument.span, "triangle %zu: there is no texture %g; they count from 0 to %zu", number, index,
+            reader_error(reader, argument.span,
+                         "triangle %zu: there is no texture %g; they count from 0 to %zu", number, index,
                          limit ? limit - 1 : 0);
             return false;
         }
@@ -151,34 +163,36 @@ typedef struct FaceList {
     size_t count;
 } FaceList;
 
-static bool read_faces(Reader *parent, const EvalBlock *body, const char *what, size_t limit, size_t texture_limit,
-                       FaceList *out) {
+static bool read_faces(Reader *parent, const EvalBlock *body, const char *what, size_t limit,
+                       size_t texture_limit, FaceList *out) {
     Reader reader = reader_nested(parent, body);
     bool used = false;
     if (stated_count(&reader, "triangles", &out->count)) {
         if (out->count > body->count) /* before memory is taken for a slip of the keyboard */
-            reader_error(&reader, body->word_span, "'%s' announces %zu triangles, but at most %zu follow", body->word->text,
-                         out->count, body->count - 1);
-        out->triangles = arena_push_array_(parent->context->arena, reader.failed ? 0 : out->count, sizeof(Triangle));
+            reader_error(&reader, body->word_span, "'%s' announces %zu triangles, but at most %zu follow",
+                         body->word->text, out->count, body->count - 1);
+        out->triangles =
+            arena_push_array_(parent->context->arena, reader.failed ? 0 : out->count, sizeof(Triangle));
         out->textures = arena_new_array(parent->context->arena, uint32_t, reader.failed ? 0 : out->count);
         for (size_t i = 0; i < out->count && !reader.failed; i++)
             if (read_triangle(&reader, i, what, limit, out->triangles[i]))
                 read_texture_index(&reader, i, texture_limit, &out->textures[i], &used);
         if (!reader.failed && reader_peek(&reader))
-            reader_error(&reader, reader_peek(&reader)->span, "'%s' announces %zu triangles, but more follow", body->word->text,
-                         out->count);
+            reader_error(&reader, reader_peek(&reader)->span, "'%s' announces %zu triangles, but more follow",
+                         body->word->text, out->count);
     }
     if (!used) out->textures = NULL;
     return reader_end_nested(parent, &reader);
 }
 
-static bool read_other_faces(Reader *reader, const EvalBlock *body, const char *what, size_t limit, size_t expected,
-                             const Triangle **out) {
+static bool read_other_faces(Reader *reader, const EvalBlock *body, const char *what, size_t limit,
+                             size_t expected, const Triangle **out) {
     FaceList list = {0};
     if (!body) return true;
     if (!read_faces(reader, body, what, limit, 0, &list)) return false;
     if (list.count != expected) {
-        reader_error(reader, body->word_span, "'%s' has %zu triangles, 'face_indices' %zu", body->word->text, list.count, expected);
+        reader_error(reader, body->word_span, "'%s' has %zu triangles, 'face_indices' %zu", body->word->text,
+                     list.count, expected);
         return false;
     }
     *out = (const Triangle *)list.triangles;
@@ -191,19 +205,23 @@ static void warn_flat(MeshData *mesh, Span span, DiagList *diags) {
         const uint32_t *t = mesh->triangles[i];
         flat += t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
     }
-    if (flat && flat == mesh->triangle_count) diag_warning(diags, span, "no triangle of this mesh has an area");
+    if (flat && flat == mesh->triangle_count)
+        diag_warning(diags, span, "no triangle of this mesh has an area");
 }
 
-static void check_per_vertex(Reader *reader, const void *list, const char *word, Span span, size_t count, size_t vertices) {
+static void check_per_vertex(Reader *reader, const void *list, const char *word, Span span, size_t count,
+                             size_t vertices) {
     if (list && count != vertices)
         reader_error(reader, span, "'%s' has %zu vectors for %zu vertices", word, count, vertices);
 }
 
 /* Normals and uvs without indices of their own go with the vertices. */
-static void check_shared(Reader *reader, const void *list, const void *indices, const char *word, size_t count, size_t vertices) {
+static void check_shared(Reader *reader, const void *list, const void *indices, const char *word,
+                         size_t count, size_t vertices) {
     if (list && !indices && count < vertices)
-        reader_error(reader, reader->block->word_span, "'%s' has %zu vectors for %zu vertices and no indices of its own", word,
-                     count, vertices);
+        reader_error(reader, reader->block->word_span,
+                     "'%s' has %zu vectors for %zu vertices and no indices of its own", word, count,
+                     vertices);
 }
 
 static bool assemble(Reader *reader, Mesh2Draft *draft) {
@@ -213,16 +231,20 @@ static bool assemble(Reader *reader, Mesh2Draft *draft) {
         reader_error(reader, reader->block->word_span, "'mesh2' needs 'vertex_vectors' and 'face_indices'");
         return false;
     }
-    if (!read_faces(reader, draft->faces, "vertex", mesh->vertex_count, mesh->texture_count, &faces)) return false;
+    if (!read_faces(reader, draft->faces, "vertex", mesh->vertex_count, mesh->texture_count, &faces))
+        return false;
     mesh->triangles = (const Triangle *)faces.triangles;
     mesh->triangle_count = faces.count;
     mesh->triangle_textures = faces.textures;
     if (mesh->triangle_count == 0) reader_error(reader, draft->faces->word_span, "'mesh2' without triangles");
-    read_other_faces(reader, draft->normal_faces, "normal", mesh->normal_count, faces.count, &mesh->normal_triangles);
+    read_other_faces(reader, draft->normal_faces, "normal", mesh->normal_count, faces.count,
+                     &mesh->normal_triangles);
     read_other_faces(reader, draft->uv_faces, "uv vector", mesh->uv_count, faces.count, &mesh->uv_triangles);
-    check_shared(reader, mesh->normals, draft->normal_faces, "normal_vectors", mesh->normal_count, mesh->vertex_count);
+    check_shared(reader, mesh->normals, draft->normal_faces, "normal_vectors", mesh->normal_count,
+                 mesh->vertex_count);
     check_shared(reader, mesh->uvs, draft->uv_faces, "uv_vectors", mesh->uv_count, mesh->vertex_count);
-    check_per_vertex(reader, mesh->height_vectors, "height_vectors", draft->heights, draft->height_count, mesh->vertex_count);
+    check_per_vertex(reader, mesh->height_vectors, "height_vectors", draft->heights, draft->height_count,
+                     mesh->vertex_count);
     check_per_vertex(reader, mesh->w_vectors, "w_vectors", draft->ws, draft->w_count, mesh->vertex_count);
     warn_flat(mesh, reader->block->word_span, reader->context->diags);
     return !reader->failed;

@@ -3,21 +3,35 @@
 #include <string.h>
 
 Object object_begin(const EvalBlock *block, ObjectKind kind) {
-    return (Object){.span = block->span, .kind = kind, .word = block->word->text, .transform = transform_identity()};
+    return (Object){
+        .span = block->span, .kind = kind, .word = block->word->text, .transform = transform_identity()};
 }
 
 #define FIELD(name) offsetof(Object, name)
-#define IGNORED(word) {word, WORD_IGNORED, 0, NULL, false}
-#define INERT(word) {word, WORD_INERT, FIELD(inert), NULL, false}
+#define IGNORED(word)                                                                                        \
+    { word, WORD_IGNORED, 0, NULL, false }
+#define INERT(word)                                                                                          \
+    { word, WORD_INERT, FIELD(inert), NULL, false }
 static const WordRule rules[] = {
     {"no_shadow", WORD_FLAG, FIELD(no_shadow), NULL, false},
     {"no_image", WORD_FLAG, FIELD(no_image), NULL, false},
     {"inverse", WORD_FLAG, FIELD(inverse), NULL, false},
     {"hollow", WORD_FLAG, FIELD(hollow), NULL, false},
-    IGNORED("bounded_by"), IGNORED("no_reflection"), IGNORED("double_illuminate"), IGNORED("hierarchy"), IGNORED("sturm"),
-    IGNORED("photons"), IGNORED("radiosity"), IGNORED("no_radiosity"), IGNORED("split_union"), IGNORED("cutaway_textures"),
-    IGNORED("no_bump_scale"), IGNORED("inside_vector"),
-    INERT("clipped_by"), INERT("uv_mapping"), INERT("interior_texture"),
+    IGNORED("bounded_by"),
+    IGNORED("no_reflection"),
+    IGNORED("double_illuminate"),
+    IGNORED("hierarchy"),
+    IGNORED("sturm"),
+    IGNORED("photons"),
+    IGNORED("radiosity"),
+    IGNORED("no_radiosity"),
+    IGNORED("split_union"),
+    IGNORED("cutaway_textures"),
+    IGNORED("no_bump_scale"),
+    IGNORED("inside_vector"),
+    INERT("clipped_by"),
+    INERT("uv_mapping"),
+    INERT("interior_texture"),
 };
 
 static bool on_value(Reader *reader, const Argument *value, void *target) {
@@ -66,7 +80,8 @@ const Object *object_from_value(const BuildContext *context, const Argument *val
 
 /* object { LIGHT transforms } */
 static bool build_light_copy(Reader *reader, const Light *light, Value *out) {
-    Object carrier = object_begin(reader->block, OBJECT_UNION); /* takes the modifiers; only its transform matters */
+    Object carrier =
+        object_begin(reader->block, OBJECT_UNION); /* takes the modifiers; only its transform matters */
     Value ignored;
     if (!object_finish(reader, &carrier, &ignored)) return false;
     *out = (Value){.kind = VALUE_LIGHT, .as.light = light_placed(reader->context, light, &carrier.transform)};
@@ -88,8 +103,8 @@ bool build_object(BuildContext *context, const EvalBlock *block, Value *out) {
     if (value.value.kind == VALUE_LIGHT) return build_light_copy(&reader, value.value.as.light, out);
     const Object *source = object_from_value(context, &value);
     if (!source) {
-        reader_mismatch(&reader, value.span, arena_printf(context->arena, "'%s'", block->word->text), "an object",
-                        value.value.kind);
+        reader_mismatch(&reader, value.span, arena_printf(context->arena, "'%s'", block->word->text),
+                        "an object", value.value.kind);
         return false;
     }
     Object object = *source;
@@ -141,8 +156,8 @@ bool build_csg(BuildContext *context, const EvalBlock *block, Value *out) {
     reader.value_target = &draft;
     if (!object_finish(&reader, &draft.object, out)) return false;
     if (draft.children.count + draft.lights.count < 2 && strcmp(block->word->text, "light_group") != 0)
-        diag_warning(context->diags, block->word_span, "'%s' should hold at least 2 objects, found %zu", block->word->text,
-                     draft.children.count + draft.lights.count);
+        diag_warning(context->diags, block->word_span, "'%s' should hold at least 2 objects, found %zu",
+                     block->word->text, draft.children.count + draft.lights.count);
     Object *made = arena_copy(context->arena, out->as.object, sizeof *made);
     made->as.children.items = draft.children.items;
     made->as.children.count = draft.children.count;

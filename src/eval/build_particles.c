@@ -14,7 +14,8 @@ static void read_width(Reader *reader, const Word *word, void *target) {
     particle->width_tip = particle->width_foot;
     if (word->count == 2 && !word_float(reader, word, 1, &particle->width_tip)) return;
     if (particle->width_foot < 0 || particle->width_tip < 0)
-        reader_error(reader, word->arguments[particle->width_foot < 0 ? 0 : 1].span, "a width cannot be negative");
+        reader_error(reader, word->arguments[particle->width_foot < 0 ? 0 : 1].span,
+                     "a width cannot be negative");
 }
 
 static void read_profile(Reader *reader, const Word *word, void *target) {
@@ -32,9 +33,12 @@ static void read_profile(Reader *reader, const Word *word, void *target) {
 
 #define FIELD(name) offsetof(Particle, name)
 static const WordRule body_rules[] = {
-    {"position", WORD_VECTOR, FIELD(position), NULL, true}, {"velocity", WORD_VECTOR, FIELD(velocity), NULL, true},
-    {"acceleration", WORD_VECTOR, FIELD(acceleration), NULL, true}, {"life", WORD_POSITIVE, FIELD(life), NULL, true},
-    {"width", WORD_CUSTOM, 0, read_width, true}, {"profile", WORD_CUSTOM, 0, read_profile, true},
+    {"position", WORD_VECTOR, FIELD(position), NULL, true},
+    {"velocity", WORD_VECTOR, FIELD(velocity), NULL, true},
+    {"acceleration", WORD_VECTOR, FIELD(acceleration), NULL, true},
+    {"life", WORD_POSITIVE, FIELD(life), NULL, true},
+    {"width", WORD_CUSTOM, 0, read_width, true},
+    {"profile", WORD_CUSTOM, 0, read_profile, true},
     {"twist", WORD_FLOAT, FIELD(twist), NULL, true},
 };
 
@@ -49,7 +53,8 @@ static void read_count(Reader *reader, const Word *word, void *target) {
     reader_run(&body);
     if (!reader_end_nested(reader, &body)) return;
     if (vec3_length_squared(particle.velocity) + vec3_length_squared(particle.acceleration) == 0)
-        reader_error(reader, word->body->word_span, "a particle without velocity and acceleration leaves no trace");
+        reader_error(reader, word->body->word_span,
+                     "a particle without velocity and acceleration leaves no trace");
     else
         *list_push(reader->context->arena, (ParticleList *)target) = particle;
 }
@@ -62,7 +67,8 @@ bool build_particles(BuildContext *context, const EvalBlock *block, Value *out) 
     Reader reader = reader_begin(context, block);
     reader_add_table(&reader, rules, VTS_ARRAY_COUNT(rules), &list);
     if (!object_finish(&reader, &object, out)) return false;
-    if (list.count == 0) diag_warning(context->diags, block->word_span, "'particles' without particles draws nothing");
+    if (list.count == 0)
+        diag_warning(context->diags, block->word_span, "'particles' without particles draws nothing");
     Object *made = arena_copy(context->arena, out->as.object, sizeof *made);
     made->as.particles.items = list.items;
     made->as.particles.count = list.count;

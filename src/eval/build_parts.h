@@ -31,8 +31,8 @@ const Texture *texture_placed(const BuildContext *context, const Texture *textur
 const Texture *texture_over(const BuildContext *context, const Texture *top, const Texture *bottom);
 /* Takes texture, pigment, finish, normal, interior and material onto *texture, which may be NULL (the default then).
  * `place`: transform so far of what carries the texture. */
-bool take_looks(const BuildContext *context, const Argument *value, const Texture **texture, const InertNote **inert,
-                const Transform *place);
+bool take_looks(const BuildContext *context, const Argument *value, const Texture **texture,
+                const InertNote **inert, const Transform *place);
 
 /* ---- build_object.c ---- */
 /* Modifiers of all objects; target: an Object. Reads to the end of the block, stores the object in *out. */
@@ -44,21 +44,22 @@ BlockBuilder build_object, build_csg, build_unmodelled;
 /* An object for a surface or a texel that stands where objects are wanted; NULL for other values. */
 const Object *object_from_value(const BuildContext *context, const Argument *value);
 
-BlockBuilder build_sphere, build_box, build_cone, build_plane, build_disc, build_torus;     /* build_solid.c */
-BlockBuilder build_triangle, build_mesh, build_mesh2;                                        /* build_mesh.c */
-BlockBuilder build_camera;                                                                   /* build_camera.c */
-BlockBuilder build_light;                                                                    /* build_light.c */
+BlockBuilder build_sphere, build_box, build_cone, build_plane, build_disc, build_torus; /* build_solid.c */
+BlockBuilder build_triangle, build_mesh, build_mesh2;                                   /* build_mesh.c */
+BlockBuilder build_camera;                                                              /* build_camera.c */
+BlockBuilder build_light;                                                               /* build_light.c */
 const Light *light_placed(const BuildContext *context, const Light *light, const Transform *t);
-BlockBuilder build_sky_sphere, build_fog;                                                    /* build_sky.c */
+BlockBuilder build_sky_sphere, build_fog; /* build_sky.c */
 bool background_read(BuildContext *context, const EvalBlock *block, Color *out);
-bool settings_read(BuildContext *context, const EvalBlock *block, GlobalSettings *settings); /* build_settings.c */
-BlockBuilder build_texel;                                                                    /* build_texel.c */
-BlockBuilder build_particles;                                                                /* build_particles.c */
-BlockBuilder build_surface;                                                                  /* build_surface.c */
+bool settings_read(BuildContext *context, const EvalBlock *block,
+                   GlobalSettings *settings); /* build_settings.c */
+BlockBuilder build_texel;                     /* build_texel.c */
+BlockBuilder build_particles;                 /* build_particles.c */
+BlockBuilder build_surface;                   /* build_surface.c */
 /* ARRAY of `count` vectors, or a kept block { n, <…>, … } of them; `what` names it in messages. NULL after an error. */
 const Vec3 *vectors_read(Reader *reader, const EvalBlock *body, const char *what, size_t *count);
-BlockBuilder build_skin;                                                                     /* build_skin.c */
-bool mapping_read(Reader *parent, const Word *word, SkinMapping *mapping);                   /* build_mapping.c */
+BlockBuilder build_skin;                                                   /* build_skin.c */
+bool mapping_read(Reader *parent, const Word *word, SkinMapping *mapping); /* build_mapping.c */
 bool jitter_read(Reader *parent, const Word *word, SkinJitter *jitter);
 
 #endif

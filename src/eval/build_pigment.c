@@ -13,13 +13,27 @@ static const struct PatternWord {
     const char *word;
     PatternKind kind;
 } pattern_words[] = {
-    {"gradient", PATTERN_GRADIENT},   {"checker", PATTERN_CHECKER},         {"brick", PATTERN_BRICK},
-    {"hexagon", PATTERN_HEXAGON},     {"bozo", PATTERN_BOZO},               {"bumps", PATTERN_BOZO},
-    {"granite", PATTERN_GRANITE},     {"wrinkles", PATTERN_WRINKLES},       {"agate", PATTERN_AGATE},
-    {"marble", PATTERN_MARBLE},       {"wood", PATTERN_WOOD},               {"crackle", PATTERN_CRACKLE},
-    {"leopard", PATTERN_LEOPARD},     {"onion", PATTERN_ONION},             {"radial", PATTERN_RADIAL},
-    {"spotted", PATTERN_SPOTTED},     {"cells", PATTERN_CELLS},             {"boxed", PATTERN_BOXED},
-    {"cylindrical", PATTERN_CYLINDRICAL}, {"spherical", PATTERN_SPHERICAL}, {"planar", PATTERN_PLANAR},
+    {"gradient", PATTERN_GRADIENT},
+    {"checker", PATTERN_CHECKER},
+    {"brick", PATTERN_BRICK},
+    {"hexagon", PATTERN_HEXAGON},
+    {"bozo", PATTERN_BOZO},
+    {"bumps", PATTERN_BOZO},
+    {"granite", PATTERN_GRANITE},
+    {"wrinkles", PATTERN_WRINKLES},
+    {"agate", PATTERN_AGATE},
+    {"marble", PATTERN_MARBLE},
+    {"wood", PATTERN_WOOD},
+    {"crackle", PATTERN_CRACKLE},
+    {"leopard", PATTERN_LEOPARD},
+    {"onion", PATTERN_ONION},
+    {"radial", PATTERN_RADIAL},
+    {"spotted", PATTERN_SPOTTED},
+    {"cells", PATTERN_CELLS},
+    {"boxed", PATTERN_BOXED},
+    {"cylindrical", PATTERN_CYLINDRICAL},
+    {"spherical", PATTERN_SPHERICAL},
+    {"planar", PATTERN_PLANAR},
     {"slope", PATTERN_SLOPE},
 };
 
@@ -102,9 +116,12 @@ static void read_function_body(Reader *reader, const Word *word, void *target) {
 }
 
 #define FIELD(name) offsetof(PigmentDraft, pigment.name)
-#define PATTERN(word) {word, WORD_CUSTOM, 0, read_pattern, false}
-#define UNMODELLED(word) {word, WORD_CUSTOM, 0, read_unmodelled, false}
-#define INERT(word) {word, WORD_INERT, FIELD(inert), NULL, false}
+#define PATTERN(word)                                                                                        \
+    { word, WORD_CUSTOM, 0, read_pattern, false }
+#define UNMODELLED(word)                                                                                     \
+    { word, WORD_CUSTOM, 0, read_unmodelled, false }
+#define INERT(word)                                                                                          \
+    { word, WORD_INERT, FIELD(inert), NULL, false }
 static const WordRule rules[] = {
     {"quick_color", WORD_COLOR, FIELD(quick_color), NULL, false},
     {"quick_colour", WORD_COLOR, FIELD(quick_color), NULL, false},
@@ -118,20 +135,72 @@ static const WordRule rules[] = {
     {"mortar", WORD_FLOAT, FIELD(mortar), NULL, false},
     {"function", WORD_CUSTOM, 0, read_function_body, false},
     {"ramp_wave", WORD_IGNORED, 0, NULL, false},
-    INERT("triangle_wave"), INERT("sine_wave"), INERT("scallop_wave"), INERT("cubic_wave"), INERT("poly_wave"), INERT("warp"),
-    INERT("agate_turb"), INERT("form"), INERT("metric"), INERT("offset"), INERT("solid"), INERT("noise_generator"),
-    INERT("interpolate"), INERT("map_type"), INERT("once"), INERT("altitude"), INERT("exponent"), INERT("exterior"),
-    PATTERN("gradient"), PATTERN("checker"), PATTERN("brick"), PATTERN("hexagon"), PATTERN("bozo"), PATTERN("bumps"),
-    PATTERN("granite"), PATTERN("wrinkles"), PATTERN("agate"), PATTERN("marble"), PATTERN("wood"), PATTERN("crackle"),
-    PATTERN("leopard"), PATTERN("onion"), PATTERN("radial"), PATTERN("spotted"), PATTERN("cells"), PATTERN("boxed"),
-    PATTERN("cylindrical"), PATTERN("spherical"), PATTERN("planar"), PATTERN("slope"),
+    INERT("triangle_wave"),
+    INERT("sine_wave"),
+    INERT("scallop_wave"),
+    INERT("cubic_wave"),
+    INERT("poly_wave"),
+    INERT("warp"),
+    INERT("agate_turb"),
+    INERT("form"),
+    INERT("metric"),
+    INERT("offset"),
+    INERT("solid"),
+    INERT("noise_generator"),
+    INERT("interpolate"),
+    INERT("map_type"),
+    INERT("once"),
+    INERT("altitude"),
+    INERT("exponent"),
+    INERT("exterior"),
+    PATTERN("gradient"),
+    PATTERN("checker"),
+    PATTERN("brick"),
+    PATTERN("hexagon"),
+    PATTERN("bozo"),
+    PATTERN("bumps"),
+    PATTERN("granite"),
+    PATTERN("wrinkles"),
+    PATTERN("agate"),
+    PATTERN("marble"),
+    PATTERN("wood"),
+    PATTERN("crackle"),
+    PATTERN("leopard"),
+    PATTERN("onion"),
+    PATTERN("radial"),
+    PATTERN("spotted"),
+    PATTERN("cells"),
+    PATTERN("boxed"),
+    PATTERN("cylindrical"),
+    PATTERN("spherical"),
+    PATTERN("planar"),
+    PATTERN("slope"),
 };
 static const WordRule unmodelled_rules[] = {
-    UNMODELLED("aoi"), UNMODELLED("average"), UNMODELLED("dents"), UNMODELLED("density_file"), UNMODELLED("facets"),
-    UNMODELLED("image_map"), UNMODELLED("image_pattern"), UNMODELLED("julia"), UNMODELLED("magnet"), UNMODELLED("mandel"),
-    UNMODELLED("object"), UNMODELLED("pavement"), UNMODELLED("pigment_pattern"), UNMODELLED("potential"),
-    UNMODELLED("proximity"), UNMODELLED("quilted"), UNMODELLED("ripples"), UNMODELLED("spiral1"), UNMODELLED("spiral2"),
-    UNMODELLED("square"), UNMODELLED("tiling"), UNMODELLED("triangular"), UNMODELLED("waves"), UNMODELLED("uv_mapping"),
+    UNMODELLED("aoi"),
+    UNMODELLED("average"),
+    UNMODELLED("dents"),
+    UNMODELLED("density_file"),
+    UNMODELLED("facets"),
+    UNMODELLED("image_map"),
+    UNMODELLED("image_pattern"),
+    UNMODELLED("julia"),
+    UNMODELLED("magnet"),
+    UNMODELLED("mandel"),
+    UNMODELLED("object"),
+    UNMODELLED("pavement"),
+    UNMODELLED("pigment_pattern"),
+    UNMODELLED("potential"),
+    UNMODELLED("proximity"),
+    UNMODELLED("quilted"),
+    UNMODELLED("ripples"),
+    UNMODELLED("spiral1"),
+    UNMODELLED("spiral2"),
+    UNMODELLED("square"),
+    UNMODELLED("tiling"),
+    UNMODELLED("triangular"),
+    UNMODELLED("waves"),
+    UNMODELLED("uv_mapping"),
 };
 
 /* What stands in a map's place when its pattern cannot be drawn: the mean of its colours. */
@@ -139,7 +208,8 @@ static Color map_mean(const ColorMapEntry *entries, size_t count) {
     Color sum = {0};
     for (size_t i = 0; i < count; i++) {
         Color c = entries[i].pigment ? entries[i].pigment->color : entries[i].color;
-        sum = (Color){sum.red + c.red, sum.green + c.green, sum.blue + c.blue, sum.filter + c.filter, sum.transmit + c.transmit};
+        sum = (Color){sum.red + c.red, sum.green + c.green, sum.blue + c.blue, sum.filter + c.filter,
+                      sum.transmit + c.transmit};
     }
     double n = (double)count;
     return (Color){sum.red / n, sum.green / n, sum.blue / n, sum.filter / n, sum.transmit / n};

@@ -46,7 +46,8 @@ void inert_add(const BuildContext *context, const InertNote **list, const char *
 
 bool item_as_word(const BlockItem *item, Word *out) {
     if (item->kind == ITEM_WORD) {
-        *out = (Word){item->word->text, item->word_span, item->span, item->arguments, item->argument_count, item->body};
+        *out = (Word){item->word->text, item->word_span,      item->span,
+                      item->arguments,  item->argument_count, item->body};
         return true;
     }
     if (item->kind != ITEM_VALUE || item->value.kind != VALUE_BLOCK) return false;
@@ -89,8 +90,8 @@ static bool next_value(Reader *reader, const char *what, const char *wanted, Arg
         return true;
     }
     if (item && item->kind == ITEM_WORD)
-        reader_error(reader, item->word_span, "'%s' wants %s here (%s), found the word '%s'", reader->block->word->text, what,
-                     wanted, item->word->text);
+        reader_error(reader, item->word_span, "'%s' wants %s here (%s), found the word '%s'",
+                     reader->block->word->text, what, wanted, item->word->text);
     else
         reader_error(reader, item ? item->span : block_end(reader->block), "'%s' wants %s here (%s)",
                      reader->block->word->text, what, wanted);
@@ -152,7 +153,8 @@ bool argument_color(Reader *reader, const Argument *argument, const char *what, 
     if (value->kind == VALUE_FLOAT)
         *out = (Color){value->as.number, value->as.number, value->as.number, 0, 0};
     else if (value->kind == VALUE_VECTOR || value->kind == VALUE_COLOR)
-        *out = (Color){component(value, 0), component(value, 1), component(value, 2), component(value, 3), component(value, 4)};
+        *out = (Color){component(value, 0), component(value, 1), component(value, 2), component(value, 3),
+                       component(value, 4)};
     else {
         reader_mismatch(reader, argument->span, what, "a colour", value->kind);
         return false;
@@ -164,22 +166,25 @@ bool argument_color(Reader *reader, const Argument *argument, const char *what, 
     return true;
 }
 
-static const char *components_text(int components) { return components == 1 ? "a float" : "a vector <…, …, …>"; }
+static const char *components_text(int components) {
+    return components == 1 ? "a float" : "a vector <…, …, …>";
+}
 
-bool argument_function(Reader *reader, const Argument *argument, const char *what, int parameters, int components,
-                       const Tape **out) {
+bool argument_function(Reader *reader, const Argument *argument, const char *what, int parameters,
+                       int components, const Tape **out) {
     if (argument->value.kind != VALUE_FUNCTION) {
         reader_mismatch(reader, argument->span, what, "a function", argument->value.kind);
         return false;
     }
     const UserFunction *function = argument->value.as.function;
     if (function->parameter_count != parameters) {
-        reader_error(reader, argument->span, "the function of %s takes %d parameters here, this one has %d", what, parameters,
-                     function->parameter_count);
+        reader_error(reader, argument->span, "the function of %s takes %d parameters here, this one has %d",
+                     what, parameters, function->parameter_count);
         return false;
     }
     if (tape_output_count(function->tape) != components) {
-        reader_error(reader, argument->span, "the function of %s gives %s here", what, components_text(components));
+        reader_error(reader, argument->span, "the function of %s gives %s here", what,
+                     components_text(components));
         return false;
     }
     *out = function->tape;
@@ -191,18 +196,20 @@ bool argument_function(Reader *reader, const Argument *argument, const char *wha
 /* `distance 25000 rgb 1`: the evaluator cannot know that the colour is no argument of `distance`. */
 static bool take_surplus(Reader *reader, const Word *word, size_t from) {
     for (size_t i = from; i < word->count; i++)
-        if (!reader->on_value || !reader->on_value(reader, &word->arguments[i], reader->value_target)) return false;
+        if (!reader->on_value || !reader->on_value(reader, &word->arguments[i], reader->value_target))
+            return false;
     return true;
 }
 
 bool word_arguments(Reader *reader, const Word *word, size_t low, size_t high) {
     if (word->count < low) {
-        reader_error(reader, word->span, "'%s' needs %zu value%s, found %zu", word->text, low, low == 1 ? "" : "s", word->count);
+        reader_error(reader, word->span, "'%s' needs %zu value%s, found %zu", word->text, low,
+                     low == 1 ? "" : "s", word->count);
         return false;
     }
     if (word->count > high && !take_surplus(reader, word, high)) {
-        reader_error(reader, word->arguments[high].span, "'%s' takes at most %zu value%s, found %zu", word->text, high,
-                     high == 1 ? "" : "s", word->count);
+        reader_error(reader, word->arguments[high].span, "'%s' takes at most %zu value%s, found %zu",
+                     word->text, high, high == 1 ? "" : "s", word->count);
         return false;
     }
     return true;
@@ -214,7 +221,9 @@ static const Argument *word_argument(Reader *reader, const Word *word, size_t in
     return NULL;
 }
 
-static const char *quoted(Reader *reader, const Word *word) { return arena_printf(reader->context->arena, "'%s'", word->text); }
+static const char *quoted(Reader *reader, const Word *word) {
+    return arena_printf(reader->context->arena, "'%s'", word->text);
+}
 
 bool word_float(Reader *reader, const Word *word, size_t index, double *out) {
     const Argument *argument = word_argument(reader, word, index, "a float");
@@ -230,7 +239,8 @@ bool word_int(Reader *reader, const Word *word, size_t index, int *out) {
     double value;
     if (!word_float(reader, word, index, &value)) return false;
     if (value != floor(value) || fabs(value) > 2e9) {
-        reader_error(reader, word->arguments[index].span, "'%s' takes a whole number, found %g", word->text, value);
+        reader_error(reader, word->arguments[index].span, "'%s' takes a whole number, found %g", word->text,
+                     value);
         return false;
     }
     *out = (int)value;
@@ -240,7 +250,8 @@ bool word_int(Reader *reader, const Word *word, size_t index, int *out) {
 bool word_vector(Reader *reader, const Word *word, size_t index, Vec3 *out) {
     const Argument *argument = word_argument(reader, word, index, "a vector");
     if (!argument) return false;
-    if (argument->value.kind == VALUE_VECTOR && argument->value.size == 3) { /* the common case, without a text for errors */
+    if (argument->value.kind == VALUE_VECTOR &&
+        argument->value.size == 3) { /* the common case, without a text for errors */
         const double *c = argument->value.as.components;
         *out = vec3(c[0], c[1], c[2]);
         if (vec3_is_finite(*out)) return true;
@@ -260,14 +271,16 @@ bool word_string(Reader *reader, const Word *word, size_t index, const char **ou
         reader_mismatch(reader, argument->span, quoted(reader, word), "a string", argument->value.kind);
         return false;
     }
-    *out = arena_printf(reader->context->arena, "%.*s", (int)argument->value.as.string.length, argument->value.as.string.text);
+    *out = arena_printf(reader->context->arena, "%.*s", (int)argument->value.as.string.length,
+                        argument->value.as.string.text);
     return true;
 }
 
 static void read_flag(Reader *reader, const Word *word, bool *out) {
     double value = 1;
     bool number = word->count && word->arguments[0].value.kind == VALUE_FLOAT;
-    if (word_arguments(reader, word, 0, number ? 1 : 0) && (!number || word_float(reader, word, 0, &value))) *out = value != 0;
+    if (word_arguments(reader, word, 0, number ? 1 : 0) && (!number || word_float(reader, word, 0, &value)))
+        *out = value != 0;
 }
 
 static void read_positive(Reader *reader, const Word *word, double *out) {
@@ -276,7 +289,8 @@ static void read_positive(Reader *reader, const Word *word, double *out) {
     if (value > 0)
         *out = value;
     else
-        reader_error(reader, word->arguments[0].span, "'%s' must be greater than 0, found %g", word->text, value);
+        reader_error(reader, word->arguments[0].span, "'%s' must be greater than 0, found %g", word->text,
+                     value);
 }
 
 /* A word that is skipped with its numbers may have a colour behind them that is none of its. */
@@ -316,13 +330,14 @@ static const WordRule *find_rule(const WordTable *table, const char *text) {
 static bool check_once(Reader *reader, const Word *word, const WordRule *rule) {
     for (size_t i = 0; i < reader->seen_count; i++)
         if (reader->seen[i].rule == rule) {
-            Diagnostic *d = reader_error(reader, word->span, "'%s' stands twice in '%s'", word->text, reader->block->word->text);
+            Diagnostic *d = reader_error(reader, word->span, "'%s' stands twice in '%s'", word->text,
+                                         reader->block->word->text);
             diag_note(reader->context->diags, d, reader->seen[i].span, "first here");
             return false;
         }
     if (reader->seen_count == reader->seen_capacity)
-        arena_list_grow_(reader->context->arena, (void **)&reader->seen, &reader->seen_capacity, reader->seen_count,
-                         sizeof *reader->seen);
+        arena_list_grow_(reader->context->arena, (void **)&reader->seen, &reader->seen_capacity,
+                         reader->seen_count, sizeof *reader->seen);
     reader->seen[reader->seen_count].rule = rule;
     reader->seen[reader->seen_count++].span = word->span;
     return true;
@@ -334,8 +349,8 @@ void reader_unknown_word(Reader *reader, const Word *word) {
     for (size_t t = 0; t < reader->table_count; t++)
         for (size_t i = 0; i < reader->tables[t].count && count < VTS_ARRAY_COUNT(words); i++)
             words[count++] = reader->tables[t].rules[i].text;
-    Diagnostic *d = reader_error(reader, word->span, "'%s' is neither declared nor a word of '%s'", word->text,
-                                 reader->block->word->text);
+    Diagnostic *d = reader_error(reader, word->span, "'%s' is neither declared nor a word of '%s'",
+                                 word->text, reader->block->word->text);
     const char *closest = closest_word(word->text, words, count);
     if (closest) diag_hint(reader->context->diags, d, "did you mean '%s'?", closest);
 }
@@ -345,7 +360,8 @@ void reader_word(Reader *reader, const Word *word) {
         const WordRule *rule = find_rule(&reader->tables[t], word->text);
         if (!rule) continue;
         if (t == 0) reader->met |= 1ull << (size_t)(rule - reader->tables[0].rules);
-        if (!rule->once || check_once(reader, word, rule)) apply_rule(reader, word, rule, reader->tables[t].target);
+        if (!rule->once || check_once(reader, word, rule))
+            apply_rule(reader, word, rule, reader->tables[t].target);
         return;
     }
     reader_unknown_word(reader, word);
@@ -366,7 +382,8 @@ bool reader_run(Reader *reader) {
         reader->next++;
         Word word;
         if (item->kind == ITEM_ENTRY)
-            reader_error(reader, item->span, "an entry [ … ] has no meaning in '%s'", reader->block->word->text);
+            reader_error(reader, item->span, "an entry [ … ] has no meaning in '%s'",
+                         reader->block->word->text);
         else if (item_as_word(item, &word))
             reader_word(reader, &word);
         else

@@ -10,7 +10,7 @@ typedef struct Reader Reader;
 /* A word of a block with what belongs to it, however it was written: `phase 0.3`, `count 4 { … }`, `mapping { … }`. */
 typedef struct Word {
     const char *text;
-    Span span;             /* of the word alone */
+    Span span; /* of the word alone */
     Span whole;
     const Argument *arguments;
     size_t count;
@@ -37,7 +37,7 @@ typedef struct WordRule {
     WordShape shape;
     size_t offset; /* of the field in the target */
     WordHandler *handler;
-    bool once;     /* a second one is an error */
+    bool once; /* a second one is an error */
 } WordRule;
 
 typedef struct WordTable {
@@ -59,7 +59,10 @@ struct Reader {
     /* Values that are not words: the handler says whether it took the value. NULL: none are expected. */
     bool (*on_value)(Reader *reader, const Argument *value, void *target);
     void *value_target;
-    struct { const WordRule *rule; Span span; } *seen; /* `once` rules met so far */
+    struct {
+        const WordRule *rule;
+        Span span;
+    } * seen; /* `once` rules met so far */
     size_t seen_count, seen_capacity;
 };
 
@@ -98,8 +101,8 @@ bool argument_float(Reader *reader, const Argument *argument, const char *what, 
 bool argument_vector(Reader *reader, const Argument *argument, const char *what, Vec3 *out);
 bool argument_color(Reader *reader, const Argument *argument, const char *what, Color *out);
 /* A function with this many parameters and components. */
-bool argument_function(Reader *reader, const Argument *argument, const char *what, int parameters, int components,
-                       const Tape **out);
+bool argument_function(Reader *reader, const Argument *argument, const char *what, int parameters,
+                       int components, const Tape **out);
 
 /* Report an error at a span and mark the reader as failed. */
 Diagnostic *reader_error(Reader *reader, Span span, const char *format, ...) VTS_PRINTF(3, 4);

@@ -63,7 +63,8 @@ static void read_samples(Reader *reader, const Word *word, void *target) {
     if (samples >= 1 && samples <= 65536)
         ((SettingsDraft *)target)->settings.samples = samples;
     else
-        reader_error(reader, word->arguments[0].span, "'samples' must lie between 1 and 65536, found %d", samples);
+        reader_error(reader, word->arguments[0].span, "'samples' must lie between 1 and 65536, found %d",
+                     samples);
 }
 
 /* POV-Ray's `assumed_gamma srgb` is near enough to 2.2 to be named as such. */
@@ -77,9 +78,12 @@ static void read_gamma(Reader *reader, const Word *word, void *target) {
 }
 
 #define FIELD(name) offsetof(SettingsDraft, settings.name)
-#define KNOB(word) {word, WORD_CUSTOM, 0, read_knob, true}
-#define IGNORED(word) {word, WORD_IGNORED, 0, NULL, false}
-#define INERT(word) {word, WORD_INERT, offsetof(SettingsDraft, inert), NULL, false}
+#define KNOB(word)                                                                                           \
+    { word, WORD_CUSTOM, 0, read_knob, true }
+#define IGNORED(word)                                                                                        \
+    { word, WORD_IGNORED, 0, NULL, false }
+#define INERT(word)                                                                                          \
+    { word, WORD_INERT, offsetof(SettingsDraft, inert), NULL, false }
 static const WordRule rules[] = {
     {"max_error", WORD_POSITIVE, FIELD(max_error), NULL, true},
     {"ambient_light", WORD_COLOR, FIELD(ambient_light), NULL, false},
@@ -87,10 +91,22 @@ static const WordRule rules[] = {
     {"max_trace_level", WORD_INT, FIELD(max_trace_level), NULL, false},
     {"samples", WORD_CUSTOM, 0, read_samples, true},
     {"shadow_aperture", WORD_POSITIVE, FIELD(shadow_aperture), NULL, true},
-    KNOB("opacity_model"), KNOB("ray_path"), KNOB("quadrature"), KNOB("detail"),
-    INERT("geo_origin"), INERT("radiosity"), INERT("photons"), INERT("subsurface"), INERT("mm_per_unit"),
-    IGNORED("adc_bailout"), IGNORED("hf_gray_16"), IGNORED("irid_wavelength"), IGNORED("charset"),
-    IGNORED("max_intersections"), IGNORED("noise_generator"), IGNORED("number_of_waves"),
+    KNOB("opacity_model"),
+    KNOB("ray_path"),
+    KNOB("quadrature"),
+    KNOB("detail"),
+    INERT("geo_origin"),
+    INERT("radiosity"),
+    INERT("photons"),
+    INERT("subsurface"),
+    INERT("mm_per_unit"),
+    IGNORED("adc_bailout"),
+    IGNORED("hf_gray_16"),
+    IGNORED("irid_wavelength"),
+    IGNORED("charset"),
+    IGNORED("max_intersections"),
+    IGNORED("noise_generator"),
+    IGNORED("number_of_waves"),
 };
 
 bool settings_read(BuildContext *context, const EvalBlock *block, GlobalSettings *settings) {

@@ -4,7 +4,10 @@
 
 typedef struct SkinDraft {
     Skin skin;
-    struct { SkinTexel *items; size_t count, capacity; } texels;
+    struct {
+        SkinTexel *items;
+        size_t count, capacity;
+    } texels;
     Transform place; /* stays the identity: a skin has no transform of its own */
 } SkinDraft;
 
@@ -29,7 +32,8 @@ static void read_density(Reader *reader, const Word *word, void *target) {
     SkinTexel *texel = &((TexelReference *)target)->texel;
     if (!word_arguments(reader, word, 1, 1) || !word_float(reader, word, 0, &texel->density)) return;
     if (texel->density < 0 || texel->density > 1)
-        reader_error(reader, word->arguments[0].span, "'density' is a share of the tiles from 0 to 1, found %g", texel->density);
+        reader_error(reader, word->arguments[0].span,
+                     "'density' is a share of the tiles from 0 to 1, found %g", texel->density);
 }
 
 static void read_texel(Reader *reader, const Word *word, void *target) {
@@ -45,7 +49,8 @@ static void read_texel(Reader *reader, const Word *word, void *target) {
     body.on_value = on_reference_value;
     body.value_target = &reference;
     reader_run(&body);
-    if (reader_end_nested(reader, &body)) *list_push(reader->context->arena, &draft->texels) = reference.texel;
+    if (reader_end_nested(reader, &body))
+        *list_push(reader->context->arena, &draft->texels) = reference.texel;
 }
 
 /* ---- skin { … } ---- */
@@ -94,18 +99,22 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
         *list_push(reader->context->arena, &draft->texels) =
             (SkinTexel){.span = value->span, .texel = value->value.as.texel, .density = 1};
         return true;
-    case VALUE_WIND_FIELD: inert_add(reader->context, &draft->skin.inert, "wind_field", value->span); return true;
+    case VALUE_WIND_FIELD:
+        inert_add(reader->context, &draft->skin.inert, "wind_field", value->span);
+        return true;
     case VALUE_OBJECT: {
         Diagnostic *d = reader_error(reader, value->span, "a skin lies on a surface");
         diag_hint(reader->context->diags, d, "write surface { … } around the object");
         return true;
     }
-    default: return take_looks(reader->context, value, &draft->skin.texture, &draft->skin.inert, &draft->place);
+    default:
+        return take_looks(reader->context, value, &draft->skin.texture, &draft->skin.inert, &draft->place);
     }
 }
 
 static bool complete(Reader *reader, const SkinDraft *draft) {
-    if (!draft->skin.surface) reader_error(reader, reader->block->word_span, "this skin has no surface { … } to lie on");
+    if (!draft->skin.surface)
+        reader_error(reader, reader->block->word_span, "this skin has no surface { … } to lie on");
     else if (!draft->texels.count)
         reader_error(reader, reader->block->word_span, "this skin has no texel { … } to lay on its surface");
     return !reader->failed;
@@ -114,11 +123,13 @@ static bool complete(Reader *reader, const SkinDraft *draft) {
 bool build_skin(BuildContext *context, const EvalBlock *block, Value *out) {
     SkinDraft *draft = arena_new(context->arena, SkinDraft);
     Skin *skin = &draft->skin;
-    *draft = (SkinDraft){
-        .skin = {.span = block->span,
-                 .mapping = {.repeat_u = 1, .repeat_v = 1, .height = 1, .w_tip = 1},
-                 .jitter = {.coordinates.scale = 1, .height.scale = 1, .direction.scale = 1, .instance.density = 1}},
-        .place = transform_identity()};
+    *draft = (SkinDraft){.skin = {.span = block->span,
+                                  .mapping = {.repeat_u = 1, .repeat_v = 1, .height = 1, .w_tip = 1},
+                                  .jitter = {.coordinates.scale = 1,
+                                             .height.scale = 1,
+                                             .direction.scale = 1,
+                                             .instance.density = 1}},
+                         .place = transform_identity()};
     Reader reader = reader_begin(context, block);
     reader_add_table(&reader, rules, VTS_ARRAY_COUNT(rules), draft);
     reader.on_value = on_value;

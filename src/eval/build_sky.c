@@ -2,7 +2,10 @@
 #include "eval/build_parts.h"
 
 typedef struct SkyDraft {
-    struct { const Pigment **items; size_t count, capacity; } layers;
+    struct {
+        const Pigment **items;
+        size_t count, capacity;
+    } layers;
     Transform transform;
 } SkyDraft;
 
@@ -10,7 +13,8 @@ static bool on_sky_value(Reader *reader, const Argument *value, void *target) {
     SkyDraft *draft = target;
     if (value->value.kind == VALUE_SKY_SPHERE) {
         const SkySphere *sky = value->value.as.sky_sphere;
-        for (size_t i = 0; i < sky->count; i++) *list_push(reader->context->arena, &draft->layers) = sky->layers[i];
+        for (size_t i = 0; i < sky->count; i++)
+            *list_push(reader->context->arena, &draft->layers) = sky->layers[i];
         return true;
     }
     if (value->value.kind != VALUE_PIGMENT) return take_transform(value, &draft->transform);
@@ -45,7 +49,8 @@ bool build_sky_sphere(BuildContext *context, const EvalBlock *block, Value *out)
 
 static bool on_color(Reader *reader, const Argument *value, void *target) {
     if (value->value.kind != VALUE_COLOR && value->value.kind != VALUE_VECTOR) return false;
-    argument_color(reader, value, arena_printf(reader->context->arena, "'%s'", reader->block->word->text), target);
+    argument_color(reader, value, arena_printf(reader->context->arena, "'%s'", reader->block->word->text),
+                   target);
     return true;
 }
 

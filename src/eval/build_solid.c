@@ -3,10 +3,11 @@
 /* POV-Ray squares radii, so a negative one draws what its absolute value does. */
 static double radius(Reader *reader, const char *what, double value, Span span) {
     if (value < 0)
-        diag_warning(reader->context->diags, span, "%s of '%s' is negative: %g is taken as %g", what, reader->block->word->text,
-                     value, -value);
+        diag_warning(reader->context->diags, span, "%s of '%s' is negative: %g is taken as %g", what,
+                     reader->block->word->text, value, -value);
     if (value == 0)
-        diag_warning(reader->context->diags, span, "%s of '%s' is 0: nothing will be seen", what, reader->block->word->text);
+        diag_warning(reader->context->diags, span, "%s of '%s' is 0: nothing will be seen", what,
+                     reader->block->word->text);
     return fabs(value);
 }
 
@@ -38,7 +39,8 @@ bool build_box(BuildContext *context, const EvalBlock *block, Value *out) {
     Reader reader = reader_begin(context, block);
     Object object = object_begin(block, OBJECT_BOX);
     Vec3 a, b;
-    if (!reader_vector(&reader, "the first corner", &a, NULL) || !reader_vector(&reader, "the second corner", &b, NULL))
+    if (!reader_vector(&reader, "the first corner", &a, NULL) ||
+        !reader_vector(&reader, "the second corner", &b, NULL))
         return false;
     object.as.box.corner1 = vec3_min(a, b);
     object.as.box.corner2 = vec3_max(a, b);
@@ -62,7 +64,8 @@ static bool read_cone_ends(Reader *reader, Object *object) {
     if (!cone) *base_radius = *cap_radius;
     Vec3 axis = vec3_sub(object->as.cone.cap, object->as.cone.base);
     if (vec3_length_squared(axis) == 0) {
-        reader_error(reader, second, "this %s is degenerate: its base and cap points are the same", reader->block->word->text);
+        reader_error(reader, second, "this %s is degenerate: its base and cap points are the same",
+                     reader->block->word->text);
         return false;
     }
     return true;
@@ -98,7 +101,8 @@ bool build_plane(BuildContext *context, const EvalBlock *block, Value *out) {
     Object object = object_begin(block, OBJECT_PLANE);
     double length;
     return read_normal(&reader, "the normal", &object.as.plane.normal, &length) &&
-           reader_float(&reader, "the distance", &object.as.plane.distance, NULL) && object_finish(&reader, &object, out);
+           reader_float(&reader, "the distance", &object.as.plane.distance, NULL) &&
+           object_finish(&reader, &object, out);
 }
 
 bool build_disc(BuildContext *context, const EvalBlock *block, Value *out) {
@@ -122,5 +126,6 @@ bool build_torus(BuildContext *context, const EvalBlock *block, Value *out) {
     Reader reader = reader_begin(context, block);
     Object object = object_begin(block, OBJECT_TORUS);
     return read_radius(&reader, "the major radius", &object.as.torus.major_radius) &&
-           read_radius(&reader, "the minor radius", &object.as.torus.minor_radius) && object_finish(&reader, &object, out);
+           read_radius(&reader, "the minor radius", &object.as.torus.minor_radius) &&
+           object_finish(&reader, &object, out);
 }

@@ -4,9 +4,9 @@
 
 typedef struct SurfaceDraft {
     Surface surface;
-    Argument function;      /* of patch_grid; kind VALUE_ERROR: none */
-    Argument points;        /* an array; likewise */
-    Argument height_array;  /* likewise */
+    Argument function;     /* of patch_grid; kind VALUE_ERROR: none */
+    Argument points;       /* an array; likewise */
+    Argument height_array; /* likewise */
     const EvalBlock *height_list;
     Span grid_span, height_span, deform_span;
     bool has_grid, has_uv;
@@ -20,7 +20,8 @@ static const double MAX_GRID_VERTICES = 1 << 26;
 static bool grid_size(Reader *reader, const Word *word, size_t index, int *out) {
     if (!word_int(reader, word, index, out)) return false;
     if (*out >= 1) return true;
-    reader_error(reader, word->arguments[index].span, "'patch_grid' needs at least 1 patch along each side, found %d", *out);
+    reader_error(reader, word->arguments[index].span,
+                 "'patch_grid' needs at least 1 patch along each side, found %d", *out);
     return false;
 }
 
@@ -55,7 +56,8 @@ static const Vec3 *points_of_function(Reader *reader, const SurfaceDraft *draft)
             tape_eval(tape, uv, p, scratch);
             *next = vec3(p[0], p[1], p[2]);
             if (!vec3_is_finite(*next)) {
-                reader_error(reader, draft->function.span, "the surface has no finite point at u = %g, v = %g", uv[0], uv[1]);
+                reader_error(reader, draft->function.span,
+                             "the surface has no finite point at u = %g, v = %g", uv[0], uv[1]);
                 return NULL;
             }
         }
@@ -64,16 +66,18 @@ static const Vec3 *points_of_function(Reader *reader, const SurfaceDraft *draft)
 }
 
 /* An array [NU+1][NV+1] of vectors. */
-static const Vec3 *points_of_array(Reader *reader, const Surface *s, const Argument *argument, const char *what) {
+static const Vec3 *points_of_array(Reader *reader, const Surface *s, const Argument *argument,
+                                   const char *what) {
     if (argument->value.kind != VALUE_ARRAY) {
-        reader_mismatch(reader, argument->span, arena_printf(reader->context->arena, "'%s'", what), "an array", argument->value.kind);
+        reader_mismatch(reader, argument->span, arena_printf(reader->context->arena, "'%s'", what),
+                        "an array", argument->value.kind);
         return NULL;
     }
     const Array *array = argument->value.as.array;
     size_t rows = array_extent(array, 0), columns = array_rank(array) > 1 ? array_extent(array, 1) : 0;
     if (array_rank(array) != 2 || rows != (size_t)s->nu + 1 || columns != (size_t)s->nv + 1) {
-        reader_error(reader, argument->span, "'%s' needs an array [%d][%d] of vertices for %d x %d patches", what, s->nu + 1,
-                     s->nv + 1, s->nu, s->nv);
+        reader_error(reader, argument->span, "'%s' needs an array [%d][%d] of vertices for %d x %d patches",
+                     what, s->nu + 1, s->nv + 1, s->nu, s->nv);
         return NULL;
     }
     Vec3 *points = arena_new_array(reader->context->arena, Vec3, vertex_count(s));
@@ -83,7 +87,8 @@ static const Vec3 *points_of_array(Reader *reader, const Surface *s, const Argum
             Argument vector = {element ? *element : (Value){.kind = VALUE_FLOAT}, argument->span};
             if (!element)
                 reader_error(reader, argument->span, "element [%zu][%zu] of the array was never set", i, j);
-            else if (!argument_vector(reader, &vector, arena_printf(reader->context->arena, "'%s'", what), &points[i * columns + j]))
+            else if (!argument_vector(reader, &vector, arena_printf(reader->context->arena, "'%s'", what),
+                                      &points[i * columns + j]))
                 return NULL;
         }
     return points;
@@ -103,7 +108,8 @@ static bool finish_grid(Reader *reader, SurfaceDraft *draft) {
         size_t count;
         s->height_vectors = vectors_read(reader, draft->height_list, "height vectors", &count);
         if (s->height_vectors && count != vertex_count(s))
-            reader_error(reader, draft->height_span, "'height_vectors' has %zu vectors for %zu vertices", count, vertex_count(s));
+            reader_error(reader, draft->height_span, "'height_vectors' has %zu vectors for %zu vertices",
+                         count, vertex_count(s));
     } else if (draft->height_array.value.kind != VALUE_ERROR) {
         s->height_vectors = points_of_array(reader, s, &draft->height_array, "height_vectors");
     }
@@ -139,9 +145,13 @@ static void read_deform(Reader *reader, const Word *word, void *target) {
 }
 
 static void read_uv(Reader *reader, const Word *word, void *target) {
-    static const struct { const char *word; SurfaceUv uv; } modes[] = {
-        {"mesh", SURFACE_UV_MESH}, {"planar", SURFACE_UV_PLANAR}, {"cylindrical", SURFACE_UV_CYLINDRICAL},
-        {"spherical", SURFACE_UV_SPHERICAL}};
+    static const struct {
+        const char *word;
+        SurfaceUv uv;
+    } modes[] = {{"mesh", SURFACE_UV_MESH},
+                 {"planar", SURFACE_UV_PLANAR},
+                 {"cylindrical", SURFACE_UV_CYLINDRICAL},
+                 {"spherical", SURFACE_UV_SPHERICAL}};
     SurfaceDraft *draft = target;
     for (size_t i = 0; i < VTS_ARRAY_COUNT(modes); i++) {
         Word mode;
@@ -169,13 +179,17 @@ static void read_subdivide(Reader *reader, const Word *word, void *target) {
     if (count >= 1 && count <= 4096)
         draft->surface.subdivide = count;
     else
-        reader_error(reader, word->arguments[0].span, "'subdivide' must lie between 1 and 4096, found %d", count);
+        reader_error(reader, word->arguments[0].span, "'subdivide' must lie between 1 and 4096, found %d",
+                     count);
 }
 
 static const WordRule rules[] = {
-    {"patch_grid", WORD_CUSTOM, 0, read_patch_grid, true}, {"function", WORD_CUSTOM, 0, read_function_word, true},
-    {"points", WORD_CUSTOM, 0, read_points, true},         {"height_vectors", WORD_CUSTOM, 0, read_heights, true},
-    {"deform", WORD_CUSTOM, 0, read_deform, true},         {"uv", WORD_CUSTOM, 0, read_uv, true},
+    {"patch_grid", WORD_CUSTOM, 0, read_patch_grid, true},
+    {"function", WORD_CUSTOM, 0, read_function_word, true},
+    {"points", WORD_CUSTOM, 0, read_points, true},
+    {"height_vectors", WORD_CUSTOM, 0, read_heights, true},
+    {"deform", WORD_CUSTOM, 0, read_deform, true},
+    {"uv", WORD_CUSTOM, 0, read_uv, true},
     {"subdivide", WORD_CUSTOM, 0, read_subdivide, true},
 };
 
@@ -222,7 +236,8 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
     case VALUE_OBJECT: return take_object(reader, draft, value);
     case VALUE_SURFACE: draft->surface = *value->value.as.surface; return true;
     default:
-        return take_looks(reader->context, value, &draft->surface.texture, &draft->surface.inert, &draft->transform) ||
+        return take_looks(reader->context, value, &draft->surface.texture, &draft->surface.inert,
+                          &draft->transform) ||
                take_transform(value, &draft->transform);
     }
 }
@@ -235,7 +250,8 @@ static bool finish_object(Reader *reader, SurfaceDraft *draft) {
     size_t count, expected = mesh ? s->object->as.mesh->vertex_count : 0;
     s->object_height_vectors = vectors_read(reader, draft->height_list, "height vectors", &count);
     if (s->object_height_vectors && count != expected)
-        reader_error(reader, draft->height_span, "'height_vectors' has %zu vectors, the object %zu vertices", count, expected);
+        reader_error(reader, draft->height_span, "'height_vectors' has %zu vectors, the object %zu vertices",
+                     count, expected);
     return !reader->failed;
 }
 
@@ -243,24 +259,28 @@ static bool finish(Reader *reader, SurfaceDraft *draft) {
     Surface *s = &draft->surface;
     if (draft->has_grid) return finish_grid(reader, draft);
     if (draft->points.value.kind != VALUE_ERROR || draft->function.value.kind != VALUE_ERROR) {
-        reader_error(reader, reader->block->word_span, "points of a surface need 'patch_grid NU, NV' before them");
+        reader_error(reader, reader->block->word_span,
+                     "points of a surface need 'patch_grid NU, NV' before them");
         return false;
     }
     if (s->kind == SURFACE_OBJECT && s->object) return finish_object(reader, draft);
     if (s->kind == SURFACE_PATCHES && s->points) return true; /* a copy of a declared one */
-    reader_error(reader, reader->block->word_span, "this surface has no shape: it needs an object or a 'patch_grid'");
+    reader_error(reader, reader->block->word_span,
+                 "this surface has no shape: it needs an object or a 'patch_grid'");
     return false;
 }
 
 bool build_surface(BuildContext *context, const EvalBlock *block, Value *out) {
-    SurfaceDraft draft = {.surface = {.kind = SURFACE_OBJECT, .uv_axis = {0, 1, 0}, .transform = transform_identity()},
-                          .transform = transform_identity()};
+    SurfaceDraft draft = {
+        .surface = {.kind = SURFACE_OBJECT, .uv_axis = {0, 1, 0}, .transform = transform_identity()},
+        .transform = transform_identity()};
     Reader reader = reader_begin(context, block);
     reader_add_table(&reader, rules, VTS_ARRAY_COUNT(rules), &draft);
     reader_add_table(&reader, transform_rules, transform_rule_count, &draft.transform);
     reader.on_value = on_value;
     reader.value_target = &draft;
-    bool copy = block->count == 1 && block->items[0].kind == ITEM_VALUE && block->items[0].value.kind == VALUE_SURFACE;
+    bool copy = block->count == 1 && block->items[0].kind == ITEM_VALUE &&
+                block->items[0].value.kind == VALUE_SURFACE;
     if (copy) {
         *out = block->items[0].value;
         return true;

@@ -5,20 +5,30 @@
 
 typedef struct TexelDraft {
     TexelDef texel;
-    struct { TexelLayer *items; size_t count, capacity; } layers;
-    struct { const TexelDef **items; size_t count, capacity; } choices;
+    struct {
+        TexelLayer *items;
+        size_t count, capacity;
+    } layers;
+    struct {
+        const TexelDef **items;
+        size_t count, capacity;
+    } choices;
 } TexelDraft;
 
 enum { MAX_RESOLUTION = 1024 };
 
-static bool is_bounded(Box3 box) { return !box3_is_empty(box) && vec3_is_finite(box.min) && vec3_is_finite(box.max); }
+static bool is_bounded(Box3 box) {
+    return !box3_is_empty(box) && vec3_is_finite(box.min) && vec3_is_finite(box.max);
+}
 
 static void set_bounds(Reader *reader, TexelDraft *draft, Box3 box, Span span) {
     Vec3 size = vec3_sub(box.max, box.min);
     if (!is_bounded(box))
-        reader_error(reader, span, "the texel's bounds come from an object without bounds (or without anything in it)");
+        reader_error(reader, span,
+                     "the texel's bounds come from an object without bounds (or without anything in it)");
     else if (size.x == 0 || size.y == 0 || size.z == 0)
-        reader_error(reader, span, "the texel's bounds have no volume: <%g, %g, %g> in size", size.x, size.y, size.z);
+        reader_error(reader, span, "the texel's bounds have no volume: <%g, %g, %g> in size", size.x, size.y,
+                     size.z);
     else
         draft->texel.bounds = box;
 }
@@ -62,9 +72,11 @@ static void read_resolution(Reader *reader, const Word *word, void *target) {
     }
     if (!word_arguments(reader, word, 1, 1) || !word_int(reader, word, 0, &resolution)) return;
     if (resolution < 1 || resolution > MAX_RESOLUTION) {
-        Diagnostic *d = reader_error(reader, word->arguments[0].span, "'resolution' must lie between 1 and %d, found %d",
-                                     MAX_RESOLUTION, resolution);
-        diag_hint(reader->context->diags, d, "leave it out, or write 'resolution auto', to get what the frame needs");
+        Diagnostic *d =
+            reader_error(reader, word->arguments[0].span, "'resolution' must lie between 1 and %d, found %d",
+                         MAX_RESOLUTION, resolution);
+        diag_hint(reader->context->diags, d,
+                  "leave it out, or write 'resolution auto', to get what the frame needs");
     } else {
         draft->texel.resolution = resolution;
     }
@@ -83,7 +95,10 @@ typedef struct LayerDraft {
     TexelDraft *texel;
     TexelLayer layer;
     bool unmodelled; /* holds something that is not drawn */
-    struct { const Object **items; size_t count, capacity; } contents;
+    struct {
+        const Object **items;
+        size_t count, capacity;
+    } contents;
     Transform place;
 } LayerDraft;
 
@@ -158,9 +173,9 @@ static void read_phases(Reader *reader, const Word *word, void *target) {
 }
 
 static const WordRule rules[] = {
-    {"bounds", WORD_CUSTOM, 0, read_bounds, true},     {"resolution", WORD_CUSTOM, 0, read_resolution, true},
-    {"cyclic", WORD_CUSTOM, 0, read_cyclic, true},     {"layer", WORD_CUSTOM, 0, read_layer, false},
-    {"choose", WORD_CUSTOM, 0, read_choose, true},     {"phases", WORD_CUSTOM, 0, read_phases, true},
+    {"bounds", WORD_CUSTOM, 0, read_bounds, true}, {"resolution", WORD_CUSTOM, 0, read_resolution, true},
+    {"cyclic", WORD_CUSTOM, 0, read_cyclic, true}, {"layer", WORD_CUSTOM, 0, read_layer, false},
+    {"choose", WORD_CUSTOM, 0, read_choose, true}, {"phases", WORD_CUSTOM, 0, read_phases, true},
     {"period", WORD_IGNORED, 0, NULL, true},
 };
 
@@ -194,8 +209,9 @@ static Value keep_reference(BuildContext *context, const EvalBlock *block) {
     EvalBlock *kept = arena_copy(context->arena, block, sizeof *block);
     BlockItem *items = arena_copy(context->arena, block->items, block->count * sizeof *items);
     for (size_t i = 0; i < block->count; i++)
-        items[i].arguments = arena_copy(context->arena, items[i].arguments ? (const void *)items[i].arguments : "",
-                                        items[i].argument_count * sizeof(Argument));
+        items[i].arguments =
+            arena_copy(context->arena, items[i].arguments ? (const void *)items[i].arguments : "",
+                       items[i].argument_count * sizeof(Argument));
     kept->items = items;
     return (Value){.kind = VALUE_BLOCK, .as.block = kept};
 }
@@ -207,7 +223,8 @@ bool build_texel(BuildContext *context, const EvalBlock *block, Value *out) {
     }
     TexelDraft *draft = arena_new(context->arena, TexelDraft);
     TexelDef *texel = &draft->texel;
-    *texel = (TexelDef){.span = block->span, .name = block->declared_as ? block->declared_as->text : "texel",
+    *texel = (TexelDef){.span = block->span,
+                        .name = block->declared_as ? block->declared_as->text : "texel",
                         .bounds = {{0, 0, 0}, {1, 1, 1}}};
     Reader reader = reader_begin(context, block);
     reader_add_table(&reader, rules, VTS_ARRAY_COUNT(rules), draft);

@@ -39,7 +39,8 @@ const Texture *texture_over(const BuildContext *context, const Texture *top, con
 }
 
 /* A pigment given in the space in which the texture already has its transform: that is taken back first. */
-static const Texture *with_pigment(const BuildContext *context, const Texture *texture, const Pigment *pigment) {
+static const Texture *with_pigment(const BuildContext *context, const Texture *texture,
+                                   const Pigment *pigment) {
     Texture *copy = copy_texture(context, texture);
     if (!transform_is_identity(&texture->transform)) {
         Pigment *placed = arena_copy(context->arena, pigment, sizeof *pigment);
@@ -77,16 +78,20 @@ static const Texture *current(const BuildContext *context, const Texture *textur
     return texture ? texture_placed(context, texture, place) : texture_default(context);
 }
 
-bool take_looks(const BuildContext *context, const Argument *value, const Texture **texture, const InertNote **inert,
-                const Transform *place) {
+bool take_looks(const BuildContext *context, const Argument *value, const Texture **texture,
+                const InertNote **inert, const Transform *place) {
     const Texture *made = NULL;
     switch (value->value.kind) {
     case VALUE_TEXTURE:
         made = value->value.as.texture;
         if (*texture) made = texture_over(context, made, texture_placed(context, *texture, place));
         break;
-    case VALUE_PIGMENT: made = with_pigment(context, current(context, *texture, place), value->value.as.pigment); break;
-    case VALUE_FINISH: made = with_finish(context, current(context, *texture, place), value->value.as.finish); break;
+    case VALUE_PIGMENT:
+        made = with_pigment(context, current(context, *texture, place), value->value.as.pigment);
+        break;
+    case VALUE_FINISH:
+        made = with_finish(context, current(context, *texture, place), value->value.as.finish);
+        break;
     case VALUE_NORMAL:
     case VALUE_INTERIOR: note_inert(context, value->value.as.node, inert); return true;
     case VALUE_MATERIAL: {
@@ -117,16 +122,22 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
            take_transform(value, &draft->transform);
 }
 
-#define INERT(word) {word, WORD_INERT, offsetof(TextureDraft, inert), NULL, false}
-#define IGNORED(word) {word, WORD_IGNORED, 0, NULL, false}
+#define INERT(word)                                                                                          \
+    { word, WORD_INERT, offsetof(TextureDraft, inert), NULL, false }
+#define IGNORED(word)                                                                                        \
+    { word, WORD_IGNORED, 0, NULL, false }
 static const WordRule rules[] = {
-    INERT("texture_map"), INERT("material_map"), INERT("uv_mapping"), INERT("gradient"), INERT("checker"), INERT("brick"),
-    INERT("hexagon"), INERT("bozo"), INERT("bumps"), INERT("granite"), INERT("wrinkles"), INERT("agate"), INERT("marble"),
-    INERT("wood"), INERT("crackle"), INERT("leopard"), INERT("onion"), INERT("radial"), INERT("spotted"), INERT("cells"),
-    INERT("boxed"), INERT("cylindrical"), INERT("spherical"), INERT("planar"), INERT("slope"), INERT("average"), INERT("object"),
-    INERT("image_pattern"), INERT("function"), INERT("aoi"), INERT("dents"), INERT("ripples"), INERT("waves"), INERT("quilted"),
-    IGNORED("turbulence"), IGNORED("octaves"), IGNORED("lambda"), IGNORED("omega"), IGNORED("frequency"), IGNORED("phase"),
-    IGNORED("warp"), IGNORED("quick_color"), IGNORED("brick_size"), IGNORED("mortar"),
+    INERT("texture_map"), INERT("material_map"),  INERT("uv_mapping"),   INERT("gradient"),
+    INERT("checker"),     INERT("brick"),         INERT("hexagon"),      INERT("bozo"),
+    INERT("bumps"),       INERT("granite"),       INERT("wrinkles"),     INERT("agate"),
+    INERT("marble"),      INERT("wood"),          INERT("crackle"),      INERT("leopard"),
+    INERT("onion"),       INERT("radial"),        INERT("spotted"),      INERT("cells"),
+    INERT("boxed"),       INERT("cylindrical"),   INERT("spherical"),    INERT("planar"),
+    INERT("slope"),       INERT("average"),       INERT("object"),       INERT("image_pattern"),
+    INERT("function"),    INERT("aoi"),           INERT("dents"),        INERT("ripples"),
+    INERT("waves"),       INERT("quilted"),       IGNORED("turbulence"), IGNORED("octaves"),
+    IGNORED("lambda"),    IGNORED("omega"),       IGNORED("frequency"),  IGNORED("phase"),
+    IGNORED("warp"),      IGNORED("quick_color"), IGNORED("brick_size"), IGNORED("mortar"),
 };
 
 bool build_texture(BuildContext *context, const EvalBlock *block, Value *out) {
@@ -148,12 +159,15 @@ bool build_texture(BuildContext *context, const EvalBlock *block, Value *out) {
 /* ---- normal, interior, wind_field: a note of what is not drawn ---- */
 
 bool build_inert_value(BuildContext *context, const EvalBlock *block, Value *out) {
-    static const struct { const char *word; ValueKind kind; } kinds[] = {
-        {"normal", VALUE_NORMAL}, {"interior", VALUE_INTERIOR}, {"wind_field", VALUE_WIND_FIELD}};
+    static const struct {
+        const char *word;
+        ValueKind kind;
+    } kinds[] = {{"normal", VALUE_NORMAL}, {"interior", VALUE_INTERIOR}, {"wind_field", VALUE_WIND_FIELD}};
     const InertNote *note = NULL;
     if (block->count) inert_add(context, &note, block->word->text, block->word_span);
     for (size_t i = 0; i < VTS_ARRAY_COUNT(kinds); i++)
-        if (strcmp(kinds[i].word, block->word->text) == 0) *out = (Value){.kind = kinds[i].kind, .as.node = note};
+        if (strcmp(kinds[i].word, block->word->text) == 0)
+            *out = (Value){.kind = kinds[i].kind, .as.node = note};
     return true;
 }
 
@@ -170,8 +184,9 @@ static bool on_material_value(Reader *reader, const Argument *value, void *targe
 }
 
 bool build_material(BuildContext *context, const EvalBlock *block, Value *out) {
-    static const WordRule material_rules[] = {{"interior_texture", WORD_INERT, offsetof(Material, inert), NULL, false},
-                                              {"uv_mapping", WORD_INERT, offsetof(Material, inert), NULL, false}};
+    static const WordRule material_rules[] = {
+        {"interior_texture", WORD_INERT, offsetof(Material, inert), NULL, false},
+        {"uv_mapping", WORD_INERT, offsetof(Material, inert), NULL, false}};
     Material *material = arena_new(context->arena, Material);
     material->transform = transform_identity();
     Reader reader = reader_begin(context, block);

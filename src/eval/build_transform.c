@@ -6,7 +6,8 @@ static void compose(Transform *onto, Transform next) { *onto = transform_then(on
 
 bool transform_is_identity(const Transform *t) {
     static const Mat3 unit = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    return t->offset.x == 0 && t->offset.y == 0 && t->offset.z == 0 && memcmp(&t->linear, &unit, sizeof unit) == 0;
+    return t->offset.x == 0 && t->offset.y == 0 && t->offset.z == 0 &&
+           memcmp(&t->linear, &unit, sizeof unit) == 0;
 }
 
 bool take_transform(const Argument *value, Transform *onto) {
@@ -17,18 +18,21 @@ bool take_transform(const Argument *value, Transform *onto) {
 
 static void read_translate(Reader *reader, const Word *word, void *target) {
     Vec3 by;
-    if (word_arguments(reader, word, 1, 1) && word_vector(reader, word, 0, &by)) compose(target, transform_translate(by));
+    if (word_arguments(reader, word, 1, 1) && word_vector(reader, word, 0, &by))
+        compose(target, transform_translate(by));
 }
 
 static void read_rotate(Reader *reader, const Word *word, void *target) {
     Vec3 by;
-    if (word_arguments(reader, word, 1, 1) && word_vector(reader, word, 0, &by)) compose(target, transform_rotate(by));
+    if (word_arguments(reader, word, 1, 1) && word_vector(reader, word, 0, &by))
+        compose(target, transform_rotate(by));
 }
 
 /* POV-Ray's rule: a factor of zero means "leave this axis alone". */
 static double nonzero_factor(Reader *reader, const Word *word, char axis, double factor) {
     if (factor != 0) return factor;
-    diag_warning(reader->context->diags, word->arguments[0].span, "scale by 0 along %c is changed to 1", axis);
+    diag_warning(reader->context->diags, word->arguments[0].span, "scale by 0 along %c is changed to 1",
+                 axis);
     return 1;
 }
 
@@ -43,11 +47,13 @@ static void read_scale(Reader *reader, const Word *word, void *target) {
 
 /* `matrix <12 numbers>`: one long vector, or twelve floats. */
 static bool matrix_numbers(Reader *reader, const Word *word, double m[12]) {
-    if (word->count == 1 && word->arguments[0].value.kind == VALUE_VECTOR && word->arguments[0].value.size == 12) {
+    if (word->count == 1 && word->arguments[0].value.kind == VALUE_VECTOR &&
+        word->arguments[0].value.size == 12) {
         memcpy(m, word->arguments[0].value.as.components, 12 * sizeof *m);
     } else {
         if (word->count != 12) {
-            reader_error(reader, word->whole, "'matrix' takes 12 numbers: the images of x, y and z, and the origin's");
+            reader_error(reader, word->whole,
+                         "'matrix' takes 12 numbers: the images of x, y and z, and the origin's");
             return false;
         }
         for (size_t i = 0; i < 12; i++)
@@ -75,7 +81,8 @@ static void read_matrix(Reader *reader, const Word *word, void *target) {
 static void read_transform(Reader *reader, const Word *word, void *target) {
     if (!word_arguments(reader, word, 1, 1)) return;
     if (!take_transform(&word->arguments[0], target))
-        reader_mismatch(reader, word->arguments[0].span, "'transform'", "a transform", word->arguments[0].value.kind);
+        reader_mismatch(reader, word->arguments[0].span, "'transform'", "a transform",
+                        word->arguments[0].value.kind);
 }
 
 const WordRule transform_rules[] = {

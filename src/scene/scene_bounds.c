@@ -8,7 +8,8 @@ static bool is_bounded(Box3 b) { return vec3_is_finite(b.min) && vec3_is_finite(
 
 /* The rows of a linear map: what an axis of the parent's space sees of the object's space. */
 static Vec3 row(const Transform *t, int axis) {
-    return vec3(vec3_get(t->linear.c[0], axis), vec3_get(t->linear.c[1], axis), vec3_get(t->linear.c[2], axis));
+    return vec3(vec3_get(t->linear.c[0], axis), vec3_get(t->linear.c[1], axis),
+                vec3_get(t->linear.c[2], axis));
 }
 
 /* The box of `center ± extent(axis)` in the parent's space. */
@@ -44,7 +45,8 @@ static Box3 torus_bounds(const Object *o, const Transform *t) {
     double extent[3];
     for (int i = 0; i < 3; i++) {
         Vec3 d = row(t, i);
-        extent[i] = fabs(o->as.torus.major_radius) * hypot(d.x, d.z) + fabs(o->as.torus.minor_radius) * vec3_length(d);
+        extent[i] = fabs(o->as.torus.major_radius) * hypot(d.x, d.z) +
+                    fabs(o->as.torus.minor_radius) * vec3_length(d);
     }
     return around(t->offset, extent);
 }
@@ -52,7 +54,8 @@ static Box3 torus_bounds(const Object *o, const Transform *t) {
 static Box3 mesh_bounds(const MeshData *m, const Transform *t) {
     Box3 box = box3_empty();
     for (size_t i = 0; i < m->triangle_count; i++)
-        for (int k = 0; k < 3; k++) box = box3_add_point(box, transform_point(t, m->vertices[m->triangles[i][k]]));
+        for (int k = 0; k < 3; k++)
+            box = box3_add_point(box, transform_point(t, m->vertices[m->triangles[i][k]]));
     return box;
 }
 
@@ -67,7 +70,8 @@ static Box3 particle_bounds(const Particle *p, const Transform *t) {
     double extent[3], radius = double_max(p->width_foot, p->width_tip) / 2;
     for (int i = 0; i < 3; i++) {
         double turn = -vec3_dot(row(t, i), p->velocity) / vec3_dot(row(t, i), p->acceleration);
-        if (turn > 0 && turn < p->life) box = box3_add_point(box, transform_point(t, particle_point(p, turn)));
+        if (turn > 0 && turn < p->life)
+            box = box3_add_point(box, transform_point(t, particle_point(p, turn)));
         extent[i] = radius * vec3_length(row(t, i));
     }
     Vec3 e = vec3(extent[0], extent[1], extent[2]);
@@ -78,7 +82,8 @@ static Box3 bounds_under(const Object *object, const Transform *outer);
 
 static Box3 union_bounds(const Object *o, const Transform *t) {
     Box3 box = box3_empty();
-    for (size_t i = 0; i < o->as.children.count; i++) box = box3_union(box, bounds_under(o->as.children.items[i], t));
+    for (size_t i = 0; i < o->as.children.count; i++)
+        box = box3_union(box, bounds_under(o->as.children.items[i], t));
     return box;
 }
 
@@ -103,7 +108,8 @@ static Box3 surface_bounds(const Surface *s, const Transform *t) {
 
 static Box3 particles_bounds(const Object *o, const Transform *t) {
     Box3 box = box3_empty();
-    for (size_t i = 0; i < o->as.particles.count; i++) box = box3_union(box, particle_bounds(&o->as.particles.items[i], t));
+    for (size_t i = 0; i < o->as.particles.count; i++)
+        box = box3_union(box, particle_bounds(&o->as.particles.items[i], t));
     return box;
 }
 
@@ -123,10 +129,12 @@ static Box3 bounds_under(const Object *o, const Transform *outer) {
     case OBJECT_UNION:
     case OBJECT_MERGE: return union_bounds(o, &t);
     case OBJECT_INTERSECTION: return intersection_bounds(o, &t);
-    case OBJECT_DIFFERENCE: return o->as.children.count ? bounds_under(o->as.children.items[0], &t) : box3_empty();
+    case OBJECT_DIFFERENCE:
+        return o->as.children.count ? bounds_under(o->as.children.items[0], &t) : box3_empty();
     case OBJECT_PARTICLES: return particles_bounds(o, &t);
     case OBJECT_SURFACE: return surface_bounds(o->as.surface, &t);
-    case OBJECT_TEXEL: return is_bounded(o->as.texel->bounds) ? box3_transform(&t, o->as.texel->bounds) : everything();
+    case OBJECT_TEXEL:
+        return is_bounded(o->as.texel->bounds) ? box3_transform(&t, o->as.texel->bounds) : everything();
     case OBJECT_UNMODELLED: return box3_empty();
     }
     return box3_empty();

@@ -1,23 +1,34 @@
 #include "scene/scene_hash.h"
 
-
 Finish finish_default(void) {
-    Finish finish = {.ambient = {0.1, 0.1, 0.1, 0, 0}, .diffuse = 0.6, .brilliance = 1, .roughness = 0.05, .phong_size = 40};
+    Finish finish = {.ambient = {0.1, 0.1, 0.1, 0, 0},
+                     .diffuse = 0.6,
+                     .brilliance = 1,
+                     .roughness = 0.05,
+                     .phong_size = 40};
     finish_rehash(&finish);
     return finish;
 }
 
 Pigment pigment_default(void) {
-    Pigment pigment = {.direction = {0, 1, 0}, .frequency = 1, .octaves = 6, .lambda = 2, .omega = 0.5,
-                       .brick_size = {8, 3, 4.5}, .mortar = 0.5, .transform = transform_identity()};
+    Pigment pigment = {.direction = {0, 1, 0},
+                       .frequency = 1,
+                       .octaves = 6,
+                       .lambda = 2,
+                       .omega = 0.5,
+                       .brick_size = {8, 3, 4.5},
+                       .mortar = 0.5,
+                       .transform = transform_identity()};
     pigment_rehash(&pigment);
     return pigment;
 }
 
 GlobalSettings global_settings_default(void) {
-    return (GlobalSettings){.ambient_light = {1, 1, 1, 0, 0}, .assumed_gamma = 1, .max_trace_level = 5, .shadow_aperture = 2};
+    return (GlobalSettings){
+        .ambient_light = {1, 1, 1, 0, 0}, .assumed_gamma = 1, .max_trace_level = 5, .shadow_aperture = 2};
 }
 
 Camera camera_default(double aspect) {
-    return (Camera){.kind = CAMERA_PERSPECTIVE, .direction = {0, 0, 1}, .right = {aspect, 0, 0}, .up = {0, 1, 0}};
+    return (Camera){
+        .kind = CAMERA_PERSPECTIVE, .direction = {0, 0, 1}, .right = {aspect, 0, 0}, .up = {0, 1, 0}};
 }

@@ -3,8 +3,19 @@
 #include <string.h>
 
 /* One number for each type of node, so that nodes of different types with equal bytes differ. */
-enum { KIND_PIGMENT = 1, KIND_FINISH, KIND_TEXTURE, KIND_MESH, KIND_SHAPE, KIND_GEOMETRY, KIND_OBJECT, KIND_LAYER, KIND_TEXEL,
-       KIND_SURFACE, KIND_SKIN };
+enum {
+    KIND_PIGMENT = 1,
+    KIND_FINISH,
+    KIND_TEXTURE,
+    KIND_MESH,
+    KIND_SHAPE,
+    KIND_GEOMETRY,
+    KIND_OBJECT,
+    KIND_LAYER,
+    KIND_TEXEL,
+    KIND_SURFACE,
+    KIND_SKIN
+};
 
 void hash_add_vec3(Hash128 *hash, Vec3 v) {
     double components[3] = {v.x + 0.0, v.y + 0.0, v.z + 0.0}; /* -0 becomes 0 */
@@ -167,7 +178,8 @@ Hash128 object_geometry_hash(const Object *o) {
 }
 
 static bool has_children(const Object *o) {
-    return o->kind == OBJECT_UNION || o->kind == OBJECT_INTERSECTION || o->kind == OBJECT_DIFFERENCE || o->kind == OBJECT_MERGE;
+    return o->kind == OBJECT_UNION || o->kind == OBJECT_INTERSECTION || o->kind == OBJECT_DIFFERENCE ||
+           o->kind == OBJECT_MERGE;
 }
 
 void object_rehash(Object *o) {
@@ -187,7 +199,8 @@ void object_rehash(Object *o) {
 
 void layer_rehash(TexelLayer *layer) {
     Hash128 h = hash_begin(KIND_LAYER);
-    for (size_t i = 0; i < layer->content_count; i++) hash_add_hash(&h, object_geometry_hash(layer->contents[i]));
+    for (size_t i = 0; i < layer->content_count; i++)
+        hash_add_hash(&h, object_geometry_hash(layer->contents[i]));
     layer->hash = h;
 }
 
@@ -231,7 +244,8 @@ void surface_rehash(Surface *s) {
 }
 
 static void add_mapping(Hash128 *h, const SkinMapping *m) {
-    const double numbers[] = {m->by_tile_size, m->repeat_u, m->repeat_v, m->tile_size, m->height, m->w_foot, m->w_tip};
+    const double numbers[] = {m->by_tile_size, m->repeat_u, m->repeat_v, m->tile_size,
+                              m->height,       m->w_foot,   m->w_tip};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(numbers); i++) hash_add_double(h, numbers[i]);
     add_tape(h, m->height_function);
     hash_add_u64(h, m->height_pigment != NULL);
@@ -250,7 +264,8 @@ static void add_jitter(Hash128 *h, const SkinJitter *j) {
     }
     const double numbers[] = {c->displace, c->rotate, c->scale, c->density};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(numbers); i++) hash_add_double(h, numbers[i]);
-    hash_add_u64(h, (uint64_t)c->present | (uint64_t)c->mirror << 1 | (uint64_t)c->tinted << 2 | (uint64_t)j->seed << 8);
+    hash_add_u64(h, (uint64_t)c->present | (uint64_t)c->mirror << 1 | (uint64_t)c->tinted << 2 |
+                        (uint64_t)j->seed << 8);
     hash_add_color(h, c->tint_a);
     hash_add_color(h, c->tint_b);
 }

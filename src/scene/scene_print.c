@@ -15,7 +15,9 @@ static void begin_line(const Printer *p, const char *word) {
 static void end_line(const Printer *p) { strbuf_addc(p->out, '\n'); }
 static double plain(double x) { return x + 0.0; /* no "-0" */ }
 
-static void add_number(const Printer *p, const char *name, double x) { strbuf_addf(p->out, " %s %g", name, plain(x)); }
+static void add_number(const Printer *p, const char *name, double x) {
+    strbuf_addf(p->out, " %s %g", name, plain(x));
+}
 
 static void add_unless(const Printer *p, const char *name, double x, double usual) {
     if (x != usual) add_number(p, name, x);
@@ -27,7 +29,8 @@ static void add_vector(const Printer *p, const char *name, Vec3 v) {
 
 static void add_color(const Printer *p, const char *name, Color c) {
     if (c.filter != 0 || c.transmit != 0)
-        strbuf_addf(p->out, " %s rgbft <%g, %g, %g, %g, %g>", name, c.red, c.green, c.blue, c.filter, c.transmit);
+        strbuf_addf(p->out, " %s rgbft <%g, %g, %g, %g, %g>", name, c.red, c.green, c.blue, c.filter,
+                    c.transmit);
     else
         strbuf_addf(p->out, " %s rgb <%g, %g, %g>", name, c.red, c.green, c.blue);
 }
@@ -47,9 +50,9 @@ static bool is_unit(const Mat3 *m) {
 static void add_transform(const Printer *p, const Transform *t) {
     if (!is_unit(&t->linear)) {
         const Vec3 *c = t->linear.c;
-        strbuf_addf(p->out, " matrix <%g, %g, %g, %g, %g, %g, %g, %g, %g, %g, %g, %g>", plain(c[0].x), plain(c[0].y),
-                    plain(c[0].z), plain(c[1].x), plain(c[1].y), plain(c[1].z), plain(c[2].x), plain(c[2].y), plain(c[2].z),
-                    plain(t->offset.x), plain(t->offset.y), plain(t->offset.z));
+        strbuf_addf(p->out, " matrix <%g, %g, %g, %g, %g, %g, %g, %g, %g, %g, %g, %g>", plain(c[0].x),
+                    plain(c[0].y), plain(c[0].z), plain(c[1].x), plain(c[1].y), plain(c[1].z), plain(c[2].x),
+                    plain(c[2].y), plain(c[2].z), plain(t->offset.x), plain(t->offset.y), plain(t->offset.z));
     } else if (vec3_length_squared(t->offset) != 0) {
         add_vector(p, "translate", t->offset);
     }
@@ -62,8 +65,9 @@ static void add_inert(const Printer *p, const InertNote *note) {
 /* ---- looks ---- */
 
 static const char *const pattern_names[] = {
-    "solid",   "gradient", "checker", "brick", "hexagon", "bozo",  "granite",     "wrinkles",  "agate",  "marble",   "wood", "crackle",
-    "leopard", "onion",    "radial",  "spotted", "cells", "boxed", "cylindrical", "spherical", "planar", "slope",    "function",
+    "solid", "gradient", "checker",     "brick",     "hexagon", "bozo",  "granite",  "wrinkles",
+    "agate", "marble",   "wood",        "crackle",   "leopard", "onion", "radial",   "spotted",
+    "cells", "boxed",    "cylindrical", "spherical", "planar",  "slope", "function",
 };
 
 static void print_pigment(Printer *p, const char *word, const Pigment *pigment);
@@ -83,7 +87,8 @@ static void print_pigment(Printer *p, const char *word, const Pigment *pigment) 
     begin_line(p, word);
     strbuf_addf(p->out, " %s", pattern_names[pigment->kind]);
     if (pigment->kind == PATTERN_SOLID) add_color(p, "color", pigment->color);
-    if (pigment->kind == PATTERN_GRADIENT || pigment->kind == PATTERN_SLOPE) add_vector(p, "direction", pigment->direction);
+    if (pigment->kind == PATTERN_GRADIENT || pigment->kind == PATTERN_SLOPE)
+        add_vector(p, "direction", pigment->direction);
     if (pigment->kind == PATTERN_BRICK) {
         add_vector(p, "brick_size", pigment->brick_size);
         add_number(p, "mortar", pigment->mortar);
@@ -211,19 +216,22 @@ static void print_particles(Printer *p, const Object *o) {
         add_vector(p, "velocity", particle->velocity);
         add_vector(p, "acceleration", particle->acceleration);
         add_number(p, "life", particle->life);
-        strbuf_addf(p->out, " width %g, %g profile %s", particle->width_foot, particle->width_tip, profiles[particle->profile]);
+        strbuf_addf(p->out, " width %g, %g profile %s", particle->width_foot, particle->width_tip,
+                    profiles[particle->profile]);
         add_unless(p, "twist", particle->twist, 0);
         end_line(p);
     }
 }
 
 static bool has_children(const Object *o) {
-    return o->kind == OBJECT_UNION || o->kind == OBJECT_INTERSECTION || o->kind == OBJECT_DIFFERENCE || o->kind == OBJECT_MERGE;
+    return o->kind == OBJECT_UNION || o->kind == OBJECT_INTERSECTION || o->kind == OBJECT_DIFFERENCE ||
+           o->kind == OBJECT_MERGE;
 }
 
 static const char *kind_name(const Object *o) {
-    static const char *const names[] = {"sphere",       "box",        "cylinder", "cone",      "plane",   "disc",  "torus",     "mesh",
-                                        "union",        "intersection", "difference", "merge", "particles", "surface", "texel", "unmodelled"};
+    static const char *const names[] = {
+        "sphere", "box",          "cylinder",   "cone",  "plane",     "disc",    "torus", "mesh",
+        "union",  "intersection", "difference", "merge", "particles", "surface", "texel", "unmodelled"};
     return names[o->kind];
 }
 
@@ -265,7 +273,8 @@ static void print_texel(Printer *p, const TexelDef *texel) {
         begin_line(p, "layer");
         end_line(p);
         p->depth++;
-        for (size_t k = 0; k < texel->layers[i].content_count; k++) print_object(p, texel->layers[i].contents[k]);
+        for (size_t k = 0; k < texel->layers[i].content_count; k++)
+            print_object(p, texel->layers[i].contents[k]);
         print_texture(p, texel->layers[i].texture);
         p->depth--;
     }
@@ -385,7 +394,8 @@ static void print_light(Printer *p, const Light *light) {
     add_color(p, "color", light->color);
     if (light->kind == LIGHT_SPOT) {
         add_vector(p, "point_at", light->point_at);
-        strbuf_addf(p->out, " radius %g falloff %g tightness %g", light->radius, light->falloff, light->tightness);
+        strbuf_addf(p->out, " radius %g falloff %g tightness %g", light->radius, light->falloff,
+                    light->tightness);
     }
     if (light->fade_power != 0) strbuf_addf(p->out, " fade %g ^ %g", light->fade_distance, light->fade_power);
     add_flag(p, "shadowless", light->shadowless);
@@ -394,7 +404,9 @@ static void print_light(Printer *p, const Light *light) {
 }
 
 static void print_settings(Printer *p, const GlobalSettings *s) {
-    const char *const texts[][2] = {{"opacity_model", s->opacity_model}, {"quadrature", s->quadrature}, {"ray_path", s->ray_path},
+    const char *const texts[][2] = {{"opacity_model", s->opacity_model},
+                                    {"quadrature", s->quadrature},
+                                    {"ray_path", s->ray_path},
                                     {"detail", s->detail}};
     begin_line(p, "settings");
     add_color(p, "ambient_light", s->ambient_light);

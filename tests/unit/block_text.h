@@ -18,7 +18,10 @@ typedef struct BlockText {
     const SourceFile *file;
     const char *at;
     double index; /* of the particle */
-    struct { const char *name; Value value; } bound[8];
+    struct {
+        const char *name;
+        Value value;
+    } bound[8];
     size_t bound_count;
 } BlockText;
 
@@ -40,7 +43,8 @@ static inline void block_text_begin(BlockText *t) {
     source_set_init(&t->sources, &t->arena);
     diag_init(&t->diags, &t->arena, &t->sources);
     interner_init(&t->names, &t->arena);
-    t->context = (BuildContext){.arena = &t->arena, .names = &t->names, .diags = &t->diags, .image_aspect = 4.0 / 3};
+    t->context =
+        (BuildContext){.arena = &t->arena, .names = &t->names, .diags = &t->diags, .image_aspect = 4.0 / 3};
 }
 
 static inline void block_text_end(BlockText *t) { arena_destroy(&t->arena); }
@@ -70,7 +74,8 @@ static inline bool name_is(const char *at, const char *word) {
 }
 
 static inline Value components_value(BlockText *t, ValueKind kind, const double *c, size_t n) {
-    return (Value){.kind = kind, .size = (uint8_t)n, .as.components = arena_copy(&t->arena, c, n * sizeof *c)};
+    return (Value){
+        .kind = kind, .size = (uint8_t)n, .as.components = arena_copy(&t->arena, c, n * sizeof *c)};
 }
 
 static inline bool parse_expression(BlockText *t, Argument *out);
@@ -94,7 +99,9 @@ static inline Value parse_color(BlockText *t) {
     skip_space(t);
     if (!parse_expression(t, &a)) abort();
     for (size_t i = 0; i < 5; i++)
-        in[i] = a.value.kind == VALUE_FLOAT ? a.value.as.number : i < a.value.size ? a.value.as.components[i] : 0;
+        in[i] = a.value.kind == VALUE_FLOAT ? a.value.as.number
+                : i < a.value.size          ? a.value.as.components[i]
+                                            : 0;
     memcpy(c, in, 3 * sizeof *c);
     if (strcmp(kind, "rgbf") == 0 || strcmp(kind, "rgbft") == 0) c[3] = in[3];
     if (strcmp(kind, "rgbt") == 0) c[4] = in[3];
@@ -137,7 +144,8 @@ static inline bool parse_expression(BlockText *t, Argument *out) {
         out->value = bound_value(t);
     else if (name_is(t->at, "x") || name_is(t->at, "y") || name_is(t->at, "z"))
         out->value = parse_axis(t);
-    else if (name_is(t->at, "rgb") || name_is(t->at, "rgbf") || name_is(t->at, "rgbt") || name_is(t->at, "rgbft"))
+    else if (name_is(t->at, "rgb") || name_is(t->at, "rgbf") || name_is(t->at, "rgbt") ||
+             name_is(t->at, "rgbft"))
         out->value = parse_color(t);
     else if (name_is(t->at, "index")) {
         t->at += 5;
@@ -215,16 +223,21 @@ static EvalBlock *parse_items(BlockText *t, const char *word, Span word_span, ch
         if (*t->at == '[') {
             t->at++;
             const EvalBlock *entry = parse_items(t, word, word_span, ']');
-            *list_push(&t->arena, &list) = (BlockItem){.kind = ITEM_ENTRY, .span = span_from(t, begin), .entry = entry};
+            *list_push(&t->arena, &list) =
+                (BlockItem){.kind = ITEM_ENTRY, .span = span_from(t, begin), .entry = entry};
         } else if (parse_expression(t, &argument))
-            *list_push(&t->arena, &list) = (BlockItem){.kind = ITEM_VALUE, .span = argument.span, .value = argument.value};
+            *list_push(&t->arena, &list) =
+                (BlockItem){.kind = ITEM_VALUE, .span = argument.span, .value = argument.value};
         else if (isalpha((unsigned char)*t->at))
             parse_word(t, &list);
         else
             abort();
     }
     if (*t->at) t->at++;
-    *block = (EvalBlock){.word = intern_cstr(&t->names, word), .word_span = word_span, .items = list.items, .count = list.count};
+    *block = (EvalBlock){.word = intern_cstr(&t->names, word),
+                         .word_span = word_span,
+                         .items = list.items,
+                         .count = list.count};
     block->span = span_from(t, t->file->text + word_span.begin);
     return block;
 }
@@ -246,7 +259,8 @@ static inline Value block_text_value(BlockText *t, const char *text) {
 static inline const Scene *block_text_scene(BlockText *t, const char *text) {
     SceneDraft *draft = scene_draft_create(&t->context, "test");
     const EvalBlock *all = block_text_parse(t, text);
-    for (size_t i = 0; i < all->count; i++) scene_draft_add(draft, &t->context, &all->items[i].value, all->items[i].span);
+    for (size_t i = 0; i < all->count; i++)
+        scene_draft_add(draft, &t->context, &all->items[i].value, all->items[i].span);
     return t->diags.error_count ? NULL : scene_draft_finish(draft, &t->context, 0);
 }
 

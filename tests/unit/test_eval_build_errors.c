@@ -13,16 +13,20 @@ typedef struct Case {
 } Case;
 
 static const Case errors[] = {
-    {"sphere { 0, 1 hollo }", "1:15: 'hollo' is neither declared nor a word of 'sphere'", "did you mean 'hollow'?"},
+    {"sphere { 0, 1 hollo }", "1:15: 'hollo' is neither declared nor a word of 'sphere'",
+     "did you mean 'hollow'?"},
     {"sphere { 0, \"wide\" }", "1:13: the radius takes a float, found a string", NULL},
     {"sphere { 0 }", "1:12: 'sphere' wants the radius here (a float)", NULL},
     {"sphere { <0,nan,0>, 1 }", "1:10: the center has a component that is not a finite number", NULL},
     {"sphere { 0, 1 translate \"up\" }", "1:25: 'translate' takes a vector, found a string", NULL},
     {"sphere { 0, 1 translate }", "1:15: 'translate' needs 1 value, found 0", NULL},
     {"sphere { 0, 1 translate x y }", "1:27: 'translate' takes at most 1 value, found 2", NULL},
-    {"sphere { 0, 1 matrix <1,0,0, 0,0,0, 0,0,1, 0,0,0> }", "1:15: this matrix is singular: it presses space flat", NULL},
-    {"sphere { 0, 1 matrix <1,0,0> }", "1:15: 'matrix' takes 12 numbers: the images of x, y and z, and the origin's", NULL},
-    {"cylinder { <1,1,1>, <1,1,1>, 0.5 }", "1:21: this cylinder is degenerate: its base and cap points are the same", NULL},
+    {"sphere { 0, 1 matrix <1,0,0, 0,0,0, 0,0,1, 0,0,0> }",
+     "1:15: this matrix is singular: it presses space flat", NULL},
+    {"sphere { 0, 1 matrix <1,0,0> }",
+     "1:15: 'matrix' takes 12 numbers: the images of x, y and z, and the origin's", NULL},
+    {"cylinder { <1,1,1>, <1,1,1>, 0.5 }",
+     "1:21: this cylinder is degenerate: its base and cap points are the same", NULL},
     {"cone { 0, 1, 0, 0.5 }", "1:14: this cone is degenerate: its base and cap points are the same", NULL},
     {"plane { 0, 1 }", "1:9: the normal of 'plane' has no length", NULL},
     {"disc { 0, 0, 1 }", "1:11: the normal of 'disc' has no length", NULL},
@@ -45,47 +49,69 @@ static const Case errors[] = {
     {"camera { location 0 look_at 0 }", "1:21: the camera looks at its own location", NULL},
     {"camera { angle 180 }", "1:16: the camera's angle must lie between 0 and 180 degrees, found 180", NULL},
     {"camera { right 0 }", "1:1: the camera's direction, right and up span no space", NULL},
-    {"camera { loction 0 }", "1:10: 'loction' is neither declared nor a word of 'camera'", "did you mean 'location'?"},
-    {"light_source { 0, rgb 1 spotligth }", "1:25: 'spotligth' is neither declared nor a word of 'light_source'", "did you mean 'spotlight'?"},
-    {"light_source { 0, rgb 1 parallel point_at 0 }", "1:1: this light has no direction: it stands where it points at", NULL},
-    {"pigment { graddient y }", "1:11: 'graddient' is neither declared nor a word of 'pigment'", "did you mean 'gradient'?"},
+    {"camera { loction 0 }", "1:10: 'loction' is neither declared nor a word of 'camera'",
+     "did you mean 'location'?"},
+    {"light_source { 0, rgb 1 spotligth }",
+     "1:25: 'spotligth' is neither declared nor a word of 'light_source'", "did you mean 'spotlight'?"},
+    {"light_source { 0, rgb 1 parallel point_at 0 }",
+     "1:1: this light has no direction: it stands where it points at", NULL},
+    {"pigment { graddient y }", "1:11: 'graddient' is neither declared nor a word of 'pigment'",
+     "did you mean 'gradient'?"},
     {"pigment { <1,0,0> }", "1:11: a vector has no meaning here in 'pigment'", NULL},
     {"color_map { }", "1:1: 'color_map' without entries", NULL},
     {"color_map { [0 \"red\"] }", "1:16: an entry of a colour map is [ position colour ]", NULL},
     {"finish { diffuse x }", "1:18: 'diffuse' takes a float, found a vector", NULL},
-    {"finish { speculer 1 }", "1:10: 'speculer' is neither declared nor a word of 'finish'", "did you mean 'specular'?"},
+    {"finish { speculer 1 }", "1:10: 'speculer' is neither declared nor a word of 'finish'",
+     "did you mean 'specular'?"},
     {"finish { roughness 0 }", "1:20: 'roughness' must be greater than 0, found 0", NULL},
     {"texel { }", "1:1: this texel has no content: it needs a layer { … }", NULL},
     {"texel { layer { } }", "1:9: this layer holds no object", NULL},
-    {"texel { sphere { 0, 1 } }", "1:9: objects of a texel stand in its layers", "write layer { … } around it"},
-    {"texel { layer { plane { y, 0 } } }", "1:17: a plane has no end: a layer's contents must have bounds", NULL},
-    {"texel { resolution 2000 layer { sphere { 0, 1 } } }", "1:20: 'resolution' must lie between 1 and 1024, found 2000", NULL},
-    {"texel { resolution 0 layer { sphere { 0, 1 } } }", "1:20: 'resolution' must lie between 1 and 1024, found 0", NULL},
-    {"texel { resolution 12.5 layer { sphere { 0, 1 } } }", "1:20: 'resolution' takes a whole number, found 12.5", NULL},
+    {"texel { sphere { 0, 1 } }", "1:9: objects of a texel stand in its layers",
+     "write layer { … } around it"},
+    {"texel { layer { plane { y, 0 } } }", "1:17: a plane has no end: a layer's contents must have bounds",
+     NULL},
+    {"texel { resolution 2000 layer { sphere { 0, 1 } } }",
+     "1:20: 'resolution' must lie between 1 and 1024, found 2000", NULL},
+    {"texel { resolution 0 layer { sphere { 0, 1 } } }",
+     "1:20: 'resolution' must lie between 1 and 1024, found 0", NULL},
+    {"texel { resolution 12.5 layer { sphere { 0, 1 } } }",
+     "1:20: 'resolution' takes a whole number, found 12.5", NULL},
     {"texel { cyclic x cyclic z layer { sphere { 0, 1 } } }", "1:18: 'cyclic' stands twice in 'texel'", NULL},
-    {"texel { bounds 0, x layer { sphere { 0, 1 } } }", "1:19: the texel's bounds have no volume: <1, 0, 0> in size", NULL},
-    {"texel { layr { sphere { 0, 1 } } }", "1:9: 'layr' is neither declared nor a word of 'texel'", "did you mean 'layer'?"},
-    {"particles { count 1 { position 0 } }", "1:13: a particle without velocity and acceleration leaves no trace", NULL},
+    {"texel { bounds 0, x layer { sphere { 0, 1 } } }",
+     "1:19: the texel's bounds have no volume: <1, 0, 0> in size", NULL},
+    {"texel { layr { sphere { 0, 1 } } }", "1:9: 'layr' is neither declared nor a word of 'texel'",
+     "did you mean 'layer'?"},
+    {"particles { count 1 { position 0 } }",
+     "1:13: a particle without velocity and acceleration leaves no trace", NULL},
     {"particles { count 1 { velocity y life 0 } }", "1:39: 'life' must be greater than 0, found 0", NULL},
-    {"particles { count 1 { velocity y profile \"w\" } }", "1:42: there is no profile \"w\"", "it is one of \"v\", \"round\", \"flat\""},
-    {"particles { count 1 { velosity y } }", "1:23: 'velosity' is neither declared nor a word of 'count'", "did you mean 'velocity'?"},
-    {"surface { patch_grid 0, 4 }", "1:22: 'patch_grid' needs at least 1 patch along each side, found 0", NULL},
+    {"particles { count 1 { velocity y profile \"w\" } }", "1:42: there is no profile \"w\"",
+     "it is one of \"v\", \"round\", \"flat\""},
+    {"particles { count 1 { velosity y } }", "1:23: 'velosity' is neither declared nor a word of 'count'",
+     "did you mean 'velocity'?"},
+    {"surface { patch_grid 0, 4 }", "1:22: 'patch_grid' needs at least 1 patch along each side, found 0",
+     NULL},
     {"surface { patch_grid 2, 4 }", "1:11: 'patch_grid' needs a function(u, v) {<…>} or points", NULL},
-    {"surface { uv planr y sphere { 0, 1 } }", "1:11: 'uv' is followed by mesh, planar AXIS, cylindrical or spherical", NULL},
+    {"surface { uv planr y sphere { 0, 1 } }",
+     "1:11: 'uv' is followed by mesh, planar AXIS, cylindrical or spherical", NULL},
     {"surface { }", "1:1: this surface has no shape: it needs an object or a 'patch_grid'", NULL},
     {"surface { plane { y, 0 } }", "1:11: a plane has no end: a surface needs an object with bounds", NULL},
     {"skin { }", "1:1: this skin has no surface { … } to lie on", NULL},
     {"skin { surface { sphere { 0, 1 } } }", "1:1: this skin has no texel { … } to lay on its surface", NULL},
     {"skin { sphere { 0, 1 } }", "1:8: a skin lies on a surface", "write surface { … } around the object"},
-    {"skin { mapping { repeat <0, 4> } }", "1:25: 'repeat' must be greater than 0 in both directions, found <0, 4>", NULL},
+    {"skin { mapping { repeat <0, 4> } }",
+     "1:25: 'repeat' must be greater than 0 in both directions, found <0, 4>", NULL},
     {"skin { mapping { repeat <4, 4> repeat 3 } }", "1:32: 'repeat' stands twice in 'mapping'", NULL},
     {"skin { mapping { height x } }", "1:25: 'height' takes a float, found a vector", NULL},
-    {"skin { jitter { scale 3 } }", "1:17: 'scale' of a jitter follows 'coordinates', 'height' or 'direction'", NULL},
-    {"skin { jitter { instance { rotaet 20 } } }", "1:28: 'rotaet' is neither declared nor a word of 'instance'", "did you mean 'rotate'?"},
+    {"skin { jitter { scale 3 } }",
+     "1:17: 'scale' of a jitter follows 'coordinates', 'height' or 'direction'", NULL},
+    {"skin { jitter { instance { rotaet 20 } } }",
+     "1:28: 'rotaet' is neither declared nor a word of 'instance'", "did you mean 'rotate'?"},
     {"skin { tiling wave }", "1:8: 'tiling' is followed by plain or wang", NULL},
     {"fog { rgb 1 }", "1:1: 'fog' needs a distance", NULL},
-    {"global_settings { max_eror 1 }", "1:19: 'max_eror' is neither declared nor a word of 'global_settings'", "did you mean 'max_error'?"},
-    {"global_settings { detail fine }", "1:26: 'fine' is no 'detail'", "it is one of auto, exact, voxels, slab"},
+    {"global_settings { max_eror 1 }", "1:19: 'max_eror' is neither declared nor a word of 'global_settings'",
+     "did you mean 'max_error'?"},
+    {"global_settings { detail fine }", "1:26: 'fine' is no 'detail'",
+     "it is one of auto, exact, voxels, slab"},
     {"global_settings { samples 0 }", "1:27: 'samples' must lie between 1 and 65536, found 0", NULL},
     {"texture { pigment { rgb 1 } }", "1:1: a texture has no meaning at top level",
      "it belongs into an object, or give it a name with #declare"},
@@ -99,19 +125,25 @@ static const Case warnings[] = {
     {"sphere { 0, -1 }", "1:13: the radius of 'sphere' is negative: -1 is taken as 1", NULL},
     {"union { sphere { 0, 1 } }", "1:1: 'union' should hold at least 2 objects, found 1", NULL},
     {"triangle { 0, 0, x }", "1:1: this triangle has no area: it is left out", NULL},
-    {"camera { location y look_at 0 }", "1:21: the camera looks along its sky vector: the picture's horizon follows 'right'", NULL},
+    {"camera { location y look_at 0 }",
+     "1:21: the camera looks along its sky vector: the picture's horizon follows 'right'", NULL},
     {"camera { right <1, 1, 0> }", "1:1: the camera's vectors are not perpendicular", NULL},
     {"blob { threshold 1 sphere { 0, 1, 1 } }", "1:1: 'blob' is not modelled yet: it is left out", NULL},
     {"sphere { 0, 1 interior { ior 1.5 } }", "1:15: 'interior' is not modelled yet: it has no effect", NULL},
-    {"sphere { 0, 1 texture { pigment { image_map { \"a.png\" } } } }", "1:35: 'image_map' is not modelled yet: it has no effect", NULL},
-    {"light_source { y, rgb 1 area_light x, z, 3, 3 circular }", "1:25: 'area_light' is drawn as a point light", NULL},
+    {"sphere { 0, 1 texture { pigment { image_map { \"a.png\" } } } }",
+     "1:35: 'image_map' is not modelled yet: it has no effect", NULL},
+    {"light_source { y, rgb 1 area_light x, z, 3, 3 circular }",
+     "1:25: 'area_light' is drawn as a point light", NULL},
     {"object { texel { bounds lsystem { axiom \"F\" } layer { lsystem { axiom \"F\" } } } }",
      "1:25: 'lsystem' is not modelled yet: it is left out", NULL},
-    {"object { texel { layer { density { fractal { size 3 } } } } }", "1:26: 'density' is not modelled yet: it has no effect", NULL},
+    {"object { texel { layer { density { fractal { size 3 } } } } }",
+     "1:26: 'density' is not modelled yet: it has no effect", NULL},
     {"object { surface { cloth { size 3 } } }", "1:20: 'cloth' is not modelled yet: it is left out", NULL},
-    {"skin { surface { sphere { 0, 1 } } texel { \"forest.vtx\" } }", "1:44: 'a texel from a file' is not modelled yet: it has no effect", NULL},
+    {"skin { surface { sphere { 0, 1 } } texel { \"forest.vtx\" } }",
+     "1:44: 'a texel from a file' is not modelled yet: it has no effect", NULL},
     {"animation { frames 4 }", "1:1: 'animation' is not modelled yet: it has no effect", NULL},
-    {"global_settings { radiosity { count 3 { } } }", "1:19: 'radiosity' is not modelled yet: it has no effect", NULL},
+    {"global_settings { radiosity { count 3 { } } }",
+     "1:19: 'radiosity' is not modelled yet: it has no effect", NULL},
     {"global_settings { }", "0:0: the scene holds nothing to draw: the picture is its background", NULL},
 };
 
@@ -127,13 +159,15 @@ static bool matches(BlockText *t, const Case *c, Severity severity) {
     StrBuf text = {0};
     if (d) {
         SourcePlace place = source_locate(&t->sources, d->span);
-        strbuf_addf(&text, "%u:%u: %s", place.file ? place.line : 0, place.file ? place.column : 0, d->message);
+        strbuf_addf(&text, "%u:%u: %s", place.file ? place.line : 0, place.file ? place.column : 0,
+                    d->message);
     }
-    bool same = d && strcmp(text.data, c->message) == 0 && (!c->hint || (d->hint && strcmp(d->hint, c->hint) == 0)) &&
+    bool same = d && strcmp(text.data, c->message) == 0 &&
+                (!c->hint || (d->hint && strcmp(d->hint, c->hint) == 0)) &&
                 (severity == SEVERITY_ERROR || t->diags.error_count == 0);
     if (!same)
-        print_error("for: %s\n  wanted: %s\n  found:  %s\n  hint:   %s\n", c->text, c->message, d ? text.data : "nothing",
-                    d && d->hint ? d->hint : "none");
+        print_error("for: %s\n  wanted: %s\n  found:  %s\n  hint:   %s\n", c->text, c->message,
+                    d ? text.data : "nothing", d && d->hint ? d->hint : "none");
     strbuf_free(&text);
     return same;
 }
@@ -164,7 +198,8 @@ static void test_inert_is_named_once(void **state) {
     (void)state;
     BlockText t;
     block_text_begin(&t);
-    assert_non_null(block_text_scene(&t, "sphere { 0, 1 interior { ior 1 } } sphere { 0, 2 interior { ior 2 } }"));
+    assert_non_null(
+        block_text_scene(&t, "sphere { 0, 1 interior { ior 1 } } sphere { 0, 2 interior { ior 2 } }"));
     assert_int_equal(t.diags.warning_count, 1);
     block_text_end(&t);
 }
@@ -173,7 +208,9 @@ static void test_declared_but_unused_is_silent(void **state) {
     (void)state;
     BlockText t;
     block_text_begin(&t);
-    assert_int_equal(block_text_value(&t, "texture { pigment { image_map { \"a.png\" } } normal { bumps 1 } }").kind, VALUE_TEXTURE);
+    assert_int_equal(
+        block_text_value(&t, "texture { pigment { image_map { \"a.png\" } } normal { bumps 1 } }").kind,
+        VALUE_TEXTURE);
     assert_null(t.diags.first);
     block_text_end(&t);
 }

@@ -36,13 +36,15 @@ static int teardown(void **state) {
 
 static const Object *object_of(BlockText *t, const char *text) {
     Value value = block_text_value(t, text);
-    if (value.kind != VALUE_OBJECT) fail_msg("no object: %s (%s)", text, t->diags.first ? t->diags.first->message : "?");
+    if (value.kind != VALUE_OBJECT)
+        fail_msg("no object: %s (%s)", text, t->diags.first ? t->diags.first->message : "?");
     return value.as.object;
 }
 
 static const Camera *camera_of(BlockText *t, const char *text) {
     Value value = block_text_value(t, text);
-    if (value.kind != VALUE_CAMERA) fail_msg("no camera: %s (%s)", text, t->diags.first ? t->diags.first->message : "?");
+    if (value.kind != VALUE_CAMERA)
+        fail_msg("no camera: %s (%s)", text, t->diags.first ? t->diags.first->message : "?");
     return value.as.camera;
 }
 
@@ -60,13 +62,16 @@ static void test_transforms_apply_in_order(void **state) {
 
 static void test_rotation_is_about_x_then_y_then_z(void **state) {
     const Object *a = object_of(*state, "sphere { 0, 1 rotate <30, 40, 50> }");
-    const Object *b = object_of(*state, "sphere { 0, 1 rotate <30, 0, 0> rotate <0, 40, 0> rotate <0, 0, 50> }");
+    const Object *b =
+        object_of(*state, "sphere { 0, 1 rotate <30, 0, 0> rotate <0, 40, 0> rotate <0, 0, 50> }");
     Vec3 p = vec3(0.3, -0.7, 1.9);
     assert_vec(transform_point(&a->transform, p), transform_point(&b->transform, p));
 }
 
 static void test_transform_block_and_inverse(void **state) {
-    const Object *a = object_of(*state, "sphere { 0, 1 transform { scale 2 translate x } transform { scale 2 translate x inverse } }");
+    const Object *a = object_of(
+        *state,
+        "sphere { 0, 1 transform { scale 2 translate x } transform { scale 2 translate x inverse } }");
     Vec3 p = vec3(0.3, -0.7, 1.9);
     assert_vec(transform_point(&a->transform, p), p);
     a = object_of(*state, "sphere { 0, 1 matrix <0,1,0, 0,0,1, 1,0,0, 5,6,7> }");
@@ -75,7 +80,8 @@ static void test_transform_block_and_inverse(void **state) {
 
 /* The texture follows transforms after it, not those before it. */
 static void test_texture_follows_later_transforms_only(void **state) {
-    const Object *a = object_of(*state, "sphere { 0, 1 translate x pigment { checker rgb 0, rgb 1 } rotate <0, 90, 0> }");
+    const Object *a =
+        object_of(*state, "sphere { 0, 1 translate x pigment { checker rgb 0, rgb 1 } rotate <0, 90, 0> }");
     Vec3 p = vec3(0.2, 0.4, 0.6); /* a point of the pattern stands where only the rotation puts it */
     const Pigment *pigment = a->texture->pigment;
     Vec3 in_object = transform_point(&a->texture->transform, transform_point(&pigment->transform, p));
@@ -84,7 +90,9 @@ static void test_texture_follows_later_transforms_only(void **state) {
 }
 
 static void test_pigment_in_placed_texture(void **state) {
-    const Texture *texture = block_text_value(*state, "texture { pigment { rgb 1 } scale 2 pigment { bozo scale 3 } translate x }").as.texture;
+    const Texture *texture =
+        block_text_value(*state, "texture { pigment { rgb 1 } scale 2 pigment { bozo scale 3 } translate x }")
+            .as.texture;
     Vec3 p = vec3(0.2, 0.4, 0.6);
     Vec3 q = transform_point(&texture->transform, transform_point(&texture->pigment->transform, p));
     assert_vec(q, vec3(1 + 0.6, 1.2, 1.8));
@@ -101,14 +109,17 @@ static void test_camera_defaults(void **state) {
 }
 
 static void test_camera_angle(void **state) {
-    const Camera *c = camera_of(*state, "camera { angle 60 right <2, 0, 0> location x }"); /* order does not matter */
+    const Camera *c =
+        camera_of(*state, "camera { angle 60 right <2, 0, 0> location x }"); /* order does not matter */
     assert_near(vec3_length(c->direction), 1 / tan(30 * VTS_RADIANS));
     assert_vec(c->right, vec3(2, 0, 0));
 }
 
 static void test_camera_looks_at(void **state) {
-    const Camera *c = camera_of(*state, "camera { look_at <1, 5, 2> location <1, 2, -2> right <1.5, 0, 0> angle 90 }");
-    assert_vec(c->direction, vec3(0, 0.75 * 0.6, 0.75 * 0.8)); /* 3-4-5 triangle; |direction| = 1.5 / tan 45 / 2 */
+    const Camera *c =
+        camera_of(*state, "camera { look_at <1, 5, 2> location <1, 2, -2> right <1.5, 0, 0> angle 90 }");
+    assert_vec(c->direction,
+               vec3(0, 0.75 * 0.6, 0.75 * 0.8)); /* 3-4-5 triangle; |direction| = 1.5 / tan 45 / 2 */
     assert_vec(c->right, vec3(1.5, 0, 0));
     assert_vec(c->up, vec3(0, 0.8, -0.6));
 }
@@ -117,7 +128,9 @@ static void test_camera_sky_and_handedness(void **state) {
     const Camera *c = camera_of(*state, "camera { location <0, 0, -5> sky x look_at 0 }");
     assert_vec(c->up, vec3(1, 0, 0));
     assert_vec(c->right, vec3(0, -1.33, 0)); /* sky × direction = x × z */
-    c = camera_of(*state, "camera { location <0, 0, -5> right <-1.33, 0, 0> look_at 0 }"); /* right-handed: stays mirrored */
+    c = camera_of(
+        *state,
+        "camera { location <0, 0, -5> right <-1.33, 0, 0> look_at 0 }"); /* right-handed: stays mirrored */
     assert_vec(c->right, vec3(-1.33, 0, 0));
 }
 
@@ -131,7 +144,8 @@ static void test_orthographic_sees_what_perspective_sees_at_look_at(void **state
     const Camera *c = camera_of(*state, "camera { orthographic location <0, 0, -8> look_at 0 }");
     assert_vec(c->right, vec3(1.33 * 8, 0, 0));
     assert_vec(c->up, vec3(0, 8, 0));
-    c = camera_of(*state, "camera { orthographic location <0, 0, -8> look_at 0 right <4, 0, 0> up <0, 3, 0> }");
+    c = camera_of(*state,
+                  "camera { orthographic location <0, 0, -8> look_at 0 right <4, 0, 0> up <0, 3, 0> }");
     assert_vec(c->right, vec3(4, 0, 0)); /* explicit sizes stand */
     c = camera_of(*state, "camera { orthographic location <0, 0, -8> look_at 0 right <4, 0, 0> angle 90 }");
     assert_vec(c->right, vec3(16, 0, 0)); /* with an angle they do not: 2 · 8 · tan 45 wide */
@@ -141,7 +155,8 @@ static void test_orthographic_sees_what_perspective_sees_at_look_at(void **state
 
 static void test_finish_changes_single_words(void **state) {
     BlockText *t = *state;
-    Value shiny = block_text_value(t, "texture { pigment { rgb 1 } finish { ambient 0.3 diffuse 0.5, 0.25 specular 0.7 reflection { 0.1, 0.6 fresnel } } }");
+    Value shiny = block_text_value(t, "texture { pigment { rgb 1 } finish { ambient 0.3 diffuse 0.5, 0.25 "
+                                      "specular 0.7 reflection { 0.1, 0.6 fresnel } } }");
     block_text_bind(t, "Shiny", shiny);
     const Texture *texture = block_text_value(t, "texture { $Shiny finish { ambient 0 } }").as.texture;
     assert_near(texture->finish->ambient.red, 0);
@@ -154,7 +169,9 @@ static void test_finish_changes_single_words(void **state) {
 }
 
 static void test_layers_of_textures(void **state) {
-    const Object *a = object_of(*state, "sphere { 0, 1 texture { pigment { rgb 0.1 } } texture { pigment { rgbt <1, 1, 1, 0.5> } } }");
+    const Object *a = object_of(
+        *state,
+        "sphere { 0, 1 texture { pigment { rgb 0.1 } } texture { pigment { rgbt <1, 1, 1, 0.5> } } }");
     assert_near(a->texture->pigment->color.transmit, 0.5);
     assert_non_null(a->texture->under);
     assert_near(a->texture->under->pigment->color.red, 0.1);
@@ -162,7 +179,11 @@ static void test_layers_of_textures(void **state) {
 }
 
 static void test_maps_are_sorted_and_promoted(void **state) {
-    const Pigment *p = block_text_value(*state, "pigment { gradient y color_map { [0.7 rgb 1] [0 rgb <1, 0, 0>] [0.2, 0.5 rgb 0 rgb 0.5] } }").as.pigment;
+    const Pigment *p =
+        block_text_value(
+            *state,
+            "pigment { gradient y color_map { [0.7 rgb 1] [0 rgb <1, 0, 0>] [0.2, 0.5 rgb 0 rgb 0.5] } }")
+            .as.pigment;
     assert_int_equal(p->kind, PATTERN_GRADIENT);
     assert_int_equal(p->entry_count, 4);
     const double positions[] = {0, 0.2, 0.5, 0.7};
@@ -196,7 +217,10 @@ static void test_hashes_follow_content_not_place(void **state) {
 }
 
 static void test_layer_hash_ignores_looks(void **state) {
-    const TexelDef *a = block_text_value(*state, "texel { layer { sphere { 0.5, 0.2 pigment { rgb 1 } } texture { pigment { rgb 1 } } } }").as.texel;
+    const TexelDef *a =
+        block_text_value(
+            *state, "texel { layer { sphere { 0.5, 0.2 pigment { rgb 1 } } texture { pigment { rgb 1 } } } }")
+            .as.texel;
     const TexelDef *b = block_text_value(*state, "texel { layer { sphere { 0.5, 0.2 } } }").as.texel;
     assert_true(hash_equal(a->layers[0].hash, b->layers[0].hash));
     assert_false(hash_equal(a->hash, b->hash));
@@ -206,15 +230,18 @@ static void test_layer_hash_ignores_looks(void **state) {
 
 static void test_bounds_of_turned_solids(void **state) {
     BlockText *t = *state;
-    const char *const solids[] = {"sphere { <1, 0, 2>, 0.5", "cylinder { 0, <1, 2, 0.5>, 0.3", "torus { 2, 0.4", "disc { y, <1, 1, 0>, 2", "cone { 0, 1, <0, 3, 1>, 0.2"};
+    const char *const solids[] = {"sphere { <1, 0, 2>, 0.5", "cylinder { 0, <1, 2, 0.5>, 0.3",
+                                  "torus { 2, 0.4", "disc { y, <1, 1, 0>, 2", "cone { 0, 1, <0, 3, 1>, 0.2"};
     RandomStream random = {7};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(solids); i++) {
         char text[200];
-        snprintf(text, sizeof text, "%s rotate <20, 30, 40> scale <1, 2, 0.5> translate <3, 0, 1> }", solids[i]);
+        snprintf(text, sizeof text, "%s rotate <20, 30, 40> scale <1, 2, 0.5> translate <3, 0, 1> }",
+                 solids[i]);
         const Object *o = object_of(t, text);
         Box3 bounds = object_bounds(o), hull = box3_empty();
         for (int k = 0; k < 60000; k++) {
-            double a = 2 * VTS_PI * random_next_unit(&random), b = 2 * VTS_PI * random_next_unit(&random), s = random_next_unit(&random);
+            double a = 2 * VTS_PI * random_next_unit(&random), b = 2 * VTS_PI * random_next_unit(&random),
+                   s = random_next_unit(&random);
             Vec3 p, u, v, axis;
             switch (o->kind) {
             case OBJECT_SPHERE: {
@@ -256,7 +283,8 @@ static void test_bounds_of_turned_solids(void **state) {
 static const Tape *patch_tape(Arena *arena) {
     TapeBuilder *b = tape_builder_create(arena, 2);
     Span nowhere = {0};
-    TapeRef u = tape_input(b, 0), v = tape_input(b, 1), half = tape_constant(b, 0.5), sixteen = tape_constant(b, 16);
+    TapeRef u = tape_input(b, 0), v = tape_input(b, 1), half = tape_constant(b, 0.5),
+            sixteen = tape_constant(b, 16);
     TapeRef out[3] = {tape_binary(b, TAPE_MUL, sixteen, tape_binary(b, TAPE_SUB, u, half, nowhere), nowhere),
                       tape_binary(b, TAPE_MUL, u, v, nowhere),
                       tape_binary(b, TAPE_MUL, sixteen, tape_binary(b, TAPE_SUB, v, half, nowhere), nowhere)};
@@ -284,14 +312,19 @@ static void test_patch_grid_from_function(void **state) {
 }
 
 static void test_texel_bounds_of_object(void **state) {
-    const TexelDef *texel = block_text_value(*state, "texel { bounds sphere { <1, 2, 3>, 2 } resolution auto layer { sphere { <1, 2, 3>, 2 } } }").as.texel;
+    const TexelDef *texel =
+        block_text_value(
+            *state,
+            "texel { bounds sphere { <1, 2, 3>, 2 } resolution auto layer { sphere { <1, 2, 3>, 2 } } }")
+            .as.texel;
     assert_vec(texel->bounds.min, vec3(-1, 0, 1));
     assert_vec(texel->bounds.max, vec3(3, 4, 5));
     assert_int_equal(texel->resolution, 0);
 }
 
 static void test_particles_one_word_each(void **state) {
-    const Object *o = object_of(*state, "particles { count 5 { position <index, 0, 0> velocity y life 2 width 0.1, 0.01 profile \"round\" twist 30 } }");
+    const Object *o = object_of(*state, "particles { count 5 { position <index, 0, 0> velocity y life 2 "
+                                        "width 0.1, 0.01 profile \"round\" twist 30 } }");
     assert_int_equal(o->as.particles.count, 5);
     for (size_t i = 0; i < 5; i++) assert_near(o->as.particles.items[i].position.x, (double)i);
     assert_int_equal(o->as.particles.items[4].profile, BLADE_ROUND);
@@ -304,22 +337,28 @@ static const char lawn[] =
     "global_settings { assumed_gamma 1.0  max_error 0.004 }\n"
     "camera { location <0, 3.2, -13>  look_at <0, 1.4, 0>  right <1.5, 0, 0>  angle 42 }\n"
     "light_source { <2000, 2600, -1800>, rgb <1.15, 1.1, 1.0> parallel point_at <0, 0, 0> }\n"
-    "sky_sphere { pigment { gradient y color_map { [0.0 rgb <0.80, 0.87, 0.95>] [0.6 rgb <0.25, 0.45, 0.80>] } } }\n"
+    "sky_sphere { pigment { gradient y color_map { [0.0 rgb <0.80, 0.87, 0.95>] [0.6 rgb <0.25, 0.45, 0.80>] "
+    "} } }\n"
     "object { surface { patch_grid 38, 38 $Patch texture { pigment { rgb <0.13, 0.10, 0.06> } } } }\n"
     "skin {\n"
     "  surface { patch_grid 38, 38 $Patch texture { pigment { rgb <0.13, 0.10, 0.06> } } }\n"
-    "  texel { cyclic <1, 0, 1> layer { particles { count 3 { position <index, 0, 0.5> velocity <0.1, 0.8, 0>\n"
+    "  texel { cyclic <1, 0, 1> layer { particles { count 3 { position <index, 0, 0.5> velocity <0.1, 0.8, "
+    "0>\n"
     "            acceleration <0.1, -0.25, 0> life 1 width 0.06, 0.004 profile \"v\" } }\n"
-    "          texture { pigment { rgb <0.16, 0.40, 0.07> } finish { ambient 0.1 diffuse 0.55, 0.35 specular 0.12 roughness 0.06 } } } }\n"
+    "          texture { pigment { rgb <0.16, 0.40, 0.07> } finish { ambient 0.1 diffuse 0.55, 0.35 specular "
+    "0.12 roughness 0.06 } } } }\n"
     "  texel { $Flower density 0.5 }\n"
     "  mapping { repeat <37, 37>  height 0.9 }\n"
-    "  jitter { direction 0.25 scale 0.8  height 0.3 scale 2  coordinates 0.15 scale 1.5  instance { rotate 360 displace 0.3 } seed 5 }\n"
+    "  jitter { direction 0.25 scale 0.8  height 0.3 scale 2  coordinates 0.15 scale 1.5  instance { rotate "
+    "360 displace 0.3 } seed 5 }\n"
     "}\n";
 
 static void test_lawn(void **state) {
     BlockText *t = *state;
     bind_patch_function(t);
-    block_text_bind(t, "Flower", block_text_value(t, "texel { layer { cylinder { <0.5, 0, 0.5>, <0.52, 0.75, 0.5>, 0.012 } } }"));
+    block_text_bind(
+        t, "Flower",
+        block_text_value(t, "texel { layer { cylinder { <0.5, 0, 0.5>, <0.52, 0.75, 0.5>, 0.012 } } }"));
     const Scene *scene = block_text_scene(t, lawn);
     assert_non_null(scene);
     assert_int_equal(scene->object_count, 1);
@@ -357,7 +396,10 @@ static void test_colours_behind_words(void **state) {
 }
 
 static void test_spotlight(void **state) {
-    const Light *l = block_text_value(*state, "light_source { 0, rgb 1 spotlight point_at <0, 0, 5> radius 12 falloff 20 fade_distance 3 fade_power 2 rotate <0, 90, 0> translate y }").as.light;
+    const Light *l =
+        block_text_value(*state, "light_source { 0, rgb 1 spotlight point_at <0, 0, 5> radius 12 falloff 20 "
+                                 "fade_distance 3 fade_power 2 rotate <0, 90, 0> translate y }")
+            .as.light;
     assert_int_equal(l->kind, LIGHT_SPOT);
     assert_vec(l->location, vec3(0, 1, 0));
     assert_vec(l->point_at, vec3(5, 1, 0)); /* z turns to x about y */
@@ -367,9 +409,11 @@ static void test_spotlight(void **state) {
 }
 
 static void test_sky_layers_and_settings(void **state) {
-    const Scene *scene = block_text_scene(*state, "sky_sphere { pigment { rgb 1 } pigment { bozo } rotate x }\n"
-                                                  "global_settings { max_error 0.01 opacity_model mean detail \"voxels\" samples 4 ambient_light 2 }\n"
-                                                  "global_settings { assumed_gamma 2 } sphere { 0, 1 }");
+    const Scene *scene = block_text_scene(
+        *state,
+        "sky_sphere { pigment { rgb 1 } pigment { bozo } rotate x }\n"
+        "global_settings { max_error 0.01 opacity_model mean detail \"voxels\" samples 4 ambient_light 2 }\n"
+        "global_settings { assumed_gamma 2 } sphere { 0, 1 }");
     assert_non_null(scene);
     assert_int_equal(scene->sky_layer_count, 2);
     assert_int_equal(scene->sky_layers[1]->kind, PATTERN_BOZO);
@@ -383,14 +427,17 @@ static void test_sky_layers_and_settings(void **state) {
 /* ---- scene ---- */
 
 static void test_lights_in_unions_move_with_them(void **state) {
-    const Scene *scene = block_text_scene(*state, "union { sphere { 0, 1 } union { sphere { 0, 1 } light_source { x, rgb 1 } translate y } scale 2 }");
+    const Scene *scene = block_text_scene(
+        *state,
+        "union { sphere { 0, 1 } union { sphere { 0, 1 } light_source { x, rgb 1 } translate y } scale 2 }");
     assert_non_null(scene);
     assert_int_equal(scene->light_count, 1);
     assert_vec(scene->lights[0].location, vec3(2, 2, 0));
 }
 
 static void test_mesh_of_triangles(void **state) {
-    const Object *o = object_of(*state, "mesh { triangle { 0, x, y texture { pigment { rgb 1 } } } triangle { 0, y, z } smooth_triangle { 0, x, x, y, z, z } }");
+    const Object *o = object_of(*state, "mesh { triangle { 0, x, y texture { pigment { rgb 1 } } } triangle "
+                                        "{ 0, y, z } smooth_triangle { 0, x, x, y, z, z } }");
     const MeshData *m = o->as.mesh;
     assert_int_equal(o->kind, OBJECT_TRIANGLES);
     assert_int_equal(m->triangle_count, 3);
@@ -418,10 +465,11 @@ static void test_default_texture(void **state) {
 
 static void test_printed_scene(void **state) {
     BlockText *t = *state;
-    const Scene *scene = block_text_scene(
-        t, "camera { location <0, 1, -4> } light_source { <0, 9, 0>, rgb 1 shadowless } background { rgb 0.25 }\n"
-           "sphere { y, 1 pigment { checker rgb 0, rgb 1 } scale 2 }\n"
-           "union { box { 1, 0 } cylinder { 0, y, 0.5 open } translate x }\n");
+    const Scene *scene =
+        block_text_scene(t, "camera { location <0, 1, -4> } light_source { <0, 9, 0>, rgb 1 shadowless } "
+                            "background { rgb 0.25 }\n"
+                            "sphere { y, 1 pigment { checker rgb 0, rgb 1 } scale 2 }\n"
+                            "union { box { 1, 0 } cylinder { 0, y, 0.5 open } translate x }\n");
     assert_non_null(scene);
     StrBuf text = {0};
     scene_print(scene, &text);

@@ -31,8 +31,11 @@ static void evaluate(Evaluated *e, const char *path) {
     source_set_init(&e->sources, &e->parse);
     diag_init(&e->diags, &e->parse, &e->sources);
     interner_init(&e->names, &e->arena);
-    EvalOptions options = {.stdlib_dir = VTS_SOURCE_DIR "/stdlib", .image_width = 400, .image_height = 300,
-                           .limits = eval_limits_default(), .on_text = on_text};
+    EvalOptions options = {.stdlib_dir = VTS_SOURCE_DIR "/stdlib",
+                           .image_width = 400,
+                           .image_height = 300,
+                           .limits = eval_limits_default(),
+                           .on_text = on_text};
     e->status = eval_file(path, &options, &e->sources, &e->diags, &e->names, &e->parse, &e->arena, &e->scene);
     for (const Diagnostic *d = e->diags.first; d; d = d->next) print_message("%s: %s\n", path, d->message);
 }
@@ -59,7 +62,8 @@ static size_t count_particles(const Skin *skin) {
     const TexelDef *texel = skin->texels[0].texel;
     for (size_t i = 0; i < texel->layer_count; i++)
         for (size_t k = 0; k < texel->layers[i].content_count; k++)
-            if (texel->layers[i].contents[k]->kind == OBJECT_PARTICLES) count += texel->layers[i].contents[k]->as.particles.count;
+            if (texel->layers[i].contents[k]->kind == OBJECT_PARTICLES)
+                count += texel->layers[i].contents[k]->as.particles.count;
     return count;
 }
 
@@ -100,7 +104,8 @@ static void test_hashes_are_the_same_next_time(void **state) {
     evaluate(&a, VTS_SOURCE_DIR "/examples/lawn.vts");
     evaluate(&b, VTS_SOURCE_DIR "/examples/lawn.vts");
     assert_true(hash_equal(a.scene->skins[0]->hash, b.scene->skins[0]->hash));
-    assert_true(hash_equal(a.scene->skins[0]->texels[0].texel->hash, b.scene->skins[0]->texels[0].texel->hash));
+    assert_true(
+        hash_equal(a.scene->skins[0]->texels[0].texel->hash, b.scene->skins[0]->texels[0].texel->hash));
     release(&a);
     release(&b);
 }
@@ -117,21 +122,26 @@ static void test_points_of_arrays(void **state) {
     assert_true(s->points[1].x == 1 && s->points[1].z == 0);
     assert_true(s->height_vectors[5].y == 3);
     release(&e);
-    evaluate_text(&e, "#declare P = array[2][2] { {0, x}, {z, x + z} }\nobject { surface { patch_grid 1, 2 points P } }\n");
+    evaluate_text(
+        &e,
+        "#declare P = array[2][2] { {0, x}, {z, x + z} }\nobject { surface { patch_grid 1, 2 points P } }\n");
     assert_int_equal(e.status, EVAL_FAILED);
-    assert_string_equal(e.diags.first->message, "'points' needs an array [2][3] of vertices for 1 x 2 patches");
+    assert_string_equal(e.diags.first->message,
+                        "'points' needs an array [2][3] of vertices for 1 x 2 patches");
     release(&e);
 }
 
 static void test_functions_of_skins(void **state) {
     (void)state;
     Evaluated e;
-    evaluate_text(&e, "#declare T = texel { layer { sphere { 0.5, 0.4 } } }\n"
-                      "#declare U = texel { layer { box { 0.1, 0.9 } } }\n"
-                      "skin { surface { sphere { 0, 1 } deform function(x, y, z) { <x, y*(1 + 0.1*x), z> } }\n"
-                      "  texel { choose T, U } texel { T density 0.25 texture { pigment { rgb <1, 0, 0> } } }\n"
-                      "  mapping { tile 0.25 height 0.4 function(x, y, z) { 1 + y } comb function(x, y, z) { <0, x, 0> }\n"
-                      "            w 0.2, 0.8 function(x, y, z) { <0, 1 - 0.5*y, 0> } } }\n");
+    evaluate_text(
+        &e,
+        "#declare T = texel { layer { sphere { 0.5, 0.4 } } }\n"
+        "#declare U = texel { layer { box { 0.1, 0.9 } } }\n"
+        "skin { surface { sphere { 0, 1 } deform function(x, y, z) { <x, y*(1 + 0.1*x), z> } }\n"
+        "  texel { choose T, U } texel { T density 0.25 texture { pigment { rgb <1, 0, 0> } } }\n"
+        "  mapping { tile 0.25 height 0.4 function(x, y, z) { 1 + y } comb function(x, y, z) { <0, x, 0> }\n"
+        "            w 0.2, 0.8 function(x, y, z) { <0, 1 - 0.5*y, 0> } } }\n");
     assert_int_equal(e.status, EVAL_OK);
     const Skin *skin = e.scene->skins[0];
     assert_int_equal(tape_input_count(skin->mapping.height_function), 3);
@@ -151,7 +161,8 @@ static void test_a_function_of_the_wrong_shape(void **state) {
     (void)state;
     Evaluated e;
     evaluate_text(&e, "object { surface { patch_grid 1, 2 function(x, y, z) { <x, y, z> } } }\n");
-    assert_string_equal(e.diags.first->message, "the function of 'patch_grid' takes 2 parameters here, this one has 3");
+    assert_string_equal(e.diags.first->message,
+                        "the function of 'patch_grid' takes 2 parameters here, this one has 3");
     release(&e);
     evaluate_text(&e, "object { surface { patch_grid 1, 2 function(u, v) { u + v } } }\n");
     assert_string_equal(e.diags.first->message, "the function of 'patch_grid' gives a vector <…, …, …> here");

@@ -26,7 +26,7 @@ static float transmit_crossing(const VoxelSample *v, float h, Vec3f step) {
     float n = crossings(step, h);
     if (!(n > 0)) return 1;
     float tau = v->density * projected(v, step) / n;
-    float through = v->gamma * float_max(0, 1 - tau) + (1 - v->gamma) * expf(-tau);
+    float gamma = float_max(0, v->gamma), through = gamma * float_max(0, 1 - tau) + (1 - gamma) * expf(-tau);
     return attenuate(-n * logf(float_max(through, LEAST_TRANSMITTANCE)));
 }
 

@@ -19,7 +19,8 @@ typedef enum OpacityModel {
  * 1 − τ applied to the smeared density is opaque again (0.37 and 0.14 … 0.3 get through). What tells the middle of an
  * intact sheet is its density alone: 2ρh, area per voxel's face, is 0.8 to 1 there whatever way the sheet is turned or
  * seen. So τ is enhanced by 1 + (4 γ ρ h)², which leaves matter much thinner than a voxel as it is and makes intact
- * sheets opaque from everywhere. h: side of the voxels, 2^lod times that of the finest level where levels are mixed.
+ * sheets opaque from everywhere. Matter that hides itself in clumps, as blades do in a coarse voxel, has a gamma < 0 and
+ * a factor 1 + γ < 1. h: side of the voxels, 2^lod times that of the finest level where levels are mixed.
  *
  * Crossing: T = γ max(0, 1 − τ) + (1 − γ) exp(−τ), not below 1/512, for the mean crossing l = h/(|dx| + |dy| + |dz|) of a
  * voxel; a segment s transmits T^(s/l). */
@@ -30,12 +31,13 @@ float opacity_transmittance(OpacityModel model, const VoxelSample *v, float h, V
  * opacity_transmittance() takes finest = h. */
 float opacity_transmittance_mean(const VoxelSample *v, float finest, float h, Vec3f step);
 
-/* The factor by which OPACITY_CORRELATED enhances τ, for density in units of 1/h; and the gamma, in [0, 1], for a factor. */
+/* The factor by which OPACITY_CORRELATED enhances τ, for density in units of 1/h; and the gamma for a factor. */
 static inline float opacity_enhancement(float gamma, float density) {
-    return 1 + 16 * gamma * gamma * density * density;
+    return gamma < 0 ? 1 + gamma : 1 + 16 * gamma * gamma * density * density;
 }
 static inline float opacity_gamma_for(float enhancement, float density) {
-    return enhancement > 1 ? float_min(1, sqrtf(enhancement - 1) / (4 * density)) : 0;
+    if (enhancement <= 1) return enhancement - 1;
+    return float_min(1, sqrtf(enhancement - 1) / (4 * density));
 }
 
 #endif

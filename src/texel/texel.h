@@ -10,7 +10,7 @@
  *            The two walls of a solid count one each where it is thicker than two voxels, one together where it is
  *            thinner than one: a thin stem is seen once
  *   S        SGGX matrix normalised to unit mean projected area (within 0.6 %); axis ratios at least 0.01
- *   gamma    share of the voxel that behaves as a sheet rather than as random matter: for opacity.h alone
+ *   gamma    how far the voxel behaves as a sheet (> 0) or as clumps (< 0) rather than as random matter: for opacity.h
  * Voxels are centred: voxel (i, j, k) of level L covers [i, i+1)·h(L) … and its value stands at its centre. */
 #ifndef VTS_TEXEL_TEXEL_H
 #define VTS_TEXEL_TEXEL_H
@@ -35,7 +35,7 @@ typedef struct TexelMesh {
 
 typedef struct VoxelSample {
     float density; /* 1 / texel length; 0 = empty, the rest is then meaningless */
-    float gamma;   /* 0 random matter … 1 one sheet */
+    float gamma;   /* −0.48 clumped, 0 random matter … 1 one sheet */
     Sym3f s;       /* unit mean projected area */
 } VoxelSample;
 

@@ -168,12 +168,12 @@ static float fit_alone(const AxisLight *light, float density) {
  * one silhouettes have the right size, a wall lets 0.18 through and both 0.03. */
 #define WALL_STRENGTH 0.6f
 
-/* Thin solids end in the voxel; sheets and single walls go on into the next ones. */
+/* Sheets and single walls go on into the next voxels; thin solids and clumps end in this one. */
 static float fit_gamma(const VoxelCell *cell, const AxisLight *light, float density, float thin) {
-    float sheet = fit_sheet(light), solid = cell->solid / (cell->solid + cell->sheet);
-    if (solid <= 0) return sheet;
-    float wall = sheet * WALL_STRENGTH;
-    float gamma = thin > 0 ? wall + thin * (float_min(wall, fit_alone(light, density)) - wall) : wall;
+    float sheet = fit_sheet(light), alone = fit_alone(light, density);
+    if (sheet <= 0) return float_min(alone, 0);
+    float solid = cell->solid / (cell->solid + cell->sheet), wall = sheet * WALL_STRENGTH;
+    float gamma = wall + thin * (float_min(wall, alone) - wall);
     return sheet + solid * (gamma - sheet);
 }
 

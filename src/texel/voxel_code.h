@@ -5,7 +5,7 @@
  * most the same error of the projected area (1.2 % of its mean at worst, 0.4 % rms). A rotation with two ratios has a
  * similar error but costs a square root and sixty products to read.
  * Density in eleven bits: a small float (5 bits exponent, 6 mantissa), in units of 1/side; relative error at most 0.8 %.
- * Gamma in five bits. */
+ * Gamma in five bits, from −0.48 to 1 by steps of 1/21. */
 #ifndef VTS_TEXEL_VOXEL_CODE_H
 #define VTS_TEXEL_VOXEL_CODE_H
 
@@ -23,7 +23,8 @@ enum {
     VOXEL_DENSITY_SHIFT = 16,
     VOXEL_GAMMA_SHIFT = 27,
     VOXEL_DENSITY_LARGEST = 2047,
-    VOXEL_GAMMA_LARGEST = 31
+    VOXEL_GAMMA_LARGEST = 31,
+    VOXEL_GAMMA_ZERO = 10
 };
 
 /* `density` in units of 1/side (> 0), s of unit mean projected area and roughness at least VOXEL_ROUGHNESS. */
@@ -49,7 +50,8 @@ static inline float voxel_code_density(uint32_t rest) {
     return u.value;
 }
 static inline float voxel_code_gamma(uint32_t rest) {
-    return (float)(int32_t)(rest >> VOXEL_GAMMA_SHIFT) * (1.0f / VOXEL_GAMMA_LARGEST);
+    return (float)((int32_t)(rest >> VOXEL_GAMMA_SHIFT) - VOXEL_GAMMA_ZERO) *
+           (1.0f / (VOXEL_GAMMA_LARGEST - VOXEL_GAMMA_ZERO));
 }
 
 #endif

@@ -109,11 +109,12 @@ static void test_density_and_gamma(void **state) {
     RandomStream r = {12};
     const Sym3f root = {1, 1, 1, 0, 0, 0};
     for (int i = 0; i < 20000; i++) {
-        float density = exp2f((float)(random_next_unit(&r) * 31.9 - 18)), gamma = (float)random_next_unit(&r);
+        float density = exp2f((float)(random_next_unit(&r) * 31.9 - 18)),
+              gamma = (float)random_next_unit(&r) * 1.45f - .45f;
         VoxelSample out;
         voxel_code_unpack(voxel_code_pack(density, gamma, &root), &out);
         assert_true(fabsf(out.density / density - 1) < .0079f);
-        assert_true(fabsf(out.gamma - gamma) < .0165f);
+        assert_true(fabsf(out.gamma - gamma) < .024f);
     }
     const float extremes[] = {0x1p-30f, 1e-38f, 16000, 1e30f};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(extremes); i++) {
@@ -132,7 +133,7 @@ static void test_any_bits(void **state) {
         uint64_t bits = random_next(&r);
         VoxelSample out;
         voxel_code_unpack((VoxelCode){(uint32_t)bits, (uint32_t)(bits >> 32)}, &out);
-        assert_true(out.density >= 0 && isfinite(out.density) && out.gamma >= 0 && out.gamma <= 1);
+        assert_true(out.density >= 0 && isfinite(out.density) && out.gamma > -.5f && out.gamma <= 1);
         Vec3 d = random_direction(&r);
         assert_true(sym3f_quadratic(&out.s, vec3f_from(d)) >= -1e-5f);
     }

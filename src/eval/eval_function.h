@@ -20,6 +20,8 @@ typedef struct KnownFunction {
     bool (*compile)(Eval *ev, TapeBuilder *tape, const Node *call, const TapeRef *arguments, size_t count, TapeRef *out);
 } KnownFunction;
 const KnownFunction *known_function_find(Name name);
+/* Whether the call has the right number of arguments (at most 8); reported. */
+bool known_function_takes(Eval *ev, const Node *call, const KnownFunction *function);
 
 /* A function that is nothing but one external. */
 Value external_function(Eval *ev, const Node *node, const TapeExternal *external);

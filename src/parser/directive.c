@@ -54,6 +54,12 @@ static void go_on_after(Parser *p, uint32_t end, uint32_t *next) {
     else p->at = end + 1;
 }
 
+/* On the slow road what follows is not pulled for it: that would run the directives that come next before this one. */
+static bool accept_semicolon(Parser *p) {
+    if (p->slow && !p->has_window && p->host->after(p->host->context, 0)->kind != ';') return false;
+    return parser_accept(p, ';');
+}
+
 static Node *in_parentheses(Parser *p) {
     if (!parser_expect(p, '(', "'('")) return NULL;
     p->brackets++;
@@ -233,7 +239,7 @@ static Node *macro_directive(Parser *p, TokenList *list, uint32_t index, uint32_
 static bool needs_semicolon(const Node *n) {
     switch (n->kind) {
     case NODE_NUMBER: case NODE_CONSTANT: case NODE_VECTOR: case NODE_COLOR: case NODE_DOT: case NODE_CONDITION: case NODE_BINARY: return true;
-    case NODE_VALUE: return n->op == NODE_NUMBER || n->op == NODE_VECTOR || n->op == NODE_COLOR || n->op == NODE_VALUE || n->op == NODE_DOT;
+    case NODE_VALUE: return n->op == NODE_NUMBER || n->op == NODE_VECTOR || n->op == NODE_COLOR || n->op == NODE_DOT;
     case NODE_UNARY: return n->op != '(' || needs_semicolon(n->as.operand.a);
     default: return false;
     }
@@ -290,17 +296,15 @@ static Node *declare_directive(Parser *p, Token head) {
     n->as.declare.value = value;
     if (!value) return NULL;
     n->span = span_join(head.span, p->last.span);
-    bool unseen = p->slow && p->closed && !p->has_window;
-    if (unseen && !needs_semicolon(value) && p->host->after(p->host->context, 0)->kind != ';') return n;
     if (p->crossed && needs_semicolon(value)) {
         Diagnostic *d = diag_error(p->diags, value->span, "a directive ends in the middle of this value");
         diag_hint(p->diags, d, "put the value into parentheses");
         p->failed = true;
         return NULL;
     }
-    if (!(unseen && p->host->after(p->host->context, 0)->kind != ';') && parser_accept(p, ';')) return n;
+    if (accept_semicolon(p)) return n;
     if (needs_semicolon(value)) {
-        const Token *t = unseen ? p->host->after(p->host->context, 0) : parser_peek(p);
+        const Token *t = p->slow && !p->has_window ? p->host->after(p->host->context, 0) : parser_peek(p);
         Span after = {p->last.span.file, p->last.span.end, p->last.span.end};
         return parser_fail(p, t->kind == TOKEN_END || t->kind == TOKEN_DIRECTIVE ? after : t->span,
                            "expected ';' after the value of '%s', found %s", n->as.declare.target->kind == NODE_NAME ? n->as.declare.target->as.name->text : "an array's element",
@@ -314,7 +318,7 @@ static Node *undef_directive(Parser *p, Token head) {
     Node *target = parser_target(p);
     if (!target) return NULL;
     *list_push(p->arena, &n->as.list) = target;
-    parser_accept(p, ';');
+    accept_semicolon(p);
     return n;
 }
 
@@ -324,7 +328,7 @@ static Node *operand_directive(Parser *p, NodeKind kind, Token head) {
     n->as.operand.a = parser_expression(p);
     if (!n->as.operand.a) return NULL;
     n->span = span_join(head.span, p->last.span);
-    if (kind == NODE_VERSION) parser_accept(p, ';');
+    if (kind == NODE_VERSION) accept_semicolon(p);
     return n;
 }
 

@@ -6,7 +6,7 @@ static void require(Node *n, Binding need) {
 }
 
 static Node *fold(Parser *p, Node *n) {
-    if (!n || !p->slow || p->in_function || p->failed) return n;
+    if (!n || !p->slow || p->in_function || p->unfolded || p->failed) return n;
     return p->host->fold(p->host->context, n);
 }
 
@@ -38,11 +38,19 @@ static Node *vector(Parser *p) {
     return n;
 }
 
-/* On the slow road, whether a bare name comes next: it goes by reference and is not replaced by its value. */
-static bool bare_name_follows(Parser *p) {
+/* On the slow road, whether nothing but a name or an element of an array comes next: it goes by reference and is not replaced by its
+ * value. */
+static bool reference_follows(Parser *p) {
     if (!p->slow || p->has_window) return false;
-    const Token *t = p->host->after(p->host->context, 0), *end = p->host->after(p->host->context, 1);
-    return t->kind == TOKEN_WORD && !t->keyword && (end->kind == ',' || end->kind == ')');
+    const Token *t = p->host->after(p->host->context, 0);
+    if (t->kind != TOKEN_WORD || t->keyword) return false;
+    int depth = 0;
+    for (uint32_t i = 1;; i++) {
+        t = p->host->after(p->host->context, i);
+        if (t->kind == '[') depth++;
+        else if (t->kind == ']') depth--;
+        else if (depth == 0 || t->kind == TOKEN_END) return depth == 0 && (t->kind == ',' || t->kind == ')');
+    }
 }
 
 /* arguments = "(" [full { "," full }] ")" */
@@ -50,12 +58,10 @@ bool parser_arguments(Parser *p, NodeList *out) {
     if (!parser_expect(p, '(', "'('")) return false;
     p->brackets++;
     for (;;) {
-        if (bare_name_follows(p)) {
-            p->raw = true;
-            Token name = parser_take(p);
-            Node *n = parser_node(p, NODE_NAME, name.span);
-            n->as.name = name.as.name;
-            *list_push(p->arena, out) = n;
+        if (reference_follows(p)) {
+            Node *target = parser_target(p);
+            if (!target) return false;
+            *list_push(p->arena, out) = target;
         } else if (parser_peek(p)->kind == ')' && out->count == 0) {
             break;
         } else {
@@ -556,7 +562,8 @@ Node *parser_function(Parser *p) {
     bool ok = parser_expect(p, '{', "'{'");
     p->brackets = 1;
     if (ok && parser_peek_after(p)->kind == '{') {
-        p->in_function = false; /* pigment, pattern, spline, transform: a block like any other */
+        p->in_function = false; /* pigment, pattern, spline, transform: a block like any other, but the function evaluates it */
+        p->unfolded = true;
         p->parameter_count = 0;
     } else {
         p->in_function = true;
@@ -568,6 +575,7 @@ Node *parser_function(Parser *p) {
         if (!parser_accept(p, ',')) break;
     }
     p->in_function = outer.in_function;
+    p->unfolded = outer.unfolded;
     p->parameters = outer.parameters;
     p->parameter_count = outer.parameter_count;
     if (!ok || !parser_expect(p, '}', "an operator or '}'")) return NULL;

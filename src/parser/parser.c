@@ -148,7 +148,8 @@ Node *parser_target(Parser *p) {
     Node *n = parser_node(p, NODE_NAME, name.span);
     n->as.name = name.as.name;
     p->brackets++;
-    while (parser_accept(p, '[')) {
+    /* On the slow road nothing is pulled to find out: that would run the directives that come next. */
+    while ((!p->slow || p->host->after(p->host->context, 0)->kind == '[') && parser_accept(p, '[')) {
         Node *index = parser_node(p, NODE_INDEX, n->span);
         index->as.apply.base = n;
         Node *e = parser_expression(p);

@@ -69,6 +69,7 @@ struct Parser {
     Name *parameters;   /* of the function whose body is being read */
     size_t parameter_count;
     bool in_function;
+    bool unfolded;      /* operands are kept as trees */
     bool heads_only;    /* branches of directives need not be whole: the text after #end may complete them */
     bool guessing;      /* names that mean nothing yet are taken for values */
     bool crossed;       /* slow road: a group ended between an operand and what follows it, outside of brackets */

@@ -3,6 +3,7 @@
  *   // expect error: LINE TEXT   an error on that line whose message holds TEXT
  *   // expect warning: LINE TEXT
  * or with the file PROGRAM.expected beside them, which holds the printed lines that begin with "> ".
+ * Each program runs twice, the second time with every statement expanded before it is read: both must agree.
  *   language_runner [--show] FILE…            --show prints instead of comparing
  *   language_runner --shared FOLDER           all .pov files there, or 77 where there is no such folder */
 #include "eval/eval.h"
@@ -73,7 +74,7 @@ static void read_options(const char *text, EvalOptions *o, struct EvalDeclare *d
     }
 }
 
-static void run_program(Run *run, const char *path, const char *text, bool show) {
+static void run_program(Run *run, const char *path, const char *text, bool show, bool expand) {
     Arena session, parse, scene_arena;
     SourceSet sources;
     DiagList diags;
@@ -87,7 +88,7 @@ static void run_program(Run *run, const char *path, const char *text, bool show)
     diag_init(&diags, &session, &sources);
     interner_init(&names, &session);
     EvalOptions o = {.include_dirs = include_dirs, .include_dir_count = 2, .image_width = 4, .image_height = 4, .limits = eval_limits_default(),
-                     .keep_writes_in_memory = true, .on_text = on_text, .context = run};
+                     .keep_writes_in_memory = true, .on_text = on_text, .context = run, .expand_always = expand};
     read_options(text, &o, declares);
     run->status = eval_file(path, &o, &sources, &diags, &names, &parse, &scene_arena, &scene);
     run->errors = diags.error_count;
@@ -124,7 +125,7 @@ static void marked_lines(const char *printed, StrBuf *out) {
     }
 }
 
-static bool test_program(const char *path, bool show) {
+static bool test_road(const char *path, bool show, bool expand) {
     char *text = read_whole(path);
     if (!text) {
         printf("%s: cannot be read\n", path);
@@ -132,7 +133,7 @@ static bool test_program(const char *path, bool show) {
     }
     Run run = {0};
     StrBuf wanted = {0}, got = {0};
-    run_program(&run, path, text, show);
+    run_program(&run, path, text, show, expand);
     char expected_path[4096];
     snprintf(expected_path, sizeof expected_path, "%.*s.expected", (int)(strrchr(path, '.') - path), path);
     char *expected = read_whole(expected_path);
@@ -146,7 +147,7 @@ static bool test_program(const char *path, bool show) {
     const char *w = wanted.data ? wanted.data : "", *g = got.data ? got.data : "";
     bool ok = show || (strcmp(w, g) == 0 && !run.problems.size);
     if (!ok) {
-        printf("FAILED %s\n", path);
+        printf("FAILED %s%s\n", path, expand ? " (expanded)" : "");
         if (strcmp(w, g) != 0) printf("--- expected\n%s--- printed\n%s", w, g);
         if (run.problems.data) printf("%s", run.problems.data);
     }
@@ -158,6 +159,8 @@ static bool test_program(const char *path, bool show) {
     strbuf_free(&run.problems);
     return ok;
 }
+
+static bool test_program(const char *path, bool show) { return test_road(path, show, false) && (show || test_road(path, show, true)); }
 
 static int is_program(const struct dirent *entry) {
     const char *dot = strrchr(entry->d_name, '.');

@@ -81,23 +81,24 @@ static void meet(VoxelCell *cell, int axis, uint64_t rays, bool solid) {
     cell->inside[axis] ^= rays;
 }
 
-/* A row of rays across the triangle. depth_at: the plane's depth at column 0. */
+/* A row of rays across the triangle; depth along them in units of 2⁻³² voxels. */
 typedef struct RayRow {
     int row, begin, end; /* columns */
-    double depth_at, slope;
-    bool flat; /* the triangle faces the rays exactly */
+    int64_t depth, step; /* at column `begin`; per column */
 } RayRow;
 
+/* Planes so steep, or so far off, that they cannot be met within a brick but by rounding. */
+static bool fits_depth(double x) { return x > -0x1p20 && x < 0x1p20; }
+
 static void add_row(VoxelCell *cells, const RayRow *r, bool solid, const int size[3], int axis) {
-    static const int strides[3] = {1, BRICK_SIDE, BRICK_SIDE * BRICK_SIDE};
-    int u = (axis + 1) % 3, v = (axis + 2) % 3, current = -1;
-    uint64_t rays = 0, first = (uint64_t)1 << ((r->row & 7) * 8);
-    for (int column = r->begin; column < r->end; column++) {
-        double depth = r->depth_at + r->slope * (column / 8.0);
-        /* What lies in the very last plane belongs to the last cell; what only touches it, to the next brick. */
-        if (!(depth >= 0 && (depth < size[axis] || (depth == size[axis] && r->flat)))) continue;
-        int cell = int_min((int)depth, size[axis] - 1) * strides[axis] + (column >> 3) * strides[u] +
-                   (r->row >> 3) * strides[v];
+    static const int shifts[3] = {0, 3, 6}; /* of a cell's index, along each axis */
+    int along = shifts[axis], across = shifts[(axis + 1) % 3], current = -1;
+    int base = r->row >> 3 << shifts[(axis + 2) % 3];
+    uint64_t rays = 0, first = (uint64_t)1 << ((r->row & 7) * 8), limit = (uint64_t)size[axis] << 32;
+    int64_t depth = r->depth;
+    for (int column = r->begin; column < r->end; column++, depth += r->step) {
+        if ((uint64_t)depth >= limit) continue;
+        int cell = base + ((int)(depth >> 32) << along) + (column >> 3 << across);
         if (cell != current) {
             if (rays) meet(&cells[current], axis, rays, solid);
             current = cell;
@@ -115,20 +116,23 @@ static void add_rays(VoxelCell *cells, const ClipPolygon *t, bool solid, const i
     double slope_u = -clip_projected_area(t, u) / facing, slope_v = -clip_projected_area(t, v) / facing;
     double v_lo = double_min(t->at[0][v], double_min(t->at[1][v], t->at[2][v]));
     double v_hi = double_max(t->at[0][v], double_max(t->at[1][v], t->at[2][v]));
+    bool flat = slope_u == 0 && slope_v == 0;
+    if (!fits_depth(slope_u)) return;
     Edge edges[3];
     for (int i = 0; i < 3; i++) edges[i] = make_edge(t->at[i], t->at[(i + 1) % 3], u, v);
     int row_end = (int)ceil(double_min(8 * v_hi - 0.5, 8 * size[v]));
     for (int row = (int)ceil(double_max(8 * v_lo - 0.5, 0)); row < row_end; row++) {
         double at = (row + 0.5) / 8, lo, hi, offset = ray_offset(row);
         if (!cross_outline(edges, at, &lo, &hi)) continue;
-        RayRow r = {
-            .row = row,
-            .begin = (int)ceil(double_max(8 * lo - offset, 0)),
-            .end = (int)ceil(double_min(8 * hi - offset, 8 * size[u])),
-            .depth_at = t->at[0][axis] + slope_v * (at - t->at[0][v]) + slope_u * (offset / 8 - t->at[0][u]),
-            .slope = slope_u,
-            .flat = slope_u == 0 && slope_v == 0,
-        };
+        RayRow r = {.row = row,
+                    .begin = (int)ceil(double_clamp(8 * lo - offset, 0, 8 * size[u])),
+                    .end = (int)ceil(double_clamp(8 * hi - offset, 0, 8 * size[u]))};
+        double depth =
+            t->at[0][axis] + slope_v * (at - t->at[0][v]) + slope_u * ((r.begin + offset) / 8 - t->at[0][u]);
+        if (flat && depth == size[axis]) depth -= 0x1p-30; /* the very last plane belongs to the last cell */
+        if (r.begin >= r.end || !fits_depth(depth)) continue;
+        r.depth = (int64_t)(depth * 0x1p32);
+        r.step = (int64_t)(slope_u * 0x1p29);
         add_row(cells, &r, solid, size, axis);
     }
 }

@@ -290,9 +290,13 @@ static void test_degenerate_content(void **state) {
         voxel_layer_destroy(layer);
     }
     scene_triangle(&bad, a, b, huge, false);
-    layer = build(&bad, (TexelBuildOptions){.resolution = 16, .cyclic = 7}, NULL);
-    assert_non_null(layer); /* whatever it holds, it was built in finite time */
-    voxel_layer_destroy(layer);
+    scene_triangle(&bad, a, huge, scene_vertex(&bad, vec3(-3e38, .5, -1e20)), true);
+    scene_triangle(&bad, a, b, scene_vertex(&bad, vec3(.55, .5, .5 + 1e-7)), true);
+    for (unsigned cyclic = 0; cyclic < 8; cyclic++) {
+        layer = build(&bad, (TexelBuildOptions){.resolution = 16, .cyclic = cyclic}, NULL);
+        assert_non_null(layer); /* whatever it holds, it was built in finite time */
+        voxel_layer_destroy(layer);
+    }
     scene_free(&bad);
 }
 

@@ -163,7 +163,7 @@ static bool assemble(Build *b) {
         grow_buffer_free(&b->outputs[j].codes);
     }
     for (int i = 0; i < layer->levels; i++)
-        if (!voxel_level_mark_cells(layer, &layer->level[i])) return false;
+        if (!voxel_level_mark_support(layer, &layer->level[i])) return false;
     return true;
 }
 

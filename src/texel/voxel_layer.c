@@ -63,8 +63,8 @@ void voxel_layer_destroy(VoxelLayer *layer) {
     if (!layer) return;
     for (int i = 0; i < layer->levels; i++) {
         free(layer->level[i].index);
-        free(layer->level[i].cells.index);
-        free(layer->level[i].cells.bits);
+        free(layer->level[i].support.index);
+        free(layer->level[i].support.bits);
         free(layer->level[i].bricks);
         free(layer->level[i].codes);
     }
@@ -85,7 +85,7 @@ Hash128 voxel_layer_hash(const VoxelLayer *layer) {
         const VoxelLevel *l = &layer->level[i];
         hash_add(&hash, l->size, sizeof l->size);
         hash_add(&hash, l->index, voxel_level_bricks(l) * sizeof *l->index);
-        hash_add(&hash, l->cells.bits, l->cells.count * sizeof *l->cells.bits);
+        hash_add(&hash, l->support.bits, l->support.count * sizeof *l->support.bits);
         hash_add(&hash, l->bricks, l->brick_count * sizeof *l->bricks);
         hash_add(&hash, l->codes, l->code_count * sizeof *l->codes);
     }

@@ -29,12 +29,12 @@ static inline uint32_t count_bits_of_byte(uint32_t x) {
 
 /* Where interpolation can find anything, one bit for each cell of eight voxel centres. Cell (x, y, z) lies between the centres
  * of voxels x − 1 and x, …: there is one more of them than voxels. Only bricks of 8³ cells with a set bit are kept. */
-typedef struct VoxelCells {
+typedef struct VoxelSupport {
     int brick_size[3];   /* bricks of cells */
     int32_t *index;      /* per brick, x fastest; −1: all empty */
     uint64_t (*bits)[8]; /* [z] bit 8·y + x */
     size_t count;
-} VoxelCells;
+} VoxelSupport;
 
 typedef struct VoxelLevel {
     int size[3];        /* voxels */
@@ -43,7 +43,7 @@ typedef struct VoxelLevel {
     float per_side[3];  /* 1 / sides */
     float density_unit; /* 1 / the voxel's side along the longest axis of the extent */
     int32_t *index;     /* per brick, x fastest; −1: nothing in it */
-    VoxelCells cells;
+    VoxelSupport support;
     VoxelBrick *bricks;
     VoxelCode *codes; /* two more than code_count: readers look past the last before they know */
     size_t brick_count, code_count;
@@ -72,8 +72,8 @@ static inline bool voxel_layer_halves(const VoxelLayer *layer, int level, int ax
 VoxelLayer *voxel_layer_create(const TexelBuildOptions *options);
 /* Zeroed memory that belongs to the layer; NULL when there is none left. */
 void *voxel_layer_allocate(VoxelLayer *layer, size_t count, size_t size);
-/* Fills `cells` of a level from its bricks; false when memory ran out. */
-bool voxel_level_mark_cells(VoxelLayer *layer, VoxelLevel *level);
+/* Fills `support` of a level from its bricks; false when memory ran out. */
+bool voxel_level_mark_support(VoxelLayer *layer, VoxelLevel *level);
 /* Of every byte that reading depends on. */
 Hash128 voxel_layer_hash(const VoxelLayer *layer);
 

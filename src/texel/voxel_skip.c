@@ -14,19 +14,19 @@ static int cells_of(const VoxelLevel *level, const bool cyclic[3], int axis, int
     return count;
 }
 
-static size_t cell_brick(const VoxelCells *cells, int x, int y, int z) {
+static size_t cell_brick(const VoxelSupport *cells, int x, int y, int z) {
     return ((size_t)(z / BRICK_SIDE) * (size_t)cells->brick_size[1] + (size_t)(y / BRICK_SIDE)) *
                (size_t)cells->brick_size[0] +
            (size_t)(x / BRICK_SIDE);
 }
 
-static int32_t number_brick(VoxelCells *cells, size_t brick) {
+static int32_t number_brick(VoxelSupport *cells, size_t brick) {
     if (cells->index[brick] < 0) cells->index[brick] = (int32_t)cells->count++;
     return cells->index[brick];
 }
 
 static void visit_voxel(const VoxelLayer *layer, VoxelLevel *level, const int voxel[3], bool set) {
-    VoxelCells *cells = &level->cells;
+    VoxelSupport *cells = &level->support;
     int at[3][4], count[3];
     for (int k = 0; k < 3; k++) count[k] = cells_of(level, layer->cyclic, k, voxel[k], at[k]);
     for (int c = 0; c < count[0] * count[1] * count[2]; c++) {
@@ -50,7 +50,7 @@ static void visit_slice(const VoxelLayer *layer, VoxelLevel *level, const int co
     bool small = level->size[0] < BRICK_SIDE || level->size[1] < BRICK_SIDE || level->size[2] < BRICK_SIDE;
     uint64_t inner = small ? 0 : slice & inner_voxels(layer, corner, z);
     if (inner) {
-        VoxelCells *cells = &level->cells;
+        VoxelSupport *cells = &level->support;
         int32_t brick = number_brick(cells, cell_brick(cells, corner[0], corner[1], corner[2]));
         uint64_t spread = inner | inner << 1;
         spread |= spread << BRICK_SIDE;
@@ -76,8 +76,8 @@ static void visit_cells(const VoxelLayer *layer, VoxelLevel *level, bool set) {
     }
 }
 
-bool voxel_level_mark_cells(VoxelLayer *layer, VoxelLevel *level) {
-    VoxelCells *cells = &level->cells;
+bool voxel_level_mark_support(VoxelLayer *layer, VoxelLevel *level) {
+    VoxelSupport *cells = &level->support;
     size_t bricks = 1;
     for (int k = 0; k < 3; k++) {
         cells->brick_size[k] = level->size[k] / BRICK_SIDE + 1;
@@ -141,7 +141,7 @@ static float skip_in_brick(const uint64_t bits[8], const int brick[3], const flo
 /* To the first cell in which anything is, at most limit. */
 static float skip_level(const VoxelLevel *level, const bool cyclic[3], const float p[3], const float d[3],
                         float limit) {
-    const VoxelCells *cells = &level->cells;
+    const VoxelSupport *cells = &level->support;
     const int zero[3] = {0, 0, 0};
     float x[3], v[3], brick_x[3], brick_v[3];
     for (int k = 0; k < 3; k++) {

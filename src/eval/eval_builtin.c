@@ -1,6 +1,7 @@
 #include "eval/eval_state.h"
 
 #include "base/random.h"
+#include "tape/noise.h"
 
 #include <math.h>
 #include <time.h>
@@ -163,6 +164,21 @@ static Value vaxis_rotate(Eval *ev, const Node *node) {
     return vec3_value(ev, transform_point(&t, vec3(a[0], a[1], a[2])));
 }
 
+/* vturbulence(lambda, omega, octaves, point) = Σ omegaᵏ · noise(lambdaᵏ · point) */
+static Value vturbulence(Eval *ev, const Node *node) {
+    double a[3], p[3];
+    if (!builtin_argument_count(ev, node, 4, 4)) return value_error();
+    for (size_t i = 0; i < 3; i++)
+        if (!eval_float(ev, node->as.list.items[i], &a[i])) return value_error();
+    if (!vector_argument(ev, node, 3, p)) return value_error();
+    Vec3 at = vec3(p[0], p[1], p[2]), sum = vec3_splat(0);
+    int octaves = int_clamp((int)double_clamp(a[2], 0, 100), 1, 10);
+    double scale = 1, weight = 1;
+    for (int k = 0; k < octaves; k++, scale *= a[0], weight *= a[1])
+        sum = vec3_madd(sum, noise_pov_vector(vec3_scale(at, scale)), weight);
+    return vec3_value(ev, sum);
+}
+
 static Value seed_stream(Eval *ev, const Node *node) {
     double s;
     if (!builtin_argument_count(ev, node, 1, 1) || !eval_float(ev, node->as.list.items[0], &s)) return value_error();
@@ -247,7 +263,8 @@ Value eval_builtin(Eval *ev, const Node *node) {
     case KW_strlwr: case KW_strupr: case KW_substr: case KW_val: case KW_vstr: return eval_builtin_string(ev, node);
     case KW_min_extent: case KW_max_extent: return eval_extent(ev, node);
     case KW_inside: case KW_trace: return eval_geometry(ev, node);
-    case KW_vturbulence: case KW_internal: case KW_sum: case KW_prod:
+    case KW_vturbulence: return vturbulence(ev, node);
+    case KW_internal: case KW_sum: case KW_prod:
         diag_error(ev->diags, node->span, "%s() is not available here", keyword_text((Keyword)node->op));
         return value_error();
     default: return float_function(ev, node);

@@ -35,13 +35,18 @@ static double f_rounded_box(const double *p) {
         double inner = p[4 + i] - radius, over = double_max(fabs(p[i]) - inner, 0);
         sum += over * over;
     }
-    return sqrt(sum) - radius;
+    return sqrt(sum) - radius - 1e-6; /* POV-Ray's, to the last digit */
 }
 static double f_heart(const double *p) {
     double x = p[0], y = p[1], z = p[2], x2 = x * x, y2 = y * y, z2 = z * z, a = 2 * x2 + y2 + z2 - 1;
     return p[3] * (a * a * a - 0.1 * x2 * z2 * z - y2 * z2 * z);
 }
 static double f_paraboloid(const double *p) { return p[3] * (p[0] * p[0] - p[1] + p[2] * p[2]); }
+/* Algebraic surfaces of POV-Ray are limited to ±10. */
+static double f_quartic_cylinder(const double *p) {
+    double around = p[0] * p[0] + p[2] * p[2], across = p[5] * p[5];
+    return double_clamp(-p[3] * (around * p[1] * p[1] + across * around - p[4] * p[4] * across), -10, 10);
+}
 /* Kinds 1 and 2 are POV-Ray's own noises, 3 is Perlin's. */
 static double f_noise_generator(const double *p) {
     Vec3 at = vec3(p[0], p[1], p[2]);
@@ -54,7 +59,7 @@ static const struct {
     InternalEval *eval;
 } internals[] = {
     {18, 6, f_ellipsoid},   {23, 4, f_heart}, {45, 4, f_paraboloid}, {47, 3, f_ph},   {57, 3, f_r},      {60, 7, f_rounded_box},
-    {61, 4, f_sphere},      {68, 5, f_superellipsoid}, {69, 3, f_th}, {70, 5, f_torus}, {76, 3, f_noise3d}, {78, 4, f_noise_generator},
+    {61, 4, f_sphere},      {68, 5, f_superellipsoid}, {69, 3, f_th}, {70, 5, f_torus}, {56, 6, f_quartic_cylinder}, {76, 3, f_noise3d}, {78, 4, f_noise_generator},
 };
 
 static void eval_internal(const void *data, const double *in, double *out) { out[0] = (*(InternalEval *const *)data)(in); }
@@ -179,16 +184,20 @@ const KnownFunction *known_function_find(Name name) {
     return NULL;
 }
 
+bool known_function_takes(Eval *ev, const Node *call, const KnownFunction *f) {
+    size_t count = call->as.apply.list.count;
+    if (count == f->arguments) return true;
+    diag_error(ev->diags, call->span, "%s() takes %zu arguments, %zu given", f->name, f->arguments, count);
+    return false;
+}
+
 /* Called outside of functions: as a tape of constants. */
 Value call_known_function(Eval *ev, const Node *node, bool *known) {
     const KnownFunction *f = known_function_find(node->as.apply.base->as.name);
     *known = f != NULL;
     if (!f) return value_error();
     const NodeList *list = &node->as.apply.list;
-    if (list->count != f->arguments) {
-        diag_error(ev->diags, node->span, "%s() takes %zu arguments, %zu given", f->name, f->arguments, list->count);
-        return value_error();
-    }
+    if (!known_function_takes(ev, node, f)) return value_error();
     TapeBuilder *tape = tape_builder_create(&ev->temp, 0);
     TapeRef arguments[8] = {0}, out;
     for (size_t i = f->takes_noise ? 1 : 0; i < list->count; i++) {

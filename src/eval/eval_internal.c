@@ -39,7 +39,7 @@ static double f_rounded_box(const double *p) {
 }
 static double f_heart(const double *p) {
     double x = p[0], y = p[1], z = p[2], x2 = x * x, y2 = y * y, z2 = z * z, a = 2 * x2 + y2 + z2 - 1;
-    return p[3] * (a * a * a - 0.1 * x2 * z2 * z - y2 * z2 * z);
+    return -p[3] * (a * a * a - 0.1 * x2 * z2 * z - y2 * z2 * z);
 }
 static double f_paraboloid(const double *p) { return p[3] * (p[0] * p[0] - p[1] + p[2] * p[2]); }
 /* Algebraic surfaces of POV-Ray are limited to ±10. */

@@ -34,9 +34,31 @@ void arena_init(Arena *arena, MemoryBudget *budget, size_t block_size) {
     *arena = (Arena){.budget = budget, .block_size = block_size ? block_size : DEFAULT_BLOCK};
 }
 
-void arena_destroy(Arena *arena) { arena_reset_to(arena, (ArenaMark){NULL, 0}); }
+static void release_block(Arena *arena, ArenaBlock *block) {
+    size_t bytes = sizeof(ArenaBlock) + block->size;
+    arena->total -= bytes;
+    memory_budget_give_back(arena->budget, bytes);
+    free(block);
+}
+
+void arena_destroy(Arena *arena) {
+    arena_reset_to(arena, (ArenaMark){NULL, 0});
+    if (arena->spare) release_block(arena, arena->spare);
+    arena->spare = NULL;
+}
+
+static bool take_spare(Arena *arena, size_t at_least) {
+    ArenaBlock *block = arena->spare;
+    if (!block || block->size < at_least) return false;
+    arena->spare = NULL;
+    block->older = arena->block;
+    arena->block = block;
+    arena->used = 0;
+    return true;
+}
 
 static void add_block(Arena *arena, size_t at_least) {
+    if (take_spare(arena, at_least)) return;
     size_t size = size_max(at_least, arena->block_size);
     if (size > SIZE_MAX - sizeof(ArenaBlock)) memory_budget_fail(arena->budget);
     size_t bytes = sizeof(ArenaBlock) + size;
@@ -94,11 +116,9 @@ ArenaMark arena_mark(const Arena *arena) { return (ArenaMark){arena->block, aren
 void arena_reset_to(Arena *arena, ArenaMark mark) {
     while (arena->block != mark.block) {
         ArenaBlock *block = arena->block;
-        size_t bytes = sizeof(ArenaBlock) + block->size;
         arena->block = block->older;
-        arena->total -= bytes;
-        memory_budget_give_back(arena->budget, bytes);
-        free(block);
+        if (!arena->spare && block->size <= LARGEST_DOUBLED_BLOCK) arena->spare = block;
+        else release_block(arena, block);
     }
     arena->used = mark.used;
 }

@@ -28,6 +28,7 @@ typedef struct ArenaBlock ArenaBlock;
 
 typedef struct Arena {
     ArenaBlock *block;    /* newest block, linked to older ones */
+    ArenaBlock *spare;    /* kept from the last reset, so that one that crosses a block's edge again and again costs nothing; or NULL */
     size_t used;          /* bytes used in the newest block */
     size_t total;         /* bytes held by all blocks */
     size_t block_size;    /* size of the next ordinary block */

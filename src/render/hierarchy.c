@@ -16,6 +16,7 @@ typedef struct Part {
     const Look *look;
     bool casts_shadow, visible;
     TriangleSoup soup; /* world space */
+    const Vec3 *origin; /* the hierarchy's */
 } Part;
 
 typedef struct PartList {
@@ -26,6 +27,7 @@ typedef struct PartList {
 struct Hierarchy {
     RTCDevice device;
     RTCScene scene;
+    Vec3 origin;      /* Embree's floats count from here, the middle of the scene: what is far from <0, 0, 0> stays exact */
     PartList parts;   /* geomID − 1 … in the order of attachment */
     PartList planes;  /* endless: tested one by one */
 };
@@ -53,7 +55,8 @@ static const Look *make_look(Builder *b, const Texture *texture) {
 
 static Part *add_part(Builder *b, PartList *list, const Object *object, const Transform *to_world, const Look *look) {
     Part *part = arena_new(b->arena, Part);
-    *part = (Part){.object = object, .to_world = *to_world, .look = look, .casts_shadow = !object->no_shadow, .visible = !object->no_image};
+    *part = (Part){.object = object, .to_world = *to_world, .look = look, .casts_shadow = !object->no_shadow,
+                   .visible = !object->no_image, .origin = &b->hierarchy->origin};
     *list_push(b->arena, list) = part;
     return part;
 }
@@ -133,6 +136,7 @@ static void add_object(Builder *b, const Object *object, const Transform *parent
 static void bound_solid(const struct RTCBoundsFunctionArguments *args) {
     const Part *part = args->geometryUserPtr;
     Box3 box = box3_transform(&part->to_world, shape_bounds(part->object));
+    box = (Box3){vec3_sub(box.min, *part->origin), vec3_sub(box.max, *part->origin)};
     Vec3 m = vec3_max(vec3_max(vec3_negate(box.min), box.max), vec3_max(box.min, vec3_negate(box.max)));
     double margin = 1e-6 * (m.x + m.y + m.z) + 1e-30; /* floats are coarser than doubles */
     struct RTCBounds *b = args->bounds_o;
@@ -203,7 +207,7 @@ static RTCGeometry triangle_geometry(RTCDevice device, const Part *part) {
     float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), nv);
     unsigned *t = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), nt);
     for (size_t i = 0; i < nv; i++) {
-        Vec3 p = part->soup.vertices.items[i].position;
+        Vec3 p = vec3_sub(part->soup.vertices.items[i].position, *part->origin);
         v[3 * i] = (float)p.x, v[3 * i + 1] = (float)p.y, v[3 * i + 2] = (float)p.z;
     }
     for (size_t i = 0; i < nt; i++)
@@ -229,15 +233,15 @@ static void attach(Hierarchy *h, Part *part) {
     rtcReleaseGeometry(geometry);
 }
 
-/* Of everything finite: what is small in the scene is small against this. */
-static double scene_size(const Scene *scene) {
+/* Of everything finite: what is small in the scene is small against its size. */
+static Box3 scene_box(const Scene *scene) {
     Box3 box = box3_empty();
     for (size_t i = 0; i < scene->object_count; i++) {
         const Object *object = scene->objects[i];
         Box3 own = shape_bounds(object);
         if (vec3_is_finite(own.min) && vec3_is_finite(own.max)) box = box3_union(box, box3_transform(&object->transform, own));
     }
-    return box3_is_empty(box) ? 1 : fmax(vec3_length(vec3_sub(box.max, box.min)), 1e-6);
+    return box3_is_empty(box) ? (Box3){{0, 0, 0}, {1, 0, 0}} : box;
 }
 
 Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags) {
@@ -247,7 +251,9 @@ Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags) {
         diag_error(diags, (Span){0}, "Embree cannot be started on this machine");
         return NULL;
     }
-    Builder builder = {h, scene, arena, diags, 1e-4 * scene_size(scene)};
+    Box3 box = scene_box(scene);
+    h->origin = vec3_scale(vec3_add(box.min, box.max), 0.5);
+    Builder builder = {h, scene, arena, diags, 1e-4 * fmax(vec3_length(vec3_sub(box.max, box.min)), 1e-6)};
     Transform identity = transform_identity();
     for (size_t i = 0; i < scene->object_count; i++) add_object(&builder, scene->objects[i], &identity, scene->default_texture);
     h->scene = rtcNewScene(h->device);
@@ -266,8 +272,9 @@ void hierarchy_destroy(Hierarchy *h) {
 size_t hierarchy_object_count(const Hierarchy *h) { return h->parts.count + h->planes.count; }
 void *hierarchy_device(const Hierarchy *h) { return h->device; }
 
-static struct RTCRay to_embree(const Ray *ray, double t_min, double t_max, unsigned mask) {
-    return (struct RTCRay){.org_x = (float)ray->origin.x, .org_y = (float)ray->origin.y, .org_z = (float)ray->origin.z,
+static struct RTCRay to_embree(const Hierarchy *h, const Ray *ray, double t_min, double t_max, unsigned mask) {
+    Vec3f o = vec3f_from(vec3_sub(ray->origin, h->origin));
+    return (struct RTCRay){.org_x = o.x, .org_y = o.y, .org_z = o.z,
                            .dir_x = (float)ray->direction.x, .dir_y = (float)ray->direction.y, .dir_z = (float)ray->direction.z,
                            .tnear = (float)t_min, .tfar = t_max < 1e30 ? (float)t_max : INFINITY, .mask = mask};
 }
@@ -278,12 +285,22 @@ static uint32_t part_number(const Hierarchy *h, const Part *part) {
     return UINT32_MAX;
 }
 
+/* The hit again in doubles: Embree's t is as coarse as floats at the ray's origin are, and shadows start there. */
+static double on_triangle(const Part *part, unsigned triangle, const Ray *ray, double t, Vec3 *normal) {
+    const uint32_t *v = part->soup.triangles.items[triangle].vertex;
+    const SoupVertex *at = part->soup.vertices.items;
+    Vec3 p = at[v[0]].position;
+    *normal = vec3_cross(vec3_sub(at[v[1]].position, p), vec3_sub(at[v[2]].position, p));
+    double exact = vec3_dot(*normal, vec3_sub(p, ray->origin)) / vec3_dot(*normal, ray->direction);
+    return fabs(exact - t) < 1e-3 * fabs(t) ? exact : t; /* seen edge-on the plane says nothing */
+}
+
 bool hierarchy_intersect(const Hierarchy *h, const Ray *ray, double t_min, double t_max, SurfaceHit *hit) {
     HitQuery query = {.ray = ray, .t_min = t_min, .t = t_max};
     rtcInitIntersectContext(&query.context);
     for (size_t i = 0; i < h->planes.count; i++) try_part(&query, h->planes.items[i]);
     const Part *plane = query.part;
-    struct RTCRayHit rayhit = {.ray = to_embree(ray, t_min, query.t, MASK_CAMERA), .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
+    struct RTCRayHit rayhit = {.ray = to_embree(h, ray, t_min, query.t, MASK_CAMERA), .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
     rtcIntersect1(h->scene, &query.context, &rayhit);
     const Part *part = plane;
     if (rayhit.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
@@ -292,8 +309,7 @@ bool hierarchy_intersect(const Hierarchy *h, const Ray *ray, double t_min, doubl
         if (part->object) {
             hit->t = query.t;
         } else {
-            hit->t = (double)rayhit.ray.tfar;
-            query.normal = vec3((double)rayhit.hit.Ng_x, (double)rayhit.hit.Ng_y, (double)rayhit.hit.Ng_z);
+            hit->t = on_triangle(part, rayhit.hit.primID, ray, (double)rayhit.ray.tfar, &query.normal);
         }
     } else if (part) {
         hit->object = part_number(h, part);
@@ -322,7 +338,7 @@ bool hierarchy_occluded(const Hierarchy *h, const Ray *ray, double t_min, double
     rtcInitIntersectContext(&query.context);
     for (size_t i = 0; i < h->planes.count && !query.part; i++) try_part(&query, h->planes.items[i]);
     if (query.part) return true;
-    struct RTCRay shadow = to_embree(ray, t_min, t_max, MASK_SHADOW);
+    struct RTCRay shadow = to_embree(h, ray, t_min, t_max, MASK_SHADOW);
     rtcOccluded1(h->scene, &query.context, &shadow);
     return shadow.tfar < 0;
 }

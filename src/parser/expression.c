@@ -5,7 +5,7 @@ static void require(Node *n, Binding need) {
     if (n->kind == NODE_CALL && n->need < need) n->need = (uint8_t)need;
 }
 
-static Node *fold(Parser *p, Node *n) {
+Node *parser_fold(Parser *p, Node *n) {
     if (!n || !p->slow || p->in_function || p->unfolded || p->failed) return n;
     return p->host->fold(p->host->context, n);
 }
@@ -323,7 +323,7 @@ static Node *postfix(Parser *p) {
         if (p->slow && p->brackets == 0 && p->host->groups_ended(p->host->context) != groups) p->crossed = true;
         if (next == '.') n = dot(p, n);
         else if (next == '[' && (n->kind == NODE_NAME || n->kind == NODE_INDEX || n->kind == NODE_VALUE)) n = index(p, n);
-        else return fold(p, n);
+        else return parser_fold(p, n);
     }
 }
 
@@ -435,75 +435,6 @@ Node *parser_full(Parser *p) {
     return p->failed ? NULL : a;
 }
 
-bool parser_begins_color(Parser *p) {
-    const Token *t = parser_peek(p);
-    return t->kind == TOKEN_WORD && t->keyword && keyword_class((Keyword)t->keyword) == KEYWORD_COLOR &&
-           parser_peek_after(p)->kind != '{';
-}
-
-static bool is_color_component(int keyword) {
-    return keyword == KW_red || keyword == KW_green || keyword == KW_blue || keyword == KW_filter || keyword == KW_transmit ||
-           keyword == KW_alpha;
-}
-
-bool parser_begins_component(Parser *p) {
-    const Token *t = parser_peek(p);
-    if (t->kind != TOKEN_WORD || !is_color_component(t->keyword)) return false;
-    const Token *after = parser_peek_after(p);
-    return after->kind == TOKEN_NUMBER || after->kind == '(' || after->kind == '-' || after->kind == '.' ||
-           (after->kind == TOKEN_WORD && (!after->keyword || keyword_class((Keyword)after->keyword) == KEYWORD_CONSTANT ||
-                                          keyword_class((Keyword)after->keyword) == KEYWORD_FUNCTION));
-}
-
-typedef struct ColorPartList {
-    ColorPart *items;
-    size_t count, capacity;
-} ColorPartList;
-
-static Node *color_parts(Parser *p, Span begin, ColorPartList parts) {
-    Node *n = parser_node(p, NODE_COLOR, begin);
-    bool have_base = parts.count > 0, named = have_base;
-    while (!p->failed) {
-        const Token *t = parser_peek(p);
-        int keyword = t->kind == TOKEN_WORD ? t->keyword : KW_NONE;
-        if (keyword == KW_color || keyword == KW_colour) {
-            if (named || parts.count) break;
-            named = true;
-            parser_take(p);
-            continue;
-        }
-        if (is_color_component(keyword)) {
-            parser_take(p);
-        } else if (!have_base && keyword && keyword_class((Keyword)keyword) == KEYWORD_COLOR) {
-            parser_take(p);
-            have_base = true;
-        } else if (!have_base && parts.count == 0 && parser_begins_expression(p, true)) {
-            keyword = KW_color;
-            have_base = true;
-        } else {
-            break;
-        }
-        Node *e = parser_expression(p);
-        if (!e) return NULL;
-        *list_push(p->arena, &parts) = (ColorPart){(uint16_t)keyword, e};
-    }
-    if (parts.count == 0) return parser_fail(p, n->span, "expected a colour");
-    n->as.color.parts = parts.items;
-    n->as.color.count = parts.count;
-    n->span = span_join(n->span, p->last.span);
-    return fold(p, n);
-}
-
-/* color = { "color" | "colour" | ("rgb" | … | "srgbft") expression | component expression | expression }, at most one
- * expression that is not a component */
-Node *parser_color(Parser *p) { return color_parts(p, parser_peek(p)->span, (ColorPartList){0}); }
-
-Node *parser_color_from(Parser *p, Node *base) {
-    ColorPartList parts = {0};
-    *list_push(p->arena, &parts) = (ColorPart){KW_color, base};
-    return color_parts(p, base->span, parts);
-}
-
 /* What can stand for an operand. Names count after a comma; elsewhere when they are known to be values. */
 bool parser_begins_expression(Parser *p, bool after_comma) {
     const Token *t = parser_peek(p);
@@ -532,75 +463,6 @@ bool parser_begins_expression(Parser *p, bool after_comma) {
         return after_comma || !p->host->macro_is_block(p->host->context, macro);
     default: return true;
     }
-}
-
-/* function = "function" ["(" name { "," name } ")"] "{" (full { "," full } | vector | block) "}" */
-Node *parser_function(Parser *p) {
-    Token word = parser_take(p);
-    Node *n = parser_node(p, NODE_FUNCTION, word.span);
-    struct { Name *items; size_t count, capacity; } names = {0};
-    p->raw = true;
-    if (parser_accept(p, '(')) {
-        for (;;) {
-            p->raw = true;
-            if (parser_peek(p)->kind == ')') break;
-            Token name = parser_take(p);
-            if (name.kind != TOKEN_WORD) return parser_fail(p, name.span, "expected the name of a parameter");
-            *list_push(p->arena, &names) = name.as.name;
-            if (!parser_accept(p, ',')) break;
-        }
-        if (!parser_expect(p, ')', "',' or ')'")) return NULL;
-    }
-    n->as.function.parameters = names.items;
-    n->as.function.count = names.count;
-    /* function 300, 300 { … }: a resolution, for pictures made of it */
-    if (parser_peek(p)->kind != '{' && names.count == 0)
-        if (!parser_expression(p) || !parser_expect(p, ',', "'{'") || !parser_expression(p)) return NULL;
-    Parser outer = *p;
-    p->parameters = names.items;
-    p->parameter_count = names.count;
-    bool ok = parser_expect(p, '{', "'{'");
-    p->brackets = 1;
-    if (ok && parser_peek_after(p)->kind == '{') {
-        p->in_function = false; /* pigment, pattern, spline, transform: a block like any other, but the function evaluates it */
-        p->unfolded = true;
-        p->parameter_count = 0;
-    } else {
-        p->in_function = true;
-    }
-    while (ok && !p->failed && parser_peek(p)->kind != '}') {
-        Node *e = parser_full(p);
-        if (!e) ok = false;
-        else *list_push(p->arena, &n->as.function.body) = e;
-        if (!parser_accept(p, ',')) break;
-    }
-    p->in_function = outer.in_function;
-    p->unfolded = outer.unfolded;
-    p->parameters = outer.parameters;
-    p->parameter_count = outer.parameter_count;
-    if (!ok || !parser_expect(p, '}', "an operator or '}'")) return NULL;
-    p->brackets = outer.brackets;
-    n->span = span_join(word.span, p->last.span);
-    return n;
-}
-
-/* array = "array" ["mixed"] { "[" expression "]" } ["{" body "}"] */
-Node *parser_array(Parser *p) {
-    Token word = parser_take(p);
-    Node *n = parser_node(p, NODE_ARRAY, word.span);
-    p->brackets++;
-    while (parser_accept(p, '[')) {
-        Node *e = parser_expression(p);
-        if (!e || !parser_expect(p, ']', "']'")) return NULL;
-        *list_push(p->arena, &n->as.array.dimensions) = e;
-    }
-    p->brackets--;
-    if (parser_peek(p)->kind == '{') {
-        n->as.array.body = parser_body(p, NULL);
-        if (!n->as.array.body) return NULL;
-    }
-    n->span = span_join(word.span, p->last.span);
-    return n;
 }
 
 Node *parser_block(Parser *p) {

@@ -107,6 +107,8 @@ Node *parser_node(Parser *parser, NodeKind kind, Span begin);
 bool parser_enter(Parser *parser);
 static inline void parser_leave(Parser *parser) { parser->depth--; }
 NameClass parser_classify(Parser *parser, Name name, const void **macro);
+/* On the slow road, the finished operand evaluated. */
+Node *parser_fold(Parser *parser, Node *node);
 Node *parser_expression(Parser *parser); /* additive */
 Node *parser_full(Parser *parser);       /* with comparisons and ?: */
 Node *parser_color(Parser *parser);

@@ -1,0 +1,71 @@
+/* Colour expressions. */
+#include "parser/parser.h"
+
+bool parser_begins_color(Parser *p) {
+    const Token *t = parser_peek(p);
+    return t->kind == TOKEN_WORD && t->keyword && keyword_class((Keyword)t->keyword) == KEYWORD_COLOR &&
+           parser_peek_after(p)->kind != '{';
+}
+
+static bool is_color_component(int keyword) {
+    return keyword == KW_red || keyword == KW_green || keyword == KW_blue || keyword == KW_filter || keyword == KW_transmit ||
+           keyword == KW_alpha;
+}
+
+bool parser_begins_component(Parser *p) {
+    const Token *t = parser_peek(p);
+    if (t->kind != TOKEN_WORD || !is_color_component(t->keyword)) return false;
+    const Token *after = parser_peek_after(p);
+    return after->kind == TOKEN_NUMBER || after->kind == '(' || after->kind == '-' || after->kind == '.' ||
+           (after->kind == TOKEN_WORD && (!after->keyword || keyword_class((Keyword)after->keyword) == KEYWORD_CONSTANT ||
+                                          keyword_class((Keyword)after->keyword) == KEYWORD_FUNCTION));
+}
+
+typedef struct ColorPartList {
+    ColorPart *items;
+    size_t count, capacity;
+} ColorPartList;
+
+static Node *color_parts(Parser *p, Span begin, ColorPartList parts) {
+    Node *n = parser_node(p, NODE_COLOR, begin);
+    bool have_base = parts.count > 0, named = have_base;
+    while (!p->failed) {
+        const Token *t = parser_peek(p);
+        int keyword = t->kind == TOKEN_WORD ? t->keyword : KW_NONE;
+        if (keyword == KW_color || keyword == KW_colour) {
+            if (named || parts.count) break;
+            named = true;
+            parser_take(p);
+            continue;
+        }
+        if (is_color_component(keyword)) {
+            parser_take(p);
+        } else if (!have_base && keyword && keyword_class((Keyword)keyword) == KEYWORD_COLOR) {
+            parser_take(p);
+            have_base = true;
+        } else if (!have_base && parts.count == 0 && parser_begins_expression(p, true)) {
+            keyword = KW_color;
+            have_base = true;
+        } else {
+            break;
+        }
+        Node *e = parser_expression(p);
+        if (!e) return NULL;
+        *list_push(p->arena, &parts) = (ColorPart){(uint16_t)keyword, e};
+    }
+    if (parts.count == 0) return parser_fail(p, n->span, "expected a colour");
+    n->as.color.parts = parts.items;
+    n->as.color.count = parts.count;
+    n->span = span_join(n->span, p->last.span);
+    return parser_fold(p, n);
+}
+
+/* color = { "color" | "colour" | ("rgb" | … | "srgbft") expression | component expression | expression }, at most one
+ * expression that is not a component */
+Node *parser_color(Parser *p) { return color_parts(p, parser_peek(p)->span, (ColorPartList){0}); }
+
+Node *parser_color_from(Parser *p, Node *base) {
+    ColorPartList parts = {0};
+    *list_push(p->arena, &parts) = (ColorPart){KW_color, base};
+    return color_parts(p, base->span, parts);
+}

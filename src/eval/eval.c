@@ -11,10 +11,25 @@ EvalLimits eval_limits_default(void) {
 
 /* ---- notes of the include and macro stack ---- */
 
+/* The macro whose text holds the span although no call of it is going on: its text was expanded into what is blamed. */
+static const Macro *expanded_macro(const Eval *ev, Span span) {
+    for (const Macro *m = ev->macros; m; m = m->next) {
+        const TokenList *list = m->body.tokens;
+        if (!m->last_call.file || list->file->id != span.file || m->body.begin >= m->body.end) continue;
+        if (span.begin < list->items[m->body.begin].span.begin || span.begin > list->items[m->body.end - 1].span.end) continue;
+        for (const CallRecord *c = ev->calls; c; c = c->outer)
+            if (c->macro == m->name) return NULL;
+        return m;
+    }
+    return NULL;
+}
+
 static void add_call_notes(void *context, DiagList *list, Diagnostic *diagnostic) {
     const Eval *ev = context;
     enum { MOST_NOTES = 8 };
     int count = 0;
+    const Macro *expanded = expanded_macro(ev, diagnostic->span);
+    if (expanded) diag_note(list, diagnostic, expanded->last_call, "in macro '%s', called here", expanded->name->text);
     for (const CallRecord *c = ev->calls; c; c = c->outer, count++) {
         if (count == MOST_NOTES && c->outer) {
             diag_note(list, diagnostic, c->span, "and further calls around this one");

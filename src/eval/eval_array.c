@@ -2,7 +2,7 @@
 
 /* The first row; NULL where the elements are no arrays (any more: each element may be set to anything). */
 static const Array *first_row(const Array *array) {
-    if (!array->rows || array->count == 0 || !array->items[0].set || array->items[0].value.kind != VALUE_ARRAY) return NULL;
+    if (array->count == 0 || !array->items[0].set || array->items[0].value.kind != VALUE_ARRAY) return NULL;
     return array->items[0].value.as.array;
 }
 

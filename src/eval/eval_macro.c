@@ -3,10 +3,12 @@
 void run_define_macro(Eval *ev, const Node *node) {
     Macro *m = arena_new(ev->parse, Macro);
     m->name = node->as.macro.name;
-    m->parameters = node->as.macro.parameters;
     m->parameter_count = node->as.macro.count;
+    m->parameters = arena_copy(ev->parse, node->as.macro.parameters, m->parameter_count * sizeof(Name)); /* the tree may be a passing one */
     m->body = node->as.macro.body;
     m->whole = !node->as.macro.unbalanced && parser_body_is_whole(&m->body);
+    m->next = ev->macros;
+    ev->macros = m;
     Value v = {.kind = VALUE_MACRO, .as.macro = m};
     slot_set(ev, scope_declare(ev, m->name, false), &v);
     ev->macro_stamp++;
@@ -180,6 +182,7 @@ bool macro_enter(Eval *ev, const Macro *m, const NodeList *arguments, Span span,
         Slot *slot = scope_bind(ev, m->parameters[i], passed[i].reference);
         if (!passed[i].reference) slot_set(ev, slot, &passed[i].value);
     }
+    ((Macro *)(uintptr_t)m)->last_call = span;
     *record = (CallRecord){.outer = ev->calls, .macro = m->name, .span = span};
     ev->calls = record;
     ev->call_depth++;

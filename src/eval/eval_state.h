@@ -48,6 +48,8 @@ struct Macro {
     uint32_t stamp;
     bool is_block;           /* its value is a block: an item of its own, never an argument of a word before it */
     bool measuring;
+    Span last_call;          /* for notes of errors that show only after the call, when its text is part of a larger expression */
+    struct Macro *next;      /* of all that were defined */
 };
 
 typedef struct CallRecord CallRecord;
@@ -144,6 +146,7 @@ struct Eval {
     Scope *scope;
     uint32_t macro_stamp; /* counts definitions of macros */
     CallRecord *calls;
+    Macro *macros;
     uint32_t call_depth, include_depth;
     uint64_t body, body_count; /* the run of a body that is going on, and how many there were */
     int nesting; /* C stack: bodies and expressions within each other */

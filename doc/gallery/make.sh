@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# make.sh [VTS]: draws every scene of examples/ small, as doc/gallery/NAME.jpg.
+# VTS is the program; without it, the one in build/ is taken, else the newest in build*/.
+set -eu -o pipefail
+gallery=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+root=$gallery/../..
+
+find_program() {
+  if [ -x "$root/build/vts" ]; then echo "$root/build/vts"; return; fi
+  ls -t "$root"/build*/vts 2>/dev/null | head -n 1
+}
+
+# Not all pictures have one shape.
+size_of() {
+  case $1 in
+    meadow_ball) echo 400x400 ;;
+    *) echo 480x360 ;;
+  esac
+}
+
+program=${1:-$(find_program)}
+[ -n "$program" ] || { echo "make.sh: no vts found; build it, or name it: make.sh path/to/vts" >&2; exit 2; }
+
+for scene in "$root"/examples/*.vts; do
+  name=$(basename "$scene" .vts)
+  picture=$gallery/$name.jpg
+  "$program" render "$scene" --size "$(size_of "$name")" --output "$picture" --progress none
+  bytes=$(wc -c <"$picture")
+  [ "$bytes" -lt 200000 ] || { echo "make.sh: $name.jpg has $bytes bytes; a picture of the gallery has less than 200000" >&2; exit 1; }
+  echo "$name.jpg $bytes bytes"
+done

@@ -71,8 +71,11 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     out->quadrature = quadrature_of(scene->settings.quadrature);
     out->shadow_aperture = scene->settings.shadow_aperture;
     OpacityModel opacity = opacity_of(scene->settings.opacity_model);
-    out->march = (MarchSettings){.opacity = opacity, .voxel_width = 1, .step = 1};
+    /* Voxels half as wide as the cone: with linear interpolation between their centres that is the cone's own blur, and finer
+     * levels hold more air to skip (measured: smaller error and less time than voxels as wide as the cone). */
+    out->march = (MarchSettings){.opacity = opacity, .voxel_width = 0.5f, .step = 1.5f};
     out->shadow_march = out->march;
+    out->shadow_march.step = 2;
     out->hierarchy = hierarchy_build(scene, arena, diags);
     if (!out->hierarchy) return COMPILE_FAILED;
     SkinList skins = {0};

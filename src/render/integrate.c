@@ -8,7 +8,8 @@
 struct ShadeRecord {
     float weight;     /* transmittance before × opacity of the segment */
     double t;
-    float voxel_world;
+    double clearance; /* from here to where shadows of other matter begin */
+    double tolerance; /* of finding the place in the skin again */
     uint32_t skin;
     SkinPoint point;  /* where shadows start: a guess */
     Vec3f ambient;    /* light that no shadow takes away */
@@ -18,7 +19,7 @@ struct ShadeRecord {
 static const float OPAQUE_BELOW = 1.0f / 1024;
 /* Light that shadows could take away is tested where it makes more than this of a pixel. */
 static const float SHADOW_WORTH = 1.0f / 1024;
-enum { MOST_SHADOW_POINTS = 4 };
+enum { MOST_SHADOW_POINTS = 2 };
 
 void tracer_init(Tracer *tracer, const CompiledScene *compiled, Arena *arena) {
     size_t skins = compiled->skin_count + 1; /* never zero */
@@ -29,6 +30,10 @@ void tracer_init(Tracer *tracer, const CompiledScene *compiled, Arena *arena) {
                        .has_segment = arena_new_array(arena, bool, skins),
                        .records = arena_new_array(arena, ShadeRecord, MOST_SHADE_RECORDS),
                        .direct = arena_new_array(arena, Vec3f, MOST_SHADE_RECORDS * (compiled->scene->light_count + 1))};
+    for (size_t i = 0; i < compiled->skin_count; i++) {
+        skin_march_init(&tracer->marches[i], &compiled->skins[i], arena);
+        skin_march_init(&tracer->shadow_marches[i], &compiled->skins[i], arena);
+    }
 }
 
 /* ---- lights ---- */
@@ -79,9 +84,9 @@ static float skin_transmittance(Tracer *tr, const Cone *cone, double t_max, int 
     for (size_t i = 0; i < scene->skin_count && transmittance > OPAQUE_BELOW; i++) {
         SkinMarch *march = &tr->shadow_marches[i];
         if ((int)i == own) {
-            skin_march_begin_at(march, &scene->skins[i], cone, point, offset, t_max, &scene->shadow_march, &tr->counters, false);
+            skin_march_begin_at(march, cone, point, offset, t_max, &scene->shadow_march, &tr->counters, false);
         } else {
-            skin_march_begin(march, &scene->skins[i], cone, 0, t_max, &scene->shadow_march, &tr->counters, false);
+            skin_march_begin(march, cone, 0, t_max, &scene->shadow_march, &tr->counters, false);
         }
         SkinSegment segment;
         while (transmittance > OPAQUE_BELOW && skin_march_next(march, &segment)) transmittance *= segment.transmittance;
@@ -138,7 +143,7 @@ static size_t gather(Tracer *tr, const Cone *cone, double t_max, float *transmit
     size_t lights = scene->scene->light_count, count = 0;
     LightRay rays[64];
     for (size_t i = 0; i < scene->skin_count; i++) {
-        skin_march_begin(&tr->marches[i], &scene->skins[i], cone, 0, t_max, &scene->march, &tr->counters, true);
+        skin_march_begin(&tr->marches[i], cone, 0, t_max, &scene->march, &tr->counters, true);
         tr->has_segment[i] = skin_march_next(&tr->marches[i], &tr->segments[i]);
     }
     *transmittance = 1;
@@ -152,8 +157,8 @@ static size_t gather(Tracer *tr, const Cone *cone, double t_max, float *transmit
         double t = (segment->t0 + segment->t1) / 2;
         Vec3 point = cone_point(cone, t);
         for (size_t l = 0; l < lights && l < VTS_ARRAY_COUNT(rays); l++) rays[l] = light_ray(&scene->scene->lights[l], point);
-        *record = (ShadeRecord){.weight = *transmittance * (1 - segment->transmittance), .t = t, .voxel_world = segment->voxel_world,
-                                .skin = (uint32_t)nearest,
+        *record = (ShadeRecord){.weight = *transmittance * (1 - segment->transmittance), .t = t, .clearance = (double)segment->clearance,
+                                .tolerance = 0.02 * (double)segment->voxel_world, .skin = (uint32_t)nearest,
                                 .point = skin_march_guess(&tr->marches[nearest], t)};
         record->ambient = shade_segment(tr, cone, segment, rays, &tr->direct[count * (lights + 1)]);
         *transmittance *= segment->transmittance;
@@ -171,11 +176,10 @@ static float record_visibility(Tracer *tr, const Light *light, const Cone *cone,
     LightRay ray = light_ray(light, point);
     SkinPoint place = r->point;
     bool seam = false;
-    SkinSide side = skin_locate(&tr->compiled->skins[r->skin], point, 0.02 * (double)r->voxel_world, &place, &seam);
+    SkinSide side = skin_locate(&tr->compiled->skins[r->skin], point, r->tolerance, &place, &seam);
     place.w = double_clamp(place.w, 0, 1);
     int own = side == SKIN_LOST || side == SKIN_BORDER ? -1 : (int)r->skin;
-    return visibility(tr, light, &ray, point, cone_diameter(cone, r->t), cone->spread, own, &place, (double)r->voxel_world,
-                      (double)r->voxel_world);
+    return visibility(tr, light, &ray, point, cone_diameter(cone, r->t), cone->spread, own, &place, r->clearance, r->clearance);
 }
 
 /* Light of one source over the records with shadows. Visibility is found at a few records, at equal shares of the light
@@ -189,7 +193,7 @@ static Vec3f add_shadowed(Tracer *tr, const Cone *cone, size_t count, size_t lig
     Vec3f sum = {0, 0, 0};
     if (total <= 0) return sum;
     bool worth = total > SHADOW_WORTH && !light->shadowless;
-    int points = worth ? int_clamp(1 + (int)(total * 16), 2, MOST_SHADOW_POINTS) : 0;
+    int points = worth ? int_clamp(1 + (int)(total * 16), 1, MOST_SHADOW_POINTS) : 0;
     if (worth && count == 1) points = 1;
     float seen[MOST_SHADOW_POINTS + 1], at[MOST_SHADOW_POINTS + 1];
     float passed = 0;

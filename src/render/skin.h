@@ -27,6 +27,7 @@ typedef struct SkinCell {
     BilinearVec foot, height;
     Bilinear u, v, w_foot, w_tip;
     SurfaceNeighbour neighbour[4];
+    Box3 bounds;
     bool triangle;
 } SkinCell;
 
@@ -87,6 +88,7 @@ typedef struct SkinPoint {
 
 /* World position, and the columns of the Jacobian ∂world/∂(a, b, w) (may be NULL). */
 Vec3 skin_cell_position(const SkinCell *cell, double a, double b, double w, Mat3 *jacobian);
+Box3 skin_cell_bounds(const SkinCell *cell);
 /* Finds (a, b, w) of the world point by Newton's method from the guess in *point, within or near the cell; `tolerance` in
  * world units. False when it does not converge. The result may lie outside the cell. */
 bool skin_cell_invert(const SkinCell *cell, Vec3 world, double tolerance, SkinPoint *point);

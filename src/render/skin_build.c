@@ -215,8 +215,8 @@ static void make_cells(const Skin *skin, const SurfaceMesh *mesh, Arena *arena, 
     for (size_t i = 0; i < mesh->cell_count; i++) {
         const SurfaceCell *in = &mesh->cells[i];
         SkinCell *cell = &out->cells[i];
-        Vec3 foot[4], height[4];
-        double u[4], v[4], w_foot[4], w_tip[4];
+        Vec3 foot[4] = {{0}}, height[4] = {{0}};
+        double u[4] = {0}, v[4] = {0}, w_foot[4] = {0}, w_tip[4] = {0};
         cell->triangle = in->corner_count == 3;
         for (int k = 0; k < in->corner_count; k++) {
             const SkinVertex *at = &vertex[in->vertex[k]];
@@ -234,6 +234,7 @@ static void make_cells(const Skin *skin, const SurfaceMesh *mesh, Arena *arena, 
         cell->w_foot = fit_scalar(w_foot, cell->triangle);
         cell->w_tip = fit_scalar(w_tip, cell->triangle);
         memcpy(cell->neighbour, mesh->neighbours[i], sizeof cell->neighbour);
+        cell->bounds = skin_cell_bounds(cell);
         folded += cell_folds(cell);
     }
     if (folded)
@@ -258,21 +259,17 @@ static bool outside_view(const View *view, Box3 box) {
     return false;
 }
 
-/* Voxels along the longest side that the nearest visible cell asks for: one for each footprint of a pixel. */
-static double needed_resolution(const CompiledSkin *skin, const View *view, Vec3f extent) {
+/* Voxels along the longest side that the nearest visible cell asks for, at so many footprints of a pixel each. */
+static double needed_resolution(const CompiledSkin *skin, const View *view, Vec3f extent, double voxel_width) {
     double needed = 1;
     for (size_t i = 0; i < skin->cell_count; i++) {
         const SkinCell *cell = &skin->cells[i];
-        Box3 box = box3_empty();
-        for (int k = 0; k < 8; k++) {
-            if (cell->triangle && (k & 3) == 3) continue;
-            box = box3_add_point(box, skin_cell_position(cell, k & 1, (k >> 1) & 1, (k >> 2) & 1, NULL));
-        }
+        Box3 box = cell->bounds;
         if (outside_view(view, box)) continue;
         Vec3 nearest = vec3_max(box.min, vec3_min(box.max, view->camera.location));
         double distance = vec3_length(vec3_sub(nearest, view->camera.location));
         Cone cone = view_cone(view, view->width / 2.0, view->height / 2.0, 1);
-        double footprint = cone_diameter(&cone, distance);
+        double footprint = cone_diameter(&cone, distance) * voxel_width;
         SkinPoint middle = {(int32_t)i, cell->triangle ? 1.0 / 3 : 0.5, cell->triangle ? 1.0 / 3 : 0.5, 0.5};
         TexturePlace place = skin_texture_place(cell, &middle);
         double volume = fabs(vec3_dot(place.grad_u, vec3_cross(place.grad_v, place.grad_w))) * (double)(extent.x * extent.y * extent.z);
@@ -300,7 +297,7 @@ static bool place_texel(const Skin *skin, size_t index, const CompileOptions *op
     placed->seed = random_hash(skin->jitter.seed, index, 0, 0);
     for (size_t k = 0; k < family; k++) {
         const TexelDef *def = in->texel->choice_count ? in->texel->choices[k] : in->texel;
-        int needed = (int)needed_resolution(out, &compiled->view, texel_extent(def));
+        int needed = (int)needed_resolution(out, &compiled->view, texel_extent(def), (double)compiled->march.voxel_width);
         const BuiltTexel *texel = texel_build(def, needed, options, compiled, diags);
         if (!texel) return false;
         if (texel->matter_count == 0) continue;

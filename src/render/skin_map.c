@@ -183,7 +183,7 @@ static void cross_wall(Crossings *out, const Ray *ray, const SkinCell *cell, dou
     cross_patch(out, ray, p0, vec3_sub(p1, p0), h0, vec3_sub(h1, h0), t_min, t_max);
 }
 
-static Box3 cell_bounds(const SkinCell *cell) {
+Box3 skin_cell_bounds(const SkinCell *cell) {
     Box3 box = box3_empty();
     for (int i = 0; i < 4; i++) {
         double a = i & 1, b = (i >> 1) & 1;
@@ -205,7 +205,7 @@ static bool cell_holds(const SkinCell *cell, Vec3 world, double tolerance, SkinP
 
 /* The first t of the ray within this cell: the walls cut the ray into pieces; the first piece whose middle lies inside. */
 static bool enter_cell(const SkinCell *cell, const Ray *ray, double t_min, double t_max, SkinPoint *point, double *t) {
-    Box3 box = cell_bounds(cell);
+    Box3 box = cell->bounds;
     double lo = t_min, hi = t_max;
     if (!box3_clip_ray(box, ray, &lo, &hi)) return false;
     Crossings c = {.count = 0};
@@ -251,7 +251,7 @@ typedef struct EnterQuery {
 
 static void bound_cell(const struct RTCBoundsFunctionArguments *args) {
     const CompiledSkin *skin = args->geometryUserPtr;
-    Box3 box = cell_bounds(&skin->cells[args->primID]);
+    Box3 box = skin->cells[args->primID].bounds;
     /* Floats are coarser than doubles: grow by more than their rounding. */
     Vec3 size = vec3_max(vec3_max(vec3_negate(box.min), box.max), vec3_max(box.min, vec3_negate(box.max)));
     double margin = 1e-6 * (size.x + size.y + size.z) + 1e-30;

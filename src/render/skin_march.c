@@ -1,15 +1,19 @@
 #include "render/skin_march.h"
 
-enum { MOST_ENTRIES = 64, MOST_HALVINGS = 6, SPAN_STEPS = 24, BORDER_BISECTIONS = 12 };
+enum { MOST_ENTRIES = 64, MOST_HALVINGS = 6, SPAN_STEPS = 48, BORDER_BISECTIONS = 12 };
 /* A step crosses at most this share of the layer, so that what is homogeneous on the large is not stepped over. */
 static const double LAYER_STEP = 0.3;
 /* A span crosses at most this many tiles, and bends at most this many voxels from its chord: the quadratic through its
  * middle takes the bend along, what it misses is of third order. */
 static const double SPAN_TILES = 1.0, SPAN_BEND_VOXELS = 4;
 
-static void begin(SkinMarch *m, const CompiledSkin *skin, const Cone *cone, double t_min, double t_max,
-                  const MarchSettings *settings, TraceCounters *counters, bool shade) {
+void skin_march_init(SkinMarch *m, const CompiledSkin *skin, Arena *arena) {
     m->skin = skin;
+    m->tiles = arena_new_array(arena, TileCopies, skin->texel_count * TILES_KEPT);
+}
+
+static void begin(SkinMarch *m, const Cone *cone, double t_min, double t_max, const MarchSettings *settings,
+                  TraceCounters *counters, bool shade) {
     m->cone = cone;
     m->settings = settings;
     m->counters = counters;
@@ -18,10 +22,9 @@ static void begin(SkinMarch *m, const CompiledSkin *skin, const Cone *cone, doub
     m->t = t_min;
     m->t_max = t_max;
     m->entries = 0;
+    m->number++;
     m->span.t1 = -VTS_INFINITY;
     m->span.leaves = true;
-    for (size_t i = 0; i < skin->texel_count; i++)
-        for (int k = 0; k < TILES_KEPT; k++) m->tiles[i][k].count = -1;
 }
 
 /* ---- spans ---- */
@@ -41,15 +44,18 @@ static VoxelFit fit_voxels(const TexturePlace *place, Vec3f extent, float finest
 static void fit_span(const SkinMarch *m, const TexturePlace *place, double t, MarchSpan *span) {
     Vec3 d = m->cone->direction;
     double width = cone_diameter(m->cone, t) * (double)m->settings->voxel_width;
-    float side = INFINITY;
+    float side = INFINITY, finest = INFINITY;
     for (size_t i = 0; i < m->skin->texel_count; i++) {
         const PlacedTexel *placed = &m->skin->texels[i];
         float speed;
         span->fits[i] = fit_voxels(place, placed->finest_extent, placed->finest_voxel, d, width, &speed);
-        if (speed > 0) side = float_min(side, span->fits[i].voxel / speed);
+        if (!(speed > 0)) continue;
+        side = float_min(side, span->fits[i].voxel / speed);
+        finest = float_min(finest, placed->finest_voxel / speed);
     }
     double layer_rate = fabs(vec3_dot(place->grad_layer, d));
     span->voxel_world = side;
+    span->finest_world = finest;
     span->step = double_min((double)(side * m->settings->step), layer_rate > 0 ? LAYER_STEP / layer_rate : VTS_INFINITY);
     if (!isfinite(span->step)) span->step = double_max(1e-6, width); /* no extent along the cone: a degenerate box */
 }
@@ -102,7 +108,8 @@ static bool try_span(SkinMarch *m, double length, bool shortest) {
     MarchSpan *span = &m->span;
     Vec3 d = m->cone->direction;
     double t0 = m->t, t1 = t0 + length, tm = t0 + length / 2;
-    double tolerance = 0.02 * double_max(cone_diameter(m->cone, t0), 1e-4 * length) + 1e-9 * length;
+    /* Of the residual before the last Newton step, which squares it: what is left is far below the footprint. */
+    double tolerance = 0.2 * double_max(cone_diameter(m->cone, t0), 1e-4 * length) + 1e-9 * length;
     SkinPoint middle = guess(&m->point, &m->place, d, length / 2);
     bool seam = false;
     SkinSide side_m = skin_locate(m->skin, cone_point(m->cone, tm), tolerance, &middle, &seam);
@@ -176,16 +183,16 @@ static bool enter(SkinMarch *m) {
     return true;
 }
 
-void skin_march_begin(SkinMarch *m, const CompiledSkin *skin, const Cone *cone, double t_min, double t_max,
-                      const MarchSettings *settings, TraceCounters *counters, bool shade) {
-    begin(m, skin, cone, t_min, t_max, settings, counters, shade);
+void skin_march_begin(SkinMarch *m, const Cone *cone, double t_min, double t_max, const MarchSettings *settings,
+                      TraceCounters *counters, bool shade) {
+    begin(m, cone, t_min, t_max, settings, counters, shade);
 }
 
-void skin_march_begin_at(SkinMarch *m, const CompiledSkin *skin, const Cone *cone, const SkinPoint *point, double t_min,
-                         double t_max, const MarchSettings *settings, TraceCounters *counters, bool shade) {
-    begin(m, skin, cone, 0, t_max, settings, counters, shade);
+void skin_march_begin_at(SkinMarch *m, const Cone *cone, const SkinPoint *point, double t_min, double t_max,
+                         const MarchSettings *settings, TraceCounters *counters, bool shade) {
+    begin(m, cone, 0, t_max, settings, counters, shade);
     m->point = *point;
-    m->place = skin_texture_place(&skin->cells[point->cell], point);
+    m->place = skin_texture_place(&m->skin->cells[point->cell], point);
     m->inside = true;
     if (next_span(m)) m->t = double_max(m->t, t_min);
 }
@@ -221,15 +228,15 @@ static Vec3f wrap(const BuiltTexel *texel, Vec3f p) {
 static TileCopies *copies_at(SkinMarch *m, size_t i, int64_t iu, int64_t iv) {
     const PlacedTexel *placed = &m->skin->texels[i];
     if (placed->alike) iu = iv = 0;
-    TileCopies *tile = &m->tiles[i][(iu & 1) | (iv & 1) << 1];
-    if (tile->count >= 0 && tile->iu == iu && tile->iv == iv) return tile;
-    *tile = (TileCopies){.iu = iu, .iv = iv};
+    TileCopies *tile = &m->tiles[i * TILES_KEPT + (size_t)((iu & 3) | (iv & 3) << 2)];
+    if (tile->placed == placed && tile->iu == iu && tile->iv == iv) return tile;
+    tile->placed = placed;
+    tile->iu = iu;
+    tile->iv = iv;
+    tile->count = 0;
     int candidates = (2 * placed->reach + 1) * (2 * placed->reach + 1);
     for (int k = 0; k < candidates; k++)
-        if (texel_copy_near(placed, iu, iv, k, &tile->copies[tile->count].copy)) {
-            tile->copies[tile->count].clear_until = -VTS_INFINITY;
-            tile->count++;
-        }
+        if (texel_copy_near(placed, iu, iv, k, &tile->copies[tile->count].copy)) tile->copies[tile->count++].cone = 0;
     return tile;
 }
 
@@ -291,10 +298,11 @@ static double empty_way(SkinMarch *m, double t) {
         TileCopies *tile = copies_at(m, i, iu, iv);
         for (int c = 0; c < tile->count && gap > 0; c++) {
             CopyOnWay *on_way = &tile->copies[c];
-            if (on_way->clear_until <= t) {
+            if (on_way->cone != m->number || on_way->clear_until <= t) {
                 const TexelCopy *copy = &on_way->copy;
                 float free_way = copy_gap(copy, to_copy(copy, x), rate_to_copy(copy, rate), &span->fits[i], placed->cyclic, (float)rest);
                 on_way->clear_until = t + (double)free_way;
+                on_way->cone = m->number;
             }
             gap = double_min(gap, on_way->clear_until - t);
         }
@@ -331,12 +339,13 @@ static void sample_copy(SkinMarch *m, size_t i, const TexelCopy *copy, StepSampl
     Vec3f at = wrap(texel, to_copy(copy, step->middle)), along = rate_to_copy(copy, step->difference);
     /* Members of a family may be built to different resolutions. */
     float lod = float_clamp(m->span.fits[i].lod - log2f(texel->voxel / placed->finest_voxel), 0, (float)(texel->levels - 1));
-    float h = texel->voxel * exp2f(lod);
+    float finest = 1 / (float)texel->built, h = finest * exp2f(lod); /* along the longest side, as opacity.h wants it */
     for (size_t k = 0; k < texel->matter_count; k++) {
         VoxelSample v;
         m->counters->voxels_visited++;
         if (!voxel_layer_sample_lod(texel->matter[k].voxels, lod, at, &v)) continue;
-        float transmittance = opacity_transmittance(m->settings->opacity, &v, h, along);
+        float transmittance = m->settings->opacity == OPACITY_MEAN ? opacity_transmittance_mean(&v, finest, h, along)
+                                                                   : opacity_transmittance(m->settings->opacity, &v, h, along);
         if (transmittance >= 1) continue;
         float tau = -logf(float_max(transmittance, 1e-12f));
         step->depth += tau;
@@ -360,13 +369,16 @@ static void sample(SkinMarch *m, double t0, double t1, SkinSegment *out) {
     for (size_t i = 0; i < m->skin->texel_count; i++) {
         TileCopies *tile = copies_at(m, i, iu, iv);
         for (int c = 0; c < tile->count; c++)
-            if (tile->copies[c].clear_until < t1) sample_copy(m, i, &tile->copies[c].copy, &step, out);
+            if (tile->copies[c].cone != m->number || tile->copies[c].clear_until < t1) sample_copy(m, i, &tile->copies[c].copy, &step, out);
     }
     for (int i = 0; i < out->hit_count; i++) out->hits[i].share /= step.depth;
     out->t0 = t0;
     out->t1 = t1;
     out->transmittance = expf(-step.depth);
     out->voxel_world = span->voxel_world;
+    /* Blur spreads a blade over the voxels used, and it must not shadow itself; but where many blades share a voxel they do
+     * shadow each other, so that the distance stays within a few of the finest voxels, which resolve single blades. */
+    out->clearance = float_min(span->voxel_world, 2 * span->finest_world);
 }
 
 bool skin_march_next(SkinMarch *m, SkinSegment *segment) {

@@ -31,6 +31,7 @@ typedef struct SkinSegment {
     double t0, t1;
     float transmittance;  /* of the whole segment, < 1 */
     float voxel_world;    /* side of the voxels used, in scene units, along the cone */
+    float clearance;      /* length over which matter here belongs to what is seen, not to what shadows it */
     MatterHit hits[MOST_MATTER_HITS];
     int hit_count;
 } SkinSegment;
@@ -38,16 +39,18 @@ typedef struct SkinSegment {
 /* A copy met on the way, and up to which t nothing of it can be met. */
 typedef struct CopyOnWay {
     TexelCopy copy;
+    uint32_t cone;      /* the number of the cone that clear_until holds for */
     double clear_until;
 } CopyOnWay;
 
 /* The copies around one tile. */
 typedef struct TileCopies {
+    const PlacedTexel *placed; /* NULL: nothing kept */
     int64_t iu, iv;
-    int count; /* -1: nothing kept */
+    int count;
     CopyOnWay copies[MOST_COPIES];
 } TileCopies;
-enum { TILES_KEPT = 4 }; /* by the parity of iu and iv: a step may lie on both sides of a tile's border */
+enum { TILES_KEPT = 16 }; /* by the low bits of iu and iv; they stay from cone to cone, whose neighbours meet the same tiles */
 
 /* The voxels that fit the cone in the space of one texel. */
 typedef struct VoxelFit {
@@ -65,6 +68,7 @@ typedef struct MarchSpan {
     VoxelFit fits[MOST_PLACED_TEXELS];
     double step;       /* length of a step in t */
     float voxel_world; /* side of the finest voxels wanted along the cone, scene units */
+    float finest_world; /* of the finest voxels there are */
     bool leaves;       /* the layer ends at t1 */
 } MarchSpan;
 
@@ -80,14 +84,18 @@ typedef struct SkinMarch {
     TexturePlace place;
     MarchSpan span;       /* holds for t in [span.t0, span.t1] */
     int entries;
-    TileCopies tiles[MOST_PLACED_TEXELS][TILES_KEPT];
+    uint32_t number;      /* of the cone, counted up by each begin */
+    TileCopies *tiles;    /* [texel][TILES_KEPT] */
 } SkinMarch;
 
+/* Gives the march its memory, once; the rest is set by each begin. */
+void skin_march_init(SkinMarch *march, const CompiledSkin *skin, Arena *arena);
+
 /* Start outside or anywhere: looks for the first entry in [t_min, t_max]. */
-void skin_march_begin(SkinMarch *march, const CompiledSkin *skin, const Cone *cone, double t_min, double t_max,
+void skin_march_begin(SkinMarch *march, const Cone *cone, double t_min, double t_max,
                       const MarchSettings *settings, TraceCounters *counters, bool shade);
 /* Start at a known point of the skin, which is the cone's place at t = 0; matter before t_min is passed over. */
-void skin_march_begin_at(SkinMarch *march, const CompiledSkin *skin, const Cone *cone, const SkinPoint *point, double t_min,
+void skin_march_begin_at(SkinMarch *march, const Cone *cone, const SkinPoint *point, double t_min,
                          double t_max, const MarchSettings *settings, TraceCounters *counters, bool shade);
 /* A guess of the place in the skin at t of the current segment, for skin_locate(): where shadows start. */
 SkinPoint skin_march_guess(const SkinMarch *march, double t);

@@ -6,7 +6,11 @@
 #include <string.h>
 
 EvalLimits eval_limits_default(void) {
-    return (EvalLimits){.loops = 100000000, .recursion = 200, .include_depth = 32, .array_elements = 64000000, .string_bytes = 64u << 20};
+    return (EvalLimits){.loops = 100000000,
+                        .recursion = 200,
+                        .include_depth = 32,
+                        .array_elements = 64000000,
+                        .string_bytes = 64u << 20};
 }
 
 /* ---- notes of the include and macro stack ---- */
@@ -16,7 +20,9 @@ static const Macro *expanded_macro(const Eval *ev, Span span) {
     for (const Macro *m = ev->macros; m; m = m->next) {
         const TokenList *list = m->body.tokens;
         if (!m->last_call.file || list->file->id != span.file || m->body.begin >= m->body.end) continue;
-        if (span.begin < list->items[m->body.begin].span.begin || span.begin > list->items[m->body.end - 1].span.end) continue;
+        if (span.begin < list->items[m->body.begin].span.begin ||
+            span.begin > list->items[m->body.end - 1].span.end)
+            continue;
         for (const CallRecord *c = ev->calls; c; c = c->outer)
             if (c->macro == m->name) return NULL;
         return m;
@@ -29,14 +35,17 @@ static void add_call_notes(void *context, DiagList *list, Diagnostic *diagnostic
     enum { MOST_NOTES = 8 };
     int count = 0;
     const Macro *expanded = expanded_macro(ev, diagnostic->span);
-    if (expanded) diag_note(list, diagnostic, expanded->last_call, "in macro '%s', called here", expanded->name->text);
+    if (expanded)
+        diag_note(list, diagnostic, expanded->last_call, "in macro '%s', called here", expanded->name->text);
     for (const CallRecord *c = ev->calls; c; c = c->outer, count++) {
         if (count == MOST_NOTES && c->outer) {
             diag_note(list, diagnostic, c->span, "and further calls around this one");
             return;
         }
-        if (c->macro) diag_note(list, diagnostic, c->span, "in macro '%s', called here", c->macro->text);
-        else diag_note(list, diagnostic, c->span, "included here");
+        if (c->macro)
+            diag_note(list, diagnostic, c->span, "in macro '%s', called here", c->macro->text);
+        else
+            diag_note(list, diagnostic, c->span, "included here");
     }
 }
 
@@ -70,7 +79,8 @@ TokenList *eval_load_include(Eval *ev, const Node *node, Span *path_span) {
     *path_span = node->as.operand.a->span;
     if (!eval_string(ev, node->as.operand.a, &name, NULL)) return NULL;
     if (ev->include_depth >= ev->options->limits.include_depth) {
-        diag_error(ev->diags, *path_span, "includes are nested more than %u deep", ev->options->limits.include_depth);
+        diag_error(ev->diags, *path_span, "includes are nested more than %u deep",
+                   ev->options->limits.include_depth);
         ev->stopped = true;
         return NULL;
     }
@@ -86,7 +96,9 @@ TokenList *eval_load_include(Eval *ev, const Node *node, Span *path_span) {
     if (!path) return NULL;
     SourceStatus status = source_load(ev->sources, path, NULL, &file);
     if (status == SOURCE_OK) return load(ev, file);
-    diag_error(ev->diags, *path_span, status == SOURCE_BINARY ? "'%s' is not a text: it holds zero bytes" : "'%s' cannot be read", path);
+    diag_error(ev->diags, *path_span,
+               status == SOURCE_BINARY ? "'%s' is not a text: it holds zero bytes" : "'%s' cannot be read",
+               path);
     return NULL;
 }
 
@@ -119,14 +131,24 @@ static void declare_options(Eval *ev) {
     }
 }
 
-static void init(Eval *ev, const EvalOptions *options, SourceSet *sources, DiagList *diags, Interner *names, Arena *parse, Arena *scene) {
-    *ev = (Eval){.options = options, .sources = sources, .diags = diags, .names = names, .parse = parse, .version = 3.7, .macro_stamp = 1};
+static void init(Eval *ev, const EvalOptions *options, SourceSet *sources, DiagList *diags, Interner *names,
+                 Arena *parse, Arena *scene) {
+    *ev = (Eval){.options = options,
+                 .sources = sources,
+                 .diags = diags,
+                 .names = names,
+                 .parse = parse,
+                 .version = 3.7,
+                 .macro_stamp = 1};
     arena_init(&ev->temp, parse->budget, 0);
     arena_init(&ev->blocks, parse->budget, 0);
     keyword_table_init(&ev->keywords, names, parse);
     ev->build = (BuildContext){.arena = scene, .names = names, .diags = diags, .eval = ev};
-    ev->build.image_aspect = options->image_width > 0 && options->image_height > 0 ? (double)options->image_width / options->image_height : 4.0 / 3;
-    ev->fast_host = (ParserHost){.context = ev, .classify = classify, .macro_binding = binding, .macro_is_block = is_block};
+    ev->build.image_aspect = options->image_width > 0 && options->image_height > 0
+                                 ? (double)options->image_width / options->image_height
+                                 : 4.0 / 3;
+    ev->fast_host = (ParserHost){
+        .context = ev, .classify = classify, .macro_binding = binding, .macro_is_block = is_block};
     ev->index_name = intern_cstr(names, "index");
     ev->count_name = intern_cstr(names, "count");
     ev->particles_name = intern_cstr(names, "particles");
@@ -164,7 +186,6 @@ static void watch_memory(Eval *ev) {
     budget->context = ev;
 }
 
-
 static bool load_scene(Eval *ev, const char *path, const SourceFile **file, EvalStatus *status) {
     SourceStatus loaded = source_load(ev->sources, path, NULL, file);
     *status = loaded == SOURCE_NOT_FOUND || loaded == SOURCE_UNREADABLE ? EVAL_NO_FILE : EVAL_FAILED;
@@ -173,13 +194,16 @@ static bool load_scene(Eval *ev, const char *path, const SourceFile **file, Eval
     case SOURCE_NOT_FOUND: diag_error(ev->diags, (Span){0}, "there is no file '%s'", path); break;
     case SOURCE_UNREADABLE: diag_error(ev->diags, (Span){0}, "'%s' cannot be read", path); break;
     case SOURCE_TOO_LARGE: diag_error(ev->diags, (Span){0}, "'%s' is too large for a scene", path); break;
-    case SOURCE_BINARY: diag_error(ev->diags, (Span){0}, "'%s' is not a text: it holds zero bytes", path); break;
+    case SOURCE_BINARY:
+        diag_error(ev->diags, (Span){0}, "'%s' is not a text: it holds zero bytes", path);
+        break;
     }
     return false;
 }
 
 static void say(Eval *ev, StrBuf *text) {
-    if (ev->options->on_text) ev->options->on_text(ev->options->context, EVAL_STREAM_STATISTICS, text->data ? text->data : "");
+    if (ev->options->on_text)
+        ev->options->on_text(ev->options->context, EVAL_STREAM_STATISTICS, text->data ? text->data : "");
     strbuf_free(text);
 }
 
@@ -212,7 +236,8 @@ static EvalStatus evaluate(Eval *ev, const SourceFile *file, const Scene **scene
     Body body = {.tokens = tokens, .begin = 0, .end = tokens->count - 1};
     if (ev->diags->error_count == 0 || !diag_full(ev->diags)) {
         Flow flow = run_body(ev, &body, &sink);
-        if (flow == FLOW_BREAK) diag_error(ev->diags, tokens->items[0].span, "#break outside of a loop or #switch");
+        if (flow == FLOW_BREAK)
+            diag_error(ev->diags, tokens->items[0].span, "#break outside of a loop or #switch");
     }
     if (ev->interrupted) return EVAL_INTERRUPTED;
     if (ev->diags->error_count) return EVAL_FAILED;
@@ -220,8 +245,8 @@ static EvalStatus evaluate(Eval *ev, const SourceFile *file, const Scene **scene
     return *scene && ev->diags->error_count == 0 ? EVAL_OK : EVAL_FAILED;
 }
 
-EvalStatus eval_file(const char *path, const EvalOptions *options, SourceSet *sources, DiagList *diags, Interner *names,
-                     Arena *parse_arena, Arena *scene_arena, const Scene **scene) {
+EvalStatus eval_file(const char *path, const EvalOptions *options, SourceSet *sources, DiagList *diags,
+                     Interner *names, Arena *parse_arena, Arena *scene_arena, const Scene **scene) {
     Eval ev;
     const SourceFile *file;
     EvalStatus status;

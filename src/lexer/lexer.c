@@ -38,9 +38,12 @@ static void skip_block_comment(Lexer *lx) {
             return;
         }
         const char *c = lx->text + lx->at;
-        if (c[0] == '/' && c[1] == '*') depth++, lx->at += 2;
-        else if (c[0] == '*' && c[1] == '/') depth--, lx->at += 2;
-        else lx->at++;
+        if (c[0] == '/' && c[1] == '*')
+            depth++, lx->at += 2;
+        else if (c[0] == '*' && c[1] == '/')
+            depth--, lx->at += 2;
+        else
+            lx->at++;
     } while (depth);
 }
 
@@ -95,7 +98,10 @@ static void add_utf8(StrBuf *out, unsigned code) {
 }
 
 static int hex_digit(char c) {
-    return is_digit(c) ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+    return is_digit(c)            ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : -1;
 }
 
 /* "\u" with up to four hexadecimal digits; false when there is none. */
@@ -119,7 +125,8 @@ static void lex_escape(Lexer *lx, StrBuf *out) {
         lx->at++;
     } else if (c == 'u') {
         lx->at++;
-        if (!unicode_escape(lx, out)) diag_error(lx->diags, span_from(lx, begin), "\\u needs hexadecimal digits");
+        if (!unicode_escape(lx, out))
+            diag_error(lx->diags, span_from(lx, begin), "\\u needs hexadecimal digits");
     } else {
         if (lx->at < lx->size) lx->at++;
         Diagnostic *d = diag_error(lx->diags, span_from(lx, begin), "unknown escape in a string");
@@ -132,8 +139,10 @@ static void lex_string(Lexer *lx) {
     uint32_t begin = lx->at++;
     StrBuf decoded = {0};
     while (lx->at < lx->size && lx->text[lx->at] != '"') {
-        if (lx->text[lx->at] == '\\') lex_escape(lx, &decoded);
-        else strbuf_addc(&decoded, lx->text[lx->at++]);
+        if (lx->text[lx->at] == '\\')
+            lex_escape(lx, &decoded);
+        else
+            strbuf_addc(&decoded, lx->text[lx->at++]);
     }
     if (lx->at >= lx->size) {
         const char *eol = memchr(lx->text + begin, '\n', lx->size - begin);
@@ -182,9 +191,12 @@ static void lex_symbol(Lexer *lx) {
     uint32_t begin = lx->at;
     char c = lx->text[lx->at++], next = lx->text[lx->at];
     int kind = c;
-    if (c == '<' && next == '=') kind = TOKEN_LESS_EQUAL;
-    else if (c == '>' && next == '=') kind = TOKEN_GREATER_EQUAL;
-    else if (c == '!' && next == '=') kind = TOKEN_NOT_EQUAL;
+    if (c == '<' && next == '=')
+        kind = TOKEN_LESS_EQUAL;
+    else if (c == '>' && next == '=')
+        kind = TOKEN_GREATER_EQUAL;
+    else if (c == '!' && next == '=')
+        kind = TOKEN_NOT_EQUAL;
     if (kind != c) lx->at++;
     push(lx, kind, begin);
 }
@@ -199,16 +211,27 @@ static void lex_unknown(Lexer *lx) {
 
 static void lex_one(Lexer *lx) {
     char c = lx->text[lx->at];
-    if (is_digit(c) || (c == '.' && is_digit(lx->text[lx->at + 1]))) lex_number(lx);
-    else if (is_word_start(c)) lex_word(lx);
-    else if (c == '"') lex_string(lx);
-    else if (c == '#') lex_directive(lx);
-    else if (strchr("+-*/^!=<>&|?:.,;()[]{}", c)) lex_symbol(lx);
-    else lex_unknown(lx);
+    if (is_digit(c) || (c == '.' && is_digit(lx->text[lx->at + 1])))
+        lex_number(lx);
+    else if (is_word_start(c))
+        lex_word(lx);
+    else if (c == '"')
+        lex_string(lx);
+    else if (c == '#')
+        lex_directive(lx);
+    else if (strchr("+-*/^!=<>&|?:.,;()[]{}", c))
+        lex_symbol(lx);
+    else
+        lex_unknown(lx);
 }
 
 TokenList *lexer_run(const SourceFile *file, const KeywordTable *keywords, Arena *arena, DiagList *diags) {
-    Lexer lx = {.file = file, .keywords = keywords, .arena = arena, .diags = diags, .text = file->text, .size = file->size};
+    Lexer lx = {.file = file,
+                .keywords = keywords,
+                .arena = arena,
+                .diags = diags,
+                .text = file->text,
+                .size = file->size};
     if (lx.size >= 3 && memcmp(lx.text, "\xEF\xBB\xBF", 3) == 0) lx.at = 3;
     for (skip_blanks(&lx); lx.at < lx.size; skip_blanks(&lx)) lex_one(&lx);
     /* The end is blamed for what is missing: it lies right after the last token, not behind blank lines. */
@@ -244,9 +267,12 @@ void lexer_print(const TokenList *tokens, SourceSet *sources, StrBuf *out) {
         const char *kind = t->kind < VTS_ARRAY_COUNT(kinds) ? kinds[t->kind] : "symbol";
         if (t->kind == TOKEN_WORD && t->keyword) kind = "keyword";
         strbuf_addf(out, "%u:%u %s ", place.line, place.column, kind);
-        if (t->kind == TOKEN_NUMBER) strbuf_addf(out, "%.17g", t->as.number);
-        else if (t->kind == TOKEN_STRING) strbuf_add_json(out, t->as.string->text);
-        else strbuf_add(out, tokens->file->text + t->span.begin, t->span.end - t->span.begin);
+        if (t->kind == TOKEN_NUMBER)
+            strbuf_addf(out, "%.17g", t->as.number);
+        else if (t->kind == TOKEN_STRING)
+            strbuf_add_json(out, t->as.string->text);
+        else
+            strbuf_add(out, tokens->file->text + t->span.begin, t->span.end - t->span.begin);
         strbuf_addc(out, '\n');
     }
 }

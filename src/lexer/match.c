@@ -86,10 +86,17 @@ static void close_one(Matcher *m, uint32_t index) {
 
 static void match_directive(Matcher *m, uint32_t index) {
     switch (m->tokens[index].keyword) {
-    case KW_if: case KW_ifdef: case KW_ifndef: case KW_while: case KW_for: case KW_switch: case KW_macro:
-        open_one(m, index, '#');
-        break;
-    case KW_else: case KW_elseif: case KW_case: case KW_range: continue_group(m, index); break;
+    case KW_if:
+    case KW_ifdef:
+    case KW_ifndef:
+    case KW_while:
+    case KW_for:
+    case KW_switch:
+    case KW_macro: open_one(m, index, '#'); break;
+    case KW_else:
+    case KW_elseif:
+    case KW_case:
+    case KW_range: continue_group(m, index); break;
     case KW_end: end_group(m, index); break;
     default: break;
     }
@@ -99,9 +106,12 @@ bool token_match(Token *tokens, uint32_t count, Arena *arena) {
     Matcher m = {.tokens = tokens, .arena = arena, .balanced = true};
     for (uint32_t i = 0; i < count; i++) {
         uint8_t kind = tokens[i].kind;
-        if (kind == TOKEN_DIRECTIVE) match_directive(&m, i);
-        else if (kind == '(' || kind == '[' || kind == '{') open_one(&m, i, kind);
-        else if (kind == ')' || kind == ']' || kind == '}') close_one(&m, i);
+        if (kind == TOKEN_DIRECTIVE)
+            match_directive(&m, i);
+        else if (kind == '(' || kind == '[' || kind == '{')
+            open_one(&m, i, kind);
+        else if (kind == ')' || kind == ']' || kind == '}')
+            close_one(&m, i);
     }
     return m.balanced && m.count == 0;
 }

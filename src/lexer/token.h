@@ -15,7 +15,14 @@ typedef enum Keyword {
     KW_COUNT
 } Keyword;
 
-typedef enum KeywordClass { KEYWORD_NONE, KEYWORD_CONSTANT, KEYWORD_FUNCTION, KEYWORD_COLOR, KEYWORD_DIRECTIVE, KEYWORD_WORD } KeywordClass;
+typedef enum KeywordClass {
+    KEYWORD_NONE,
+    KEYWORD_CONSTANT,
+    KEYWORD_FUNCTION,
+    KEYWORD_COLOR,
+    KEYWORD_DIRECTIVE,
+    KEYWORD_WORD
+} KeywordClass;
 
 typedef enum TokenKind {
     TOKEN_END, /* of the file, or of the range that is being read */
@@ -33,8 +40,9 @@ typedef enum TokenKind {
 struct Value;
 
 typedef struct Token {
-    uint8_t kind;     /* TokenKind or a character */
-    bool unbalanced;  /* directive that opens a group: a branch has brackets that it does not close, or closes others */
+    uint8_t kind; /* TokenKind or a character */
+    bool
+        unbalanced; /* directive that opens a group: a branch has brackets that it does not close, or closes others */
     uint16_t keyword; /* Keyword of a word or directive */
     Span span;
     /* Of an opening bracket: the index of its closing one. Of a directive that opens a group or continues it (if, else, case …):
@@ -57,7 +65,7 @@ typedef struct TokenList {
     const SourceFile *file;
     const Token *items; /* count tokens, the last being TOKEN_END */
     uint32_t count;
-    bool balanced;      /* all brackets and groups of the file close within it */
+    bool balanced; /* all brackets and groups of the file close within it */
 } TokenList;
 
 #endif

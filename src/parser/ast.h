@@ -10,7 +10,7 @@ typedef enum NodeKind {
     /* expressions */
     NODE_NUMBER,
     NODE_STRING,
-    NODE_VALUE,     /* a value found while macros were expanded */
+    NODE_VALUE, /* a value found while macros were expanded */
     NODE_NAME,
     NODE_CONSTANT,  /* x, pi, clock …: op is the Keyword */
     NODE_VECTOR,    /* list */
@@ -26,12 +26,12 @@ typedef enum NodeKind {
     NODE_FUNCTION,  /* function ( names ) { list } or { block } */
     NODE_BLOCK,     /* word { body } */
     /* what only a body may hold */
-    NODE_WORD,      /* word list [{ body }] */
-    NODE_ENTRY,     /* [ body ] */
-    NODE_LIST,      /* { body } in an array */
-    NODE_DECLARE,   /* targets = value */
+    NODE_WORD,    /* word list [{ body }] */
+    NODE_ENTRY,   /* [ body ] */
+    NODE_LIST,    /* { body } in an array */
+    NODE_DECLARE, /* targets = value */
     NODE_UNDEF,
-    NODE_IF,        /* if, ifdef, ifndef with its elseif and else */
+    NODE_IF, /* if, ifdef, ifndef with its elseif and else */
     NODE_WHILE,
     NODE_FOR,
     NODE_SWITCH,
@@ -40,12 +40,12 @@ typedef enum NodeKind {
     NODE_INCLUDE,
     NODE_VERSION,
     NODE_DEFAULT,
-    NODE_MESSAGE,   /* op: KW_debug, warning, error, render, statistics */
+    NODE_MESSAGE, /* op: KW_debug, warning, error, render, statistics */
     NODE_FOPEN,
     NODE_FCLOSE,
     NODE_READ,
     NODE_WRITE,
-    NODE_EMPTY,     /* a stray ; or , */
+    NODE_EMPTY, /* a stray ; or , */
 } NodeKind;
 
 typedef enum DotComponent { DOT_X, DOT_Y, DOT_Z, DOT_4, DOT_5, DOT_GRAY } DotComponent;
@@ -75,7 +75,8 @@ typedef struct SwitchCase {
 } SwitchCase;
 
 typedef struct ColorPart {
-    uint16_t component; /* KW_red, green, blue, filter, transmit, alpha; KW_rgb … srgbft; KW_color: any expression */
+    uint16_t
+        component; /* KW_red, green, blue, filter, transmit, alpha; KW_rgb … srgbft; KW_color: any expression */
     Node *value;
 } ColorPart;
 
@@ -91,19 +92,68 @@ struct Node {
         const struct Value *value;
         Name name;
         NodeList list; /* VECTOR, BUILTIN, READ and WRITE (first the handle), UNDEF, FOPEN (handle, path) */
-        struct { Node *a, *b, *c; } operand; /* UNARY a; BINARY a, b; CONDITION a, b, c; DOT a; INCLUDE, VERSION, MESSAGE a */
-        struct { Node *base; NodeList list; } apply; /* INDEX, CALL */
-        struct { ColorPart *parts; size_t count; } color;
-        struct { NodeList dimensions; Body *body; } array;
-        struct { Name *parameters; Span *spans; size_t count; NodeList body; } function;
-        struct { Name word; Span word_span; Body *body; } block;               /* BLOCK, ENTRY, LIST, DEFAULT */
-        struct { Name word; Span word_span; NodeList list; Body *body; } word;
-        struct { Node *target, *value; bool local; } declare;
-        struct { Branch *branches; size_t count; } branches;
-        struct { Node *condition; Body body; } loop;                            /* WHILE */
-        struct { Name name; Node *from, *to, *step; Body body; } for_loop;
-        struct { Node *subject; SwitchCase *cases; size_t count; } switch_;
-        struct { Name name; Span name_span; Name *parameters; size_t count; Body body; bool unbalanced; } macro;
+        struct {
+            Node *a, *b, *c;
+        } operand; /* UNARY a; BINARY a, b; CONDITION a, b, c; DOT a; INCLUDE, VERSION, MESSAGE a */
+        struct {
+            Node *base;
+            NodeList list;
+        } apply; /* INDEX, CALL */
+        struct {
+            ColorPart *parts;
+            size_t count;
+        } color;
+        struct {
+            NodeList dimensions;
+            Body *body;
+        } array;
+        struct {
+            Name *parameters;
+            Span *spans;
+            size_t count;
+            NodeList body;
+        } function;
+        struct {
+            Name word;
+            Span word_span;
+            Body *body;
+        } block; /* BLOCK, ENTRY, LIST, DEFAULT */
+        struct {
+            Name word;
+            Span word_span;
+            NodeList list;
+            Body *body;
+        } word;
+        struct {
+            Node *target, *value;
+            bool local;
+        } declare;
+        struct {
+            Branch *branches;
+            size_t count;
+        } branches;
+        struct {
+            Node *condition;
+            Body body;
+        } loop; /* WHILE */
+        struct {
+            Name name;
+            Node *from, *to, *step;
+            Body body;
+        } for_loop;
+        struct {
+            Node *subject;
+            SwitchCase *cases;
+            size_t count;
+        } switch_;
+        struct {
+            Name name;
+            Span name_span;
+            Name *parameters;
+            size_t count;
+            Body body;
+            bool unbalanced;
+        } macro;
     } as;
 };
 

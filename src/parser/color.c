@@ -8,8 +8,8 @@ bool parser_begins_color(Parser *p) {
 }
 
 static bool is_color_component(int keyword) {
-    return keyword == KW_red || keyword == KW_green || keyword == KW_blue || keyword == KW_filter || keyword == KW_transmit ||
-           keyword == KW_alpha;
+    return keyword == KW_red || keyword == KW_green || keyword == KW_blue || keyword == KW_filter ||
+           keyword == KW_transmit || keyword == KW_alpha;
 }
 
 bool parser_begins_component(Parser *p) {
@@ -17,8 +17,9 @@ bool parser_begins_component(Parser *p) {
     if (t->kind != TOKEN_WORD || !is_color_component(t->keyword)) return false;
     const Token *after = parser_peek_after(p);
     return after->kind == TOKEN_NUMBER || after->kind == '(' || after->kind == '-' || after->kind == '.' ||
-           (after->kind == TOKEN_WORD && (!after->keyword || keyword_class((Keyword)after->keyword) == KEYWORD_CONSTANT ||
-                                          keyword_class((Keyword)after->keyword) == KEYWORD_FUNCTION));
+           (after->kind == TOKEN_WORD &&
+            (!after->keyword || keyword_class((Keyword)after->keyword) == KEYWORD_CONSTANT ||
+             keyword_class((Keyword)after->keyword) == KEYWORD_FUNCTION));
 }
 
 typedef struct ColorPartList {

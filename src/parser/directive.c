@@ -11,7 +11,8 @@ typedef struct Group {
 static Node *never_ends(Parser *p, TokenList *list, uint32_t index) {
     if (p->slow && !p->failed) {
         const Token *t = &list->items[index], *end = &list->items[list->count - 1];
-        Diagnostic *d = diag_error(p->diags, end->span, "the file ends, but #end is missing for a #%s", t->as.name->text);
+        Diagnostic *d =
+            diag_error(p->diags, end->span, "the file ends, but #end is missing for a #%s", t->as.name->text);
         diag_note(p->diags, d, t->span, "this #%s has no #end", t->as.name->text);
     }
     p->failed = true;
@@ -38,9 +39,11 @@ static bool bodies_whole(Parser *p, const Node *n, bool unbalanced) {
     if (p->slow || p->heads_only) return true;
     bool whole = !unbalanced;
     if (n->kind == NODE_IF)
-        for (size_t i = 0; i < n->as.branches.count; i++) whole = whole && parser_body_is_whole(&n->as.branches.branches[i].body);
+        for (size_t i = 0; i < n->as.branches.count; i++)
+            whole = whole && parser_body_is_whole(&n->as.branches.branches[i].body);
     else if (n->kind == NODE_SWITCH)
-        for (size_t i = 0; i < n->as.switch_.count; i++) whole = whole && parser_body_is_whole(&n->as.switch_.cases[i].body);
+        for (size_t i = 0; i < n->as.switch_.count; i++)
+            whole = whole && parser_body_is_whole(&n->as.switch_.cases[i].body);
     else if (n->kind == NODE_WHILE)
         whole = whole && parser_body_is_whole(&n->as.loop.body);
     else
@@ -50,8 +53,10 @@ static bool bodies_whole(Parser *p, const Node *n, bool unbalanced) {
 }
 
 static void go_on_after(Parser *p, uint32_t end, uint32_t *next) {
-    if (p->slow) *next = end + 1;
-    else p->at = end + 1;
+    if (p->slow)
+        *next = end + 1;
+    else
+        p->at = end + 1;
 }
 
 /* On the slow road what follows is not pulled for it: that would run the directives that come next before this one. */
@@ -80,9 +85,9 @@ static Node *condition(Parser *p, int keyword) {
     *list_push(p->arena, &defined->as.list) = target;
     if (keyword == KW_ifdef) return defined;
     Node *not = parser_node(p, NODE_UNARY, target->span);
-    not->op = '!';
-    not->as.operand.a = defined;
-    return not;
+    not ->op = '!';
+    not ->as.operand.a = defined;
+    return not ;
 }
 
 typedef struct BranchList {
@@ -165,7 +170,8 @@ static Node *for_directive(Parser *p, TokenList *list, uint32_t index, uint32_t 
 static bool case_head(Parser *p, const Token *t, SwitchCase *out) {
     if (t->keyword == KW_else) return true;
     if (!parser_expect(p, '(', "'('") || !(out->low = parser_full(p))) return false;
-    if (t->keyword == KW_range && (!parser_expect(p, ',', "','") || !(out->high = parser_full(p)))) return false;
+    if (t->keyword == KW_range && (!parser_expect(p, ',', "','") || !(out->high = parser_full(p))))
+        return false;
     return parser_expect(p, ')', "')'");
 }
 
@@ -177,7 +183,10 @@ static Node *switch_directive(Parser *p, TokenList *list, uint32_t index, uint32
     if (!n->as.switch_.subject || !group_begin(p, list, index, raw_position(p), &g)) return NULL;
     if (g.at < g.end && list->items[g.at].kind != ';')
         return parser_fail(p, list->items[g.at].span, "expected #case or #range after #switch");
-    struct { SwitchCase *items; size_t count, capacity; } cases = {0};
+    struct {
+        SwitchCase *items;
+        size_t count, capacity;
+    } cases = {0};
     while (list->items[g.end].keyword != KW_end) {
         const Token *t = &list->items[g.end];
         if (t->keyword == KW_elseif) return parser_fail(p, t->span, "this #elseif does not belong to an #if");
@@ -209,16 +218,23 @@ static Node *macro_directive(Parser *p, TokenList *list, uint32_t index, uint32_
     p->raw = true;
     const Token *word = parser_peek(p);
     if (word->kind != TOKEN_WORD) return parser_fail(p, word->span, "expected the macro's name");
-    if (word->keyword) return parser_fail(p, word->span, "'%s' is a word of the language: it cannot be a name", word->as.name->text);
+    if (word->keyword)
+        return parser_fail(p, word->span, "'%s' is a word of the language: it cannot be a name",
+                           word->as.name->text);
     n->as.macro.name_span = word->span;
     n->as.macro.name = parser_take(p).as.name;
-    struct { Name *items; size_t count, capacity; } names = {0};
+    struct {
+        Name *items;
+        size_t count, capacity;
+    } names = {0};
     if (!parser_expect(p, '(', "'('")) return NULL;
     for (;;) {
         p->raw = true;
         if (parser_peek(p)->kind != TOKEN_WORD) break;
         Token name = parser_take(p);
-        if (name.keyword) return parser_fail(p, name.span, "'%s' is a word of the language: it cannot be a parameter", name.as.name->text);
+        if (name.keyword)
+            return parser_fail(p, name.span, "'%s' is a word of the language: it cannot be a parameter",
+                               name.as.name->text);
         *list_push(p->arena, &names) = name.as.name;
         parser_accept(p, ','); /* POV-Ray does not miss it, and its own includes leave it out */
     }
@@ -226,7 +242,8 @@ static Node *macro_directive(Parser *p, TokenList *list, uint32_t index, uint32_
     Group g;
     if (!group_begin(p, list, index, raw_position(p), &g)) return NULL;
     if (list->items[g.end].keyword != KW_end)
-        return parser_fail(p, list->items[g.end].span, "this #%s stands in a macro, outside of its #if", list->items[g.end].as.name->text);
+        return parser_fail(p, list->items[g.end].span, "this #%s stands in a macro, outside of its #if",
+                           list->items[g.end].as.name->text);
     n->as.macro.parameters = names.items;
     n->as.macro.count = names.count;
     n->as.macro.body = group_body(&g);
@@ -238,8 +255,15 @@ static Node *macro_directive(Parser *p, TokenList *list, uint32_t index, uint32_
 /* Values that must be followed by a semicolon, as far as their form tells. */
 static bool needs_semicolon(const Node *n) {
     switch (n->kind) {
-    case NODE_NUMBER: case NODE_CONSTANT: case NODE_VECTOR: case NODE_COLOR: case NODE_DOT: case NODE_CONDITION: case NODE_BINARY: return true;
-    case NODE_VALUE: return n->op == NODE_NUMBER || n->op == NODE_VECTOR || n->op == NODE_COLOR || n->op == NODE_DOT;
+    case NODE_NUMBER:
+    case NODE_CONSTANT:
+    case NODE_VECTOR:
+    case NODE_COLOR:
+    case NODE_DOT:
+    case NODE_CONDITION:
+    case NODE_BINARY: return true;
+    case NODE_VALUE:
+        return n->op == NODE_NUMBER || n->op == NODE_VECTOR || n->op == NODE_COLOR || n->op == NODE_DOT;
     case NODE_UNARY: return n->op != '(' || needs_semicolon(n->as.operand.a);
     default: return false;
     }
@@ -292,7 +316,8 @@ static Node *declare_directive(Parser *p, Token head) {
     if (!n->as.declare.target || !parser_expect(p, '=', "'='")) return NULL;
     Token first = p->slow ? *p->host->after(p->host->context, 0) : *parser_peek(p);
     Node *value = parser_expression(p);
-    if (value && p->closed && first.kind == TOKEN_WORD && first.keyword == KW_texture && texture_follows(p)) value = layers(p, value, first);
+    if (value && p->closed && first.kind == TOKEN_WORD && first.keyword == KW_texture && texture_follows(p))
+        value = layers(p, value, first);
     n->as.declare.value = value;
     if (!value) return NULL;
     n->span = span_join(head.span, p->last.span);
@@ -307,7 +332,9 @@ static Node *declare_directive(Parser *p, Token head) {
         const Token *t = p->slow && !p->has_window ? p->host->after(p->host->context, 0) : parser_peek(p);
         Span after = {p->last.span.file, p->last.span.end, p->last.span.end};
         return parser_fail(p, t->kind == TOKEN_END || t->kind == TOKEN_DIRECTIVE ? after : t->span,
-                           "expected ';' after the value of '%s', found %s", n->as.declare.target->kind == NODE_NAME ? n->as.declare.target->as.name->text : "an array's element",
+                           "expected ';' after the value of '%s', found %s",
+                           n->as.declare.target->kind == NODE_NAME ? n->as.declare.target->as.name->text
+                                                                   : "an array's element",
                            token_describe(t, p->arena));
     }
     return n;
@@ -341,7 +368,8 @@ static Node *fopen_directive(Parser *p, Token head) {
     *list_push(p->arena, &n->as.list) = handle;
     *list_push(p->arena, &n->as.list) = path;
     Token mode = parser_take(p);
-    if (mode.kind != TOKEN_WORD || (mode.keyword != KW_read && mode.keyword != KW_write && mode.keyword != KW_append))
+    if (mode.kind != TOKEN_WORD ||
+        (mode.keyword != KW_read && mode.keyword != KW_write && mode.keyword != KW_append))
         return parser_fail(p, mode.span, "expected read, write or append");
     n->op = mode.keyword;
     n->span = span_join(head.span, mode.span);
@@ -376,7 +404,8 @@ static Node *write_directive(Parser *p, Token head) {
     if (!handle) return NULL;
     *list_push(p->arena, &n->as.list) = handle;
     p->brackets++;
-    while (parser_accept(p, ',') || (!p->failed && parser_peek(p)->kind != ')' && parser_begins_expression(p, true))) {
+    while (parser_accept(p, ',') ||
+           (!p->failed && parser_peek(p)->kind != ')' && parser_begins_expression(p, true))) {
         if (parser_peek(p)->kind == ')' || parser_peek(p)->kind == ',') continue;
         Node *e = parser_full(p);
         if (!e) return NULL;
@@ -412,25 +441,34 @@ Node *parser_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *nex
     Token head = p->last;
     *next = 0;
     switch (head.keyword) {
-    case KW_if: case KW_ifdef: case KW_ifndef: return if_directive(p, list, index, next);
+    case KW_if:
+    case KW_ifdef:
+    case KW_ifndef: return if_directive(p, list, index, next);
     case KW_while: return while_directive(p, list, index, next);
     case KW_for: return for_directive(p, list, index, next);
     case KW_switch: return switch_directive(p, list, index, next);
     case KW_macro: return macro_directive(p, list, index, next);
-    case KW_declare: case KW_local: return declare_directive(p, head);
+    case KW_declare:
+    case KW_local: return declare_directive(p, head);
     case KW_undef: return undef_directive(p, head);
     case KW_include: return operand_directive(p, NODE_INCLUDE, head);
     case KW_version: return operand_directive(p, NODE_VERSION, head);
-    case KW_debug: case KW_warning: case KW_error: case KW_render: case KW_statistics:
-        return operand_directive(p, NODE_MESSAGE, head);
+    case KW_debug:
+    case KW_warning:
+    case KW_error:
+    case KW_render:
+    case KW_statistics: return operand_directive(p, NODE_MESSAGE, head);
     case KW_break: return parser_node(p, NODE_BREAK, head.span);
     case KW_default: return default_directive(p, head);
     case KW_fopen: return fopen_directive(p, head);
     case KW_fclose: return fclose_directive(p, head);
     case KW_read: return read_directive(p, head);
     case KW_write: return write_directive(p, head);
-    case KW_else: case KW_elseif: case KW_end: return parser_fail(p, head.span, "this #%s belongs to no #if", head.as.name->text);
-    case KW_case: case KW_range: return parser_fail(p, head.span, "this #%s belongs to no #switch", head.as.name->text);
+    case KW_else:
+    case KW_elseif:
+    case KW_end: return parser_fail(p, head.span, "this #%s belongs to no #if", head.as.name->text);
+    case KW_case:
+    case KW_range: return parser_fail(p, head.span, "this #%s belongs to no #switch", head.as.name->text);
     default: return unknown_directive(p, head);
     }
 }

@@ -27,7 +27,8 @@ static Node *vector(Parser *p) {
         Node *e = parser_expression(p);
         if (!e) return NULL;
         *list_push(p->arena, &n->as.list) = e;
-        if (!parser_accept(p, ',') && parser_peek(p)->kind != '>' && !parser_begins_expression(p, true)) break;
+        if (!parser_accept(p, ',') && parser_peek(p)->kind != '>' && !parser_begins_expression(p, true))
+            break;
     }
     if (!parser_expect(p, '>', "',' or '>'")) return NULL;
     p->brackets--;
@@ -47,9 +48,12 @@ static bool reference_follows(Parser *p) {
     int depth = 0;
     for (uint32_t i = 1;; i++) {
         t = p->host->after(p->host->context, i);
-        if (t->kind == '[') depth++;
-        else if (t->kind == ']') depth--;
-        else if (depth == 0 || t->kind == TOKEN_END) return depth == 0 && (t->kind == ',' || t->kind == ')');
+        if (t->kind == '[')
+            depth++;
+        else if (t->kind == ']')
+            depth--;
+        else if (depth == 0 || t->kind == TOKEN_END)
+            return depth == 0 && (t->kind == ',' || t->kind == ')');
     }
 }
 
@@ -84,7 +88,8 @@ static bool plain_arguments(Parser *p, NodeList *out) {
         Node *e = parser_full(p);
         if (!e) return false;
         *list_push(p->arena, out) = e;
-        if (!parser_accept(p, ',') && !(parser_peek(p)->kind != ')' && parser_begins_expression(p, false))) break;
+        if (!parser_accept(p, ',') && !(parser_peek(p)->kind != ')' && parser_begins_expression(p, false)))
+            break;
     }
     if (!parser_expect(p, ')', "',' or ')'")) return false;
     p->brackets--;
@@ -114,7 +119,8 @@ static Node *builtin(Parser *p) {
     } else if (word.keyword == KW_sum || word.keyword == KW_prod) {
         ok = parser_expect(p, '(', "'('");
         Token name = parser_take(p);
-        if (ok && name.kind != TOKEN_WORD) parser_fail(p, name.span, "expected the name of the running index");
+        if (ok && name.kind != TOKEN_WORD)
+            parser_fail(p, name.span, "expected the name of the running index");
         Node *index = parser_node(p, NODE_NAME, name.span);
         index->as.name = name.as.name;
         *list_push(p->arena, &n->as.list) = index;
@@ -156,7 +162,8 @@ static Node *name_or_call(Parser *p) {
     if (parser_peek(p)->kind != '(') {
         if (!p->slow && !p->in_function) {
             const void *macro;
-            if (parser_classify(p, word.as.name, &macro) == NAME_MACRO) return parser_fail(p, word.span, "macro without (");
+            if (parser_classify(p, word.as.name, &macro) == NAME_MACRO)
+                return parser_fail(p, word.span, "macro without (");
             p->assumptions.count--; /* its being a value or not makes no difference here */
         }
         return n;
@@ -170,7 +177,7 @@ static Node *name_or_call(Parser *p) {
     size_t at = p->assumptions.count - 1;
     if (!p->slow) p->assumptions.items[at].call = call;
     if (!(class == NAME_MACRO || class == NAME_UNKNOWN ? parser_arguments(p, &call->as.apply.list)
-                                                        : plain_arguments(p, &call->as.apply.list)))
+                                                       : plain_arguments(p, &call->as.apply.list)))
         return NULL;
     call->need = BIND_ANY;
     call->span = span_join(word.span, p->last.span);
@@ -236,8 +243,9 @@ static Node *primary(Parser *p) {
     case '(': return parenthesized(p);
     case TOKEN_WORD: break;
     default:
-        return parser_fail(p, t->kind == TOKEN_END ? (Span){p->last.span.file, p->last.span.end, p->last.span.end} : t->span,
-                           "expected a value, found %s", token_describe(t, p->arena));
+        return parser_fail(
+            p, t->kind == TOKEN_END ? (Span){p->last.span.file, p->last.span.end, p->last.span.end} : t->span,
+            "expected a value, found %s", token_describe(t, p->arena));
     }
     if (t->keyword == KW_NONE) return name_or_call(p);
     if (is_parameter(p, t->as.name)) return constant(p);
@@ -250,18 +258,24 @@ static Node *primary(Parser *p) {
     if (t->keyword == KW_array) return parser_array(p);
     if (parser_peek_after(p)->kind == '{') return parser_block(p);
     /* spline types are arguments of a spline's evaluation: S(0.5, cubic_spline) */
-    if (t->keyword == KW_linear_spline || t->keyword == KW_quadratic_spline || t->keyword == KW_cubic_spline ||
-        t->keyword == KW_natural_spline)
+    if (t->keyword == KW_linear_spline || t->keyword == KW_quadratic_spline ||
+        t->keyword == KW_cubic_spline || t->keyword == KW_natural_spline)
         return constant(p);
     return parser_fail(p, t->span, "expected a value, found %s", token_describe(t, p->arena));
 }
 
 static int dot_component(const Token *t) {
     switch (t->keyword) {
-    case KW_x: case KW_u: case KW_red: return DOT_X;
-    case KW_y: case KW_v: case KW_green: return DOT_Y;
-    case KW_z: case KW_blue: return DOT_Z;
-    case KW_t: case KW_filter: return DOT_4;
+    case KW_x:
+    case KW_u:
+    case KW_red: return DOT_X;
+    case KW_y:
+    case KW_v:
+    case KW_green: return DOT_Y;
+    case KW_z:
+    case KW_blue: return DOT_Z;
+    case KW_t:
+    case KW_filter: return DOT_4;
     case KW_transmit: return DOT_5;
     case KW_gray: return DOT_GRAY;
     default: return -1;
@@ -271,15 +285,16 @@ static int dot_component(const Token *t) {
 static bool is_text(const Node *n) {
     if (n->kind == NODE_STRING) return true;
     if (n->kind != NODE_BUILTIN) return false;
-    return n->op == KW_concat || n->op == KW_str || n->op == KW_vstr || n->op == KW_chr || n->op == KW_substr || n->op == KW_strlwr ||
-           n->op == KW_strupr || n->op == KW_datetime;
+    return n->op == KW_concat || n->op == KW_str || n->op == KW_vstr || n->op == KW_chr ||
+           n->op == KW_substr || n->op == KW_strlwr || n->op == KW_strupr || n->op == KW_datetime;
 }
 
 /* On the slow road, looking at the next token runs the directives before it. Outside of brackets an operand therefore ends where
  * a directive follows it, and after values that no operator can follow nothing is looked at. */
 static bool operand_ends(Parser *p, const Node *n) {
     if (n->kind == NODE_BLOCK || n->kind == NODE_FUNCTION || n->kind == NODE_ARRAY || is_text(n)) return true;
-    return p->slow && p->brackets == 0 && !p->has_window && p->host->after(p->host->context, 0)->kind == TOKEN_DIRECTIVE &&
+    return p->slow && p->brackets == 0 && !p->has_window &&
+           p->host->after(p->host->context, 0)->kind == TOKEN_DIRECTIVE &&
            p->host->after(p->host->context, 0)->keyword != KW_end;
 }
 
@@ -288,7 +303,8 @@ static Node *dot(Parser *p, Node *n) {
     p->raw = true;
     Token part = parser_take(p);
     int component = part.kind == TOKEN_WORD ? dot_component(&part) : -1;
-    if (component < 0) return parser_fail(p, part.span, "expected a component (x, y, z, red, filter …) after '.'");
+    if (component < 0)
+        return parser_fail(p, part.span, "expected a component (x, y, z, red, filter …) after '.'");
     require(n, BIND_PRIMARY);
     Node *result = parser_node(p, NODE_DOT, span_join(n->span, part.span));
     result->op = (uint16_t)component;
@@ -320,10 +336,14 @@ static Node *postfix(Parser *p) {
         if (!n || p->failed) return NULL;
         p->closed = operand_ends(p, n);
         int next = p->closed ? TOKEN_END : parser_peek(p)->kind;
-        if (p->slow && p->brackets == 0 && p->host->groups_ended(p->host->context) != groups) p->crossed = true;
-        if (next == '.') n = dot(p, n);
-        else if (next == '[' && (n->kind == NODE_NAME || n->kind == NODE_INDEX || n->kind == NODE_VALUE)) n = index(p, n);
-        else return parser_fold(p, n);
+        if (p->slow && p->brackets == 0 && p->host->groups_ended(p->host->context) != groups)
+            p->crossed = true;
+        if (next == '.')
+            n = dot(p, n);
+        else if (next == '[' && (n->kind == NODE_NAME || n->kind == NODE_INDEX || n->kind == NODE_VALUE))
+            n = index(p, n);
+        else
+            return parser_fold(p, n);
     }
 }
 
@@ -349,7 +369,8 @@ static Node *term(Parser *p) {
     for (int count = 0; a && !p->failed; count++) {
         int op = p->closed ? TOKEN_END : parser_peek(p)->kind;
         if (op != '*' && op != '/') return a;
-        if (count > PARSER_CHAIN_LIMIT) return parser_fail(p, a->span, "too many operators in one expression");
+        if (count > PARSER_CHAIN_LIMIT)
+            return parser_fail(p, a->span, "too many operators in one expression");
         parser_take(p);
         Node *b = factor(p);
         if (!b) return NULL;
@@ -369,7 +390,8 @@ Node *parser_expression(Parser *p) {
     for (int count = 0; a && !p->failed; count++) {
         int op = p->closed ? TOKEN_END : parser_peek(p)->kind;
         if (op != '+' && op != '-') break;
-        if (count > PARSER_CHAIN_LIMIT) return parser_fail(p, a->span, "too many operators in one expression");
+        if (count > PARSER_CHAIN_LIMIT)
+            return parser_fail(p, a->span, "too many operators in one expression");
         parser_take(p);
         Node *b = term(p);
         if (!b) return NULL;
@@ -382,8 +404,8 @@ Node *parser_expression(Parser *p) {
 }
 
 static bool is_relation(int kind) {
-    return kind == '=' || kind == '<' || kind == '>' || kind == TOKEN_LESS_EQUAL || kind == TOKEN_GREATER_EQUAL ||
-           kind == TOKEN_NOT_EQUAL;
+    return kind == '=' || kind == '<' || kind == '>' || kind == TOKEN_LESS_EQUAL ||
+           kind == TOKEN_GREATER_EQUAL || kind == TOKEN_NOT_EQUAL;
 }
 
 /* relation = expression { ("=" | "!=" | "<" | "<=" | ">" | ">=") expression } */
@@ -439,7 +461,14 @@ Node *parser_full(Parser *p) {
 bool parser_begins_expression(Parser *p, bool after_comma) {
     const Token *t = parser_peek(p);
     switch (t->kind) {
-    case TOKEN_NUMBER: case TOKEN_STRING: case TOKEN_VALUE: case '(': case '<': case '-': case '+': case '!': return true;
+    case TOKEN_NUMBER:
+    case TOKEN_STRING:
+    case TOKEN_VALUE:
+    case '(':
+    case '<':
+    case '-':
+    case '+':
+    case '!': return true;
     case TOKEN_WORD: break;
     default: return false;
     }
@@ -448,7 +477,8 @@ bool parser_begins_expression(Parser *p, bool after_comma) {
     if (t->keyword) {
         if (is_parameter(p, t->as.name)) return true;
         switch (keyword_class((Keyword)t->keyword)) {
-        case KEYWORD_CONSTANT: case KEYWORD_COLOR: return !brace;
+        case KEYWORD_CONSTANT:
+        case KEYWORD_COLOR: return !brace;
         case KEYWORD_FUNCTION: return after == '(';
         default: return t->keyword == KW_function || t->keyword == KW_array;
         }

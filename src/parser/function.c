@@ -5,7 +5,10 @@
 Node *parser_function(Parser *p) {
     Token word = parser_take(p);
     Node *n = parser_node(p, NODE_FUNCTION, word.span);
-    struct { Name *items; size_t count, capacity; } names = {0};
+    struct {
+        Name *items;
+        size_t count, capacity;
+    } names = {0};
     p->raw = true;
     if (parser_accept(p, '(')) {
         for (;;) {
@@ -29,7 +32,8 @@ Node *parser_function(Parser *p) {
     bool ok = parser_expect(p, '{', "'{'");
     p->brackets = 1;
     if (ok && parser_peek_after(p)->kind == '{') {
-        p->in_function = false; /* pigment, pattern, spline, transform: a block like any other, but the function evaluates it */
+        p->in_function =
+            false; /* pigment, pattern, spline, transform: a block like any other, but the function evaluates it */
         p->unfolded = true;
         p->parameter_count = 0;
     } else {
@@ -37,8 +41,10 @@ Node *parser_function(Parser *p) {
     }
     while (ok && !p->failed && parser_peek(p)->kind != '}') {
         Node *e = parser_full(p);
-        if (!e) ok = false;
-        else *list_push(p->arena, &n->as.function.body) = e;
+        if (!e)
+            ok = false;
+        else
+            *list_push(p->arena, &n->as.function.body) = e;
         if (!parser_accept(p, ',')) break;
     }
     p->in_function = outer.in_function;

@@ -8,7 +8,8 @@ static bool is_value_of_same_name(Parser *p) {
     const void *macro;
     if (t->kind != TOKEN_WORD || t->keyword || !context_is_item(p->block, t->as.name)) return false;
     int after = parser_peek_after(p)->kind;
-    bool ends = after == '+' || after == '-' || after == '*' || after == '/' || after == '.' || after == '[' || after == ',' || after == '}' || after == TOKEN_END;
+    bool ends = after == '+' || after == '-' || after == '*' || after == '/' || after == '.' ||
+                after == '[' || after == ',' || after == '}' || after == TOKEN_END;
     return ends && parser_classify(p, t->as.name, &macro) == NAME_PLAIN;
 }
 
@@ -41,7 +42,8 @@ static Node *word_item(Parser *p) {
     n->as.word.word_span = word.span;
     NodeList *list = &n->as.word.list;
     bool comma = false;
-    while (!p->failed && (argument_follows(p, list, comma) || (list->count == 0 && parser_begins_component(p)))) {
+    while (!p->failed &&
+           (argument_follows(p, list, comma) || (list->count == 0 && parser_begins_component(p)))) {
         Node *e = parser_begins_component(p) ? parser_color(p) : parser_expression(p);
         if (!e) return NULL;
         *list_push(p->arena, list) = e;
@@ -84,14 +86,16 @@ static Node *call_item(Parser *p, const void *macro) {
     if (!parser_arguments(p, &call->as.apply.list)) return NULL;
     call->span = span_join(name.span, p->last.span);
     if (!continues_expression(parser_peek(p))) return call;
-    if (p->host->macro_binding(p->host->context, macro) == BIND_NONE) return parser_fail(p, call->span, "half a macro");
+    if (p->host->macro_binding(p->host->context, macro) == BIND_NONE)
+        return parser_fail(p, call->span, "half a macro");
     *p = before;
     return parser_expression(p);
 }
 
 /* `red 1 green 0.5` is a colour, but in a picture's block `filter 3, 0.5` is about the palette's entry 3. */
 static bool components_make_colors(const Parser *p) {
-    static const char *const pictures[] = {"image_map", "bump_map", "material_map", "image_pattern", "texture"};
+    static const char *const pictures[] = {"image_map", "bump_map", "material_map", "image_pattern",
+                                           "texture"};
     for (size_t i = 0; p->block && i < VTS_ARRAY_COUNT(pictures); i++)
         if (strcmp(p->block->text, pictures[i]) == 0) return false;
     return true;
@@ -121,7 +125,8 @@ static Node *named_item(Parser *p) {
         if (brace) return parser_block(p);
         return after->kind == '(' || p->guessing || follows_comma(p) ? parser_expression(p) : word_item(p);
     case NAME_MACRO:
-        if (after->kind != '(') return parser_fail(p, t->span, "'%s' is a macro: it is called with ( )", t->as.name->text);
+        if (after->kind != '(')
+            return parser_fail(p, t->span, "'%s' is a macro: it is called with ( )", t->as.name->text);
         return call_item(p, macro);
     default: return value_item(p);
     }
@@ -132,7 +137,8 @@ static Node *keyword_item(Parser *p) {
     int after = parser_peek_after(p)->kind;
     bool brace = after == '{';
     switch (keyword_class((Keyword)t->keyword)) {
-    case KEYWORD_CONSTANT: case KEYWORD_COLOR: return brace ? parser_block(p) : parser_expression(p);
+    case KEYWORD_CONSTANT:
+    case KEYWORD_COLOR: return brace ? parser_block(p) : parser_expression(p);
     case KEYWORD_FUNCTION: /* `seed 5` of a jitter is a word, seed(5) a function */
         if (after == '(') return parser_expression(p);
         break;
@@ -160,13 +166,17 @@ Node *parser_statement(Parser *p) {
     }
     case '[': return bracketed(p, NODE_ENTRY);
     case '{': return bracketed(p, NODE_LIST);
-    case ',': case ';': {
+    case ',':
+    case ';': {
         Node *n = parser_node(p, NODE_EMPTY, t->span);
         parser_take(p);
         return n;
     }
     case TOKEN_WORD: return t->keyword ? keyword_item(p) : named_item(p);
-    case '}': case ')': case ']': case '>': return parser_fail(p, t->span, "'%c' closes nothing that is open here", t->kind);
+    case '}':
+    case ')':
+    case ']':
+    case '>': return parser_fail(p, t->span, "'%c' closes nothing that is open here", t->kind);
     default: return value_item(p);
     }
 }

@@ -27,8 +27,10 @@ const Token *parser_peek_after(Parser *p) {
 
 Token parser_take(Parser *p) {
     p->last = *parser_peek(p);
-    if (p->slow) p->has_window = false;
-    else if (p->at < p->end) p->at++;
+    if (p->slow)
+        p->has_window = false;
+    else if (p->at < p->end)
+        p->at++;
     return p->last;
 }
 
@@ -97,7 +99,8 @@ NameClass parser_classify(Parser *p, Name name, const void **macro) {
 
 static void never_closed(Parser *p, const Token *open, Span end, const char *name) {
     p->failed = true;
-    Diagnostic *d = diag_error(p->diags, end, "the text ends, but '%c' is missing for '%s'", open->kind == '[' ? ']' : '}', name);
+    Diagnostic *d = diag_error(p->diags, end, "the text ends, but '%c' is missing for '%s'",
+                               open->kind == '[' ? ']' : '}', name);
     diag_note(p->diags, d, open->span, "opened here");
 }
 
@@ -132,8 +135,10 @@ Body *parser_body(Parser *p, Name block) {
     if (!p->failed && !parser_accept(p, close)) {
         const char *name = block ? block->text : "it";
         const Token *t = parser_peek(p);
-        if (t->kind == TOKEN_END) never_closed(p, &open, t->span, name);
-        else parser_expect(p, close, close == ']' ? "']'" : "'}'");
+        if (t->kind == TOKEN_END)
+            never_closed(p, &open, t->span, name);
+        else
+            parser_expect(p, close, close == ']' ? "']'" : "'}'");
     }
     return p->failed ? NULL : body;
 }
@@ -142,8 +147,11 @@ Body *parser_body(Parser *p, Name block) {
 Node *parser_target(Parser *p) {
     p->raw = true;
     const Token *t = parser_peek(p);
-    if (t->kind != TOKEN_WORD) return parser_fail(p, here(p), "expected a name, found %s", token_describe(t, p->arena));
-    if (t->keyword) return parser_fail(p, t->span, "'%s' is a word of the language: it cannot be a name", t->as.name->text);
+    if (t->kind != TOKEN_WORD)
+        return parser_fail(p, here(p), "expected a name, found %s", token_describe(t, p->arena));
+    if (t->keyword)
+        return parser_fail(p, t->span, "'%s' is a word of the language: it cannot be a name",
+                           t->as.name->text);
     Token name = parser_take(p);
     Node *n = parser_node(p, NODE_NAME, name.span);
     n->as.name = name.as.name;
@@ -163,15 +171,16 @@ Node *parser_target(Parser *p) {
 }
 
 static bool is_dangling_end(const Token *t) {
-    return t->kind == '+' || t->kind == '-' || t->kind == '*' || t->kind == '/' || t->kind == '?' || t->kind == ':' ||
-           t->kind == '&' || t->kind == '|' || t->kind == '=' || t->kind == '<' || t->kind == '!' || t->kind == '.' ||
-           t->kind == TOKEN_LESS_EQUAL || t->kind == TOKEN_GREATER_EQUAL || t->kind == TOKEN_NOT_EQUAL;
+    return t->kind == '+' || t->kind == '-' || t->kind == '*' || t->kind == '/' || t->kind == '?' ||
+           t->kind == ':' || t->kind == '&' || t->kind == '|' || t->kind == '=' || t->kind == '<' ||
+           t->kind == '!' || t->kind == '.' || t->kind == TOKEN_LESS_EQUAL ||
+           t->kind == TOKEN_GREATER_EQUAL || t->kind == TOKEN_NOT_EQUAL;
 }
 
 static bool is_dangling_begin(const Token *t) {
-    return t->kind == '*' || t->kind == '/' || t->kind == '?' || t->kind == ':' || t->kind == '&' || t->kind == '|' ||
-           t->kind == '=' || t->kind == '>' || t->kind == '.' || t->kind == '^' || t->kind == TOKEN_LESS_EQUAL ||
-           t->kind == TOKEN_GREATER_EQUAL || t->kind == TOKEN_NOT_EQUAL;
+    return t->kind == '*' || t->kind == '/' || t->kind == '?' || t->kind == ':' || t->kind == '&' ||
+           t->kind == '|' || t->kind == '=' || t->kind == '>' || t->kind == '.' || t->kind == '^' ||
+           t->kind == TOKEN_LESS_EQUAL || t->kind == TOKEN_GREATER_EQUAL || t->kind == TOKEN_NOT_EQUAL;
 }
 
 bool parser_body_is_whole(const Body *body) {

@@ -58,24 +58,24 @@ struct Parser {
     const KeywordTable *keywords;
     const ParserHost *host;
     bool slow;
-    bool failed;        /* fast road: not understood; slow road: an error was reported */
-    TokenList *list;    /* fast road: tokens [at, end) of it */
+    bool failed;     /* fast road: not understood; slow road: an error was reported */
+    TokenList *list; /* fast road: tokens [at, end) of it */
     uint32_t at, end;
-    Token window;       /* slow road: the token that was looked at but not taken */
+    Token window; /* slow road: the token that was looked at but not taken */
     bool has_window;
-    bool raw;           /* slow road: pull the next token as it is written */
-    Token last;         /* the token that was taken last */
-    Name block;         /* the block whose items are being read, NULL at top level */
-    Name *parameters;   /* of the function whose body is being read */
+    bool raw;         /* slow road: pull the next token as it is written */
+    Token last;       /* the token that was taken last */
+    Name block;       /* the block whose items are being read, NULL at top level */
+    Name *parameters; /* of the function whose body is being read */
     size_t parameter_count;
     bool in_function;
-    bool unfolded;      /* operands are kept as trees */
-    bool heads_only;    /* branches of directives need not be whole: the text after #end may complete them */
-    bool guessing;      /* names that mean nothing yet are taken for values */
-    bool crossed;       /* slow road: a group ended between an operand and what follows it, outside of brackets */
-    bool closed;        /* the last operand was a block, a function, an array or a text: no operator follows */
-    int depth;          /* nesting, against the C stack */
-    int brackets;       /* open ( < [ of the expression being read */
+    bool unfolded;   /* operands are kept as trees */
+    bool heads_only; /* branches of directives need not be whole: the text after #end may complete them */
+    bool guessing;   /* names that mean nothing yet are taken for values */
+    bool crossed; /* slow road: a group ended between an operand and what follows it, outside of brackets */
+    bool closed;  /* the last operand was a block, a function, an array or a text: no operator follows */
+    int depth;    /* nesting, against the C stack */
+    int brackets; /* open ( < [ of the expression being read */
     AssumptionList assumptions;
 };
 

@@ -17,7 +17,8 @@ static void diagnose(const char *path, StrBuf *out) {
     source_set_init(&sources, &session);
     diag_init(&diags, &session, &sources);
     interner_init(&names, &session);
-    EvalLimits limits = {.loops = 1000, .recursion = 50, .include_depth = 8, .array_elements = 100000, .string_bytes = 10000};
+    EvalLimits limits = {
+        .loops = 1000, .recursion = 50, .include_depth = 8, .array_elements = 100000, .string_bytes = 10000};
     EvalOptions o = {.image_width = 4, .image_height = 3, .limits = limits};
     EvalStatus status = eval_file(path, &o, &sources, &diags, &names, &parse, &scene_arena, &scene);
     for (const Diagnostic *d = diags.first; d; d = d->next) diag_format(out, &sources, d, false);

@@ -37,8 +37,16 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         source_set_init(&sources, &session);
         diag_init(&diags, &session, &sources);
         interner_init(&names, &session);
-        EvalOptions o = {.image_width = 4, .image_height = 3, .keep_writes_in_memory = true, .on_text = on_text, .context = &printed,
-                         .limits = {.loops = 300, .recursion = 20, .include_depth = 4, .array_elements = 10000, .string_bytes = 10000}};
+        EvalOptions o = {.image_width = 4,
+                         .image_height = 3,
+                         .keep_writes_in_memory = true,
+                         .on_text = on_text,
+                         .context = &printed,
+                         .limits = {.loops = 300,
+                                    .recursion = 20,
+                                    .include_depth = 4,
+                                    .array_elements = 10000,
+                                    .string_bytes = 10000}};
         eval_file(path, &o, &sources, &diags, &names, &parse, &scene_arena, &scene);
         StrBuf out = {0};
         for (const Diagnostic *d = diags.first; d; d = d->next) diag_format(&out, &sources, d, false);

@@ -20,7 +20,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     TokenList *list = lexer_run(file, &keywords, &arena, &diags);
     for (uint32_t i = 0; i + 1 < list->count; i++) {
         const Token *t = &list->items[i];
-        if (t->span.end > file->size || t->span.begin >= t->span.end || t->span.end > list->items[i + 1].span.end) abort();
+        if (t->span.end > file->size || t->span.begin >= t->span.end ||
+            t->span.end > list->items[i + 1].span.end)
+            abort();
         if (t->match && (t->match <= i || t->match >= list->count)) abort();
     }
     if (list->items[list->count - 1].kind != TOKEN_END) abort();

@@ -32,11 +32,18 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     diag_init(&diags, &arena, &sources);
     interner_init(&names, &arena);
     keyword_table_init(&keywords, &names, &arena);
-    TokenList *list = lexer_run(source_add_text(&sources, "fuzz", (const char *)data, size), &keywords, &arena, &diags);
+    TokenList *list =
+        lexer_run(source_add_text(&sources, "fuzz", (const char *)data, size), &keywords, &arena, &diags);
     ParserHost host = {.classify = classify, .macro_binding = binding, .macro_is_block = is_block};
     StrBuf out = {0};
     for (uint32_t at = 0; at + 1 < list->count;) {
-        Parser p = {.arena = &arena, .diags = &diags, .keywords = &keywords, .host = &host, .list = list, .at = at, .end = list->count - 1};
+        Parser p = {.arena = &arena,
+                    .diags = &diags,
+                    .keywords = &keywords,
+                    .host = &host,
+                    .list = list,
+                    .at = at,
+                    .end = list->count - 1};
         size_t errors = diags.error_count;
         Node *n = parser_statement(&p);
         if (diags.error_count != errors) abort(); /* the fast road is silent */

@@ -48,7 +48,8 @@ static void check_diagnostics(Run *run, const char *text, SourceSet *sources, co
         Severity severity = strcmp(kind, "error") == 0 ? SEVERITY_ERROR : SEVERITY_WARNING;
         bool found = false;
         for (const Diagnostic *d = diags->first; d && !found; d = d->next)
-            found = d->severity == severity && source_locate(sources, d->span).line == line && strstr(d->message, wanted);
+            found = d->severity == severity && source_locate(sources, d->span).line == line &&
+                    strstr(d->message, wanted);
         if (!found) strbuf_addf(&run->problems, "no %s on line %u: %s\n", kind, line, wanted);
         expected += severity == SEVERITY_ERROR;
     }
@@ -65,9 +66,12 @@ static void read_options(const char *text, EvalOptions *o, struct EvalDeclare *d
     char line[256];
     snprintf(line, sizeof line, "%.*s", (int)strcspn(p, "\r\n"), p);
     for (char *word = strtok(line, " "); word; word = strtok(NULL, " ")) {
-        if (sscanf(word, "+W%d", &o->image_width) == 1 || sscanf(word, "+H%d", &o->image_height) == 1) continue;
-        if (o->declare_count < 8 && sscanf(word, "Declare=%63[^=]=%63s", names[o->declare_count], values[o->declare_count]) == 2) {
-            declares[o->declare_count] = (struct EvalDeclare){names[o->declare_count], values[o->declare_count]};
+        if (sscanf(word, "+W%d", &o->image_width) == 1 || sscanf(word, "+H%d", &o->image_height) == 1)
+            continue;
+        if (o->declare_count < 8 &&
+            sscanf(word, "Declare=%63[^=]=%63s", names[o->declare_count], values[o->declare_count]) == 2) {
+            declares[o->declare_count] =
+                (struct EvalDeclare){names[o->declare_count], values[o->declare_count]};
             o->declares = declares;
             o->declare_count++;
         }
@@ -87,8 +91,15 @@ static void run_program(Run *run, const char *path, const char *text, bool show,
     source_set_init(&sources, &session);
     diag_init(&diags, &session, &sources);
     interner_init(&names, &session);
-    EvalOptions o = {.include_dirs = include_dirs, .include_dir_count = 2, .image_width = 4, .image_height = 4, .limits = eval_limits_default(),
-                     .keep_writes_in_memory = true, .on_text = on_text, .context = run, .expand_always = expand};
+    EvalOptions o = {.include_dirs = include_dirs,
+                     .include_dir_count = 2,
+                     .image_width = 4,
+                     .image_height = 4,
+                     .limits = eval_limits_default(),
+                     .keep_writes_in_memory = true,
+                     .on_text = on_text,
+                     .context = run,
+                     .expand_always = expand};
     read_options(text, &o, declares);
     run->status = eval_file(path, &o, &sources, &diags, &names, &parse, &scene_arena, &scene);
     run->errors = diags.error_count;
@@ -160,7 +171,9 @@ static bool test_road(const char *path, bool show, bool expand) {
     return ok;
 }
 
-static bool test_program(const char *path, bool show) { return test_road(path, show, false) && (show || test_road(path, show, true)); }
+static bool test_program(const char *path, bool show) {
+    return test_road(path, show, false) && (show || test_road(path, show, true));
+}
 
 static int is_program(const struct dirent *entry) {
     const char *dot = strrchr(entry->d_name, '.');
@@ -170,7 +183,8 @@ static int is_program(const struct dirent *entry) {
 /* Programs that need more than the evaluator: several frames, the geometry of objects, pigments as functions, fonts, or noises that no
  * description gives. */
 static bool needs_more(const char *name) {
-    static const char *const numbers[] = {"157", "160", "161", "202", "225", "226", "227", "235", "237", "240", "241", "250", "251"};
+    static const char *const numbers[] = {"157", "160", "161", "202", "225", "226", "227",
+                                          "235", "237", "240", "241", "250", "251"};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(numbers); i++)
         if (strncmp(name, numbers[i], 3) == 0) return true;
     return false;
@@ -179,8 +193,10 @@ static bool needs_more(const char *name) {
 static int test_folder(const char *folder) {
     const char *shared = getenv("VTS_SHARED");
     char path[4096];
-    if (shared) snprintf(path, sizeof path, "%s/conformance/language", shared);
-    else snprintf(path, sizeof path, "%s", folder);
+    if (shared)
+        snprintf(path, sizeof path, "%s/conformance/language", shared);
+    else
+        snprintf(path, sizeof path, "%s", folder);
     struct dirent **entries;
     int count = scandir(path, &entries, is_program, alphasort);
     if (count < 0) return 77;

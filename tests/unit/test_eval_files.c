@@ -25,7 +25,9 @@ typedef struct Run {
     char folder[64];
 } Run;
 
-static void on_text(void *context, EvalStream stream, const char *text) { strbuf_adds(&((Run *)context)->text[stream], text); }
+static void on_text(void *context, EvalStream stream, const char *text) {
+    strbuf_adds(&((Run *)context)->text[stream], text);
+}
 
 static void write_file(const Run *run, const char *name, const char *text, size_t size) {
     char path[256];
@@ -54,7 +56,8 @@ static void evaluate_with(Run *run, const char *text, EvalOptions o, MemoryBudge
     interner_init(&run->names, &run->session);
     o.on_text = on_text;
     o.context = run;
-    run->status = eval_file(path, &o, &run->sources, &run->diags, &run->names, &run->parse, &run->scene_arena, &run->scene);
+    run->status = eval_file(path, &o, &run->sources, &run->diags, &run->names, &run->parse, &run->scene_arena,
+                            &run->scene);
 }
 
 static void evaluate(Run *run, const char *text, EvalOptions o) { evaluate_with(run, text, o, NULL); }
@@ -85,8 +88,15 @@ static void test_values_from_outside(void **state) {
     Run run;
     const struct EvalDeclare declares[] = {{"Trees", "12"}, {"Kind", "oak"}};
     begin(&run);
-    evaluate(&run, "#debug concat(str(Trees, 0, 0), Kind, str(clock, 0, 1), str(image_width/image_height, 0, 1), str(frame_number, 0, 0))",
-             (EvalOptions){.declares = declares, .declare_count = 2, .clock = 0.5, .image_width = 4, .image_height = 2, .frame_number = 7});
+    evaluate(&run,
+             "#debug concat(str(Trees, 0, 0), Kind, str(clock, 0, 1), str(image_width/image_height, 0, 1), "
+             "str(frame_number, 0, 0))",
+             (EvalOptions){.declares = declares,
+                           .declare_count = 2,
+                           .clock = 0.5,
+                           .image_width = 4,
+                           .image_height = 2,
+                           .frame_number = 7});
     assert_int_equal(run.status, EVAL_OK);
     assert_string_equal(debug_text(&run), "12oak0.52.07");
     assert_non_null(run.scene);
@@ -180,12 +190,14 @@ static void test_dumps(void **state) {
     begin(&run);
     evaluate(&run, "sphere { 0, 1 }", (EvalOptions){.print_tokens = true});
     assert_string_equal(run.text[EVAL_STREAM_STATISTICS].data,
-                        "1:1 keyword sphere\n1:8 symbol {\n1:10 number 0\n1:11 symbol ,\n1:13 number 1\n1:15 symbol }\n1:16 end \n");
+                        "1:1 keyword sphere\n1:8 symbol {\n1:10 number 0\n1:11 symbol ,\n1:13 number 1\n1:15 "
+                        "symbol }\n1:16 end \n");
     end(&run);
     begin(&run);
     evaluate(&run, "#declare A = 1 + x*2;", (EvalOptions){.print_ast = true});
-    assert_string_equal(run.text[EVAL_STREAM_STATISTICS].data,
-                        "declare\n  name A\n  binary +\n    number 1\n    binary *\n      constant x\n      number 2\n");
+    assert_string_equal(
+        run.text[EVAL_STREAM_STATISTICS].data,
+        "declare\n  name A\n  binary +\n    number 1\n    binary *\n      constant x\n      number 2\n");
     end(&run);
 }
 
@@ -200,7 +212,9 @@ static void test_running_out_of_memory(void **state) {
         MemoryBudget budget = {.limit = limit, .on_exhausted = jump, .context = &here};
         begin(&run);
         if (setjmp(here) == 0)
-            evaluate_with(&run, "#fopen F \"out.txt\" write #declare L = array[100000]; #for (I, 0, 99999) #declare L[I] = <I, I, I>; #end",
+            evaluate_with(&run,
+                          "#fopen F \"out.txt\" write #declare L = array[100000]; #for (I, 0, 99999) "
+                          "#declare L[I] = <I, I, I>; #end",
                           (EvalOptions){.keep_writes_in_memory = true}, &budget);
         end(&run);
     }
@@ -208,9 +222,12 @@ static void test_running_out_of_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_values_from_outside),     cmocka_unit_test(test_reading_stays_in_its_folders),
-        cmocka_unit_test(test_writing_needs_permission), cmocka_unit_test(test_files_that_are_no_scenes),
-        cmocka_unit_test(test_interruption),             cmocka_unit_test(test_dumps),
+        cmocka_unit_test(test_values_from_outside),
+        cmocka_unit_test(test_reading_stays_in_its_folders),
+        cmocka_unit_test(test_writing_needs_permission),
+        cmocka_unit_test(test_files_that_are_no_scenes),
+        cmocka_unit_test(test_interruption),
+        cmocka_unit_test(test_dumps),
         cmocka_unit_test(test_running_out_of_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -26,15 +26,19 @@ static void lex(Lexed *l, const char *text) {
     interner_init(&l->names, &l->arena);
     intern_cstr(&l->names, "somebody_was_here_before");
     keyword_table_init(&l->keywords, &l->names, &l->arena);
-    l->list = lexer_run(source_add_text(&l->sources, "test", text, strlen(text)), &l->keywords, &l->arena, &l->diags);
+    l->list = lexer_run(source_add_text(&l->sources, "test", text, strlen(text)), &l->keywords, &l->arena,
+                        &l->diags);
 }
 
 static const Token *at(const Lexed *l, uint32_t i) { return &l->list->items[i]; }
 
 static void test_numbers(void **state) {
     (void)state;
-    static const struct { const char *text; double value; } cases[] = {
-        {"1", 1}, {"1.5", 1.5}, {".5", 0.5}, {"5.", 5}, {"1e3", 1000}, {"1E-3", 0.001}, {"1.25E+2", 125}, {"007", 7}};
+    static const struct {
+        const char *text;
+        double value;
+    } cases[] = {{"1", 1},      {"1.5", 1.5},    {".5", 0.5},      {"5.", 5},
+                 {"1e3", 1000}, {"1E-3", 0.001}, {"1.25E+2", 125}, {"007", 7}};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(cases); i++) {
         Lexed l;
         lex(&l, cases[i].text);

@@ -50,9 +50,15 @@ static Node *parse(Parsed *q, const char *text) {
     diag_init(&q->diags, &q->arena, &q->sources);
     interner_init(&q->names, &q->arena);
     keyword_table_init(&q->keywords, &q->names, &q->arena);
-    TokenList *list = lexer_run(source_add_text(&q->sources, "test", text, strlen(text)), &q->keywords, &q->arena, &q->diags);
+    TokenList *list = lexer_run(source_add_text(&q->sources, "test", text, strlen(text)), &q->keywords,
+                                &q->arena, &q->diags);
     q->host = (ParserHost){.classify = classify, .macro_binding = binding, .macro_is_block = is_block};
-    q->parser = (Parser){.arena = &q->arena, .diags = &q->diags, .keywords = &q->keywords, .host = &q->host, .list = list, .end = list->count - 1};
+    q->parser = (Parser){.arena = &q->arena,
+                         .diags = &q->diags,
+                         .keywords = &q->keywords,
+                         .host = &q->host,
+                         .list = list,
+                         .end = list->count - 1};
     return parser_statement(&q->parser);
 }
 
@@ -136,8 +142,8 @@ static void assert_taken(const char *text, uint32_t tokens) {
 
 static void test_extent_of_items(void **state) {
     (void)state;
-    assert_taken("1 < 2", 1);                     /* no comparison outside of brackets */
-    assert_taken("distance 50 rgb 1", 2);         /* a colour is an item of its own … */
+    assert_taken("1 < 2", 1);                      /* no comparison outside of brackets */
+    assert_taken("distance 50 rgb 1", 2);          /* a colour is an item of its own … */
     assert_taken("checker rgb 0, rgb 1 scale", 6); /* … unless a comma says otherwise */
     assert_taken("diffuse 0.5, 0.3 specular 1", 4);
     assert_taken("translate x*2 VNext", 5);
@@ -167,9 +173,12 @@ static void test_what_the_fast_road_leaves(void **state) {
 /* What a call needs of its macro's body depends on the operators around it. */
 static void test_needs_of_calls(void **state) {
     (void)state;
-    static const struct { const char *text; Binding need; } cases[] = {
-        {"#declare A = M(1);", BIND_ANY},     {"#declare A = M(1) + 2;", BIND_SUM},     {"#declare A = M(1) * 2;", BIND_PRODUCT},
-        {"#declare A = 2 + M(1);", BIND_PRIMARY}, {"#declare A = -M(1);", BIND_PRIMARY}, {"#declare A = M(1).x;", BIND_PRIMARY}};
+    static const struct {
+        const char *text;
+        Binding need;
+    } cases[] = {{"#declare A = M(1);", BIND_ANY},         {"#declare A = M(1) + 2;", BIND_SUM},
+                 {"#declare A = M(1) * 2;", BIND_PRODUCT}, {"#declare A = 2 + M(1);", BIND_PRIMARY},
+                 {"#declare A = -M(1);", BIND_PRIMARY},    {"#declare A = M(1).x;", BIND_PRIMARY}};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(cases); i++) {
         Parsed q;
         assert_non_null(parse(&q, cases[i].text));

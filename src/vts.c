@@ -346,7 +346,8 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
     double parsed = stopwatch_wall();
     if ((status = compile(session)) != VTS_OK) return status;
     double built = stopwatch_wall();
-    RenderOptions options = {.pool = session->pool, .progress = &session->progress, .samples = session->scene->settings.samples,
+    RenderOptions options = {.pool = session->pool, .progress = &session->progress, .interrupted = &session->interrupted,
+                             .samples = session->scene->settings.samples,
                              .exposure = o->exposure, .alpha = o->alpha};
     memcpy(options.region, o->region, sizeof options.region);
     if (options.region[2] == 0) options.region[2] = o->width, options.region[3] = o->height;

@@ -85,8 +85,8 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     out->skins = arena_new_array(arena, CompiledSkin, skins.count);
     for (size_t i = 0; i < skins.count; i++) {
         bool ok = skin_compile(skins.items[i], options, out, diags, &out->skins[out->skin_count]);
+        if (ok) out->skin_count++; /* also when interrupted: to be destroyed */
         if (options->interrupted && *options->interrupted) return COMPILE_INTERRUPTED;
-        if (ok) out->skin_count++;
     }
     out->build_seconds = stopwatch_wall() - start;
     return diags->error_count > errors ? COMPILE_FAILED : COMPILE_OK;

@@ -246,16 +246,17 @@ static Box3 scene_box(const Scene *scene) {
 
 Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags) {
     Hierarchy *h = arena_new(arena, Hierarchy);
-    h->device = rtcNewDevice("threads=1,set_affinity=0");
-    if (!h->device) {
-        diag_error(diags, (Span){0}, "Embree cannot be started on this machine");
-        return NULL;
-    }
     Box3 box = scene_box(scene);
     h->origin = vec3_scale(vec3_add(box.min, box.max), 0.5);
     Builder builder = {h, scene, arena, diags, 1e-4 * fmax(vec3_length(vec3_sub(box.max, box.min)), 1e-6)};
     Transform identity = transform_identity();
     for (size_t i = 0; i < scene->object_count; i++) add_object(&builder, scene->objects[i], &identity, scene->default_texture);
+    /* From here on nothing is taken from the arena: if memory ran out, the device would be lost. */
+    h->device = rtcNewDevice("threads=1,set_affinity=0");
+    if (!h->device) {
+        diag_error(diags, (Span){0}, "Embree cannot be started on this machine");
+        return NULL;
+    }
     h->scene = rtcNewScene(h->device);
     rtcSetSceneFlags(h->scene, RTC_SCENE_FLAG_ROBUST);
     for (size_t i = 0; i < h->parts.count; i++) attach(h, h->parts.items[i]);

@@ -74,6 +74,7 @@ static Radiance trace_pixel(Frame *frame, Tracer *tracer, int worker, int px, in
 static void render_tile(void *context, size_t index, int worker) {
     Frame *frame = context;
     const RenderOptions *options = frame->options;
+    if (options->interrupted && *options->interrupted) return;
     int tx = (int)(index % (size_t)frame->tiles_x), ty = (int)(index / (size_t)frame->tiles_x);
     int x0 = options->region[0] + tx * TILE, y0 = options->region[1] + ty * TILE;
     int x1 = int_min(x0 + TILE, options->region[2]), y1 = int_min(y0 + TILE, options->region[3]);
@@ -103,15 +104,15 @@ bool render_picture(const CompiledScene *compiled, const RenderOptions *options,
                     RenderStats *stats, StrBuf *error) {
     int width = options->region[2] - options->region[0], height = options->region[3] - options->region[1];
     if (!image_init(out, width, height, options->alpha ? 4 : 3, NULL, memory, error)) return false;
-    Arena arena;
-    arena_init(&arena, memory, 0);
+    /* Workspace from the scene's arena: should memory run out half way, its owner releases it. */
+    ArenaMark mark = arena_mark(compiled->arena);
     int workers = pool_threads(options->pool);
     Frame frame = {.compiled = compiled, .options = options, .image = out, .gain = (float)exp2(options->exposure),
                    .tiles_x = (width + TILE - 1) / TILE, .tiles_y = (height + TILE - 1) / TILE,
-                   .tracers = arena_new_array(&arena, Tracer, (size_t)workers),
-                   .split_pixels = arena_new_array(&arena, uint64_t, (size_t)workers)};
+                   .tracers = arena_new_array(compiled->arena, Tracer, (size_t)workers),
+                   .split_pixels = arena_new_array(compiled->arena, uint64_t, (size_t)workers)};
     pthread_mutex_init(&frame.progress_lock, NULL);
-    for (int i = 0; i < workers; i++) tracer_init(&frame.tracers[i], compiled, &arena);
+    for (int i = 0; i < workers; i++) tracer_init(&frame.tracers[i], compiled, compiled->arena);
     bool done = pool_run(options->pool, (size_t)frame.tiles_x * (size_t)frame.tiles_y, render_tile, &frame);
     *stats = (RenderStats){0};
     for (int i = 0; i < workers; i++) {
@@ -119,7 +120,7 @@ bool render_picture(const CompiledScene *compiled, const RenderOptions *options,
         stats->split_pixels += frame.split_pixels[i];
     }
     pthread_mutex_destroy(&frame.progress_lock);
-    arena_destroy(&arena);
+    arena_reset_to(compiled->arena, mark);
     if (!done) image_free(out);
     return done;
 }

@@ -9,6 +9,7 @@
 typedef struct RenderOptions {
     Pool *pool;
     const Progress *progress;
+    const volatile bool *interrupted; /* may be NULL; tiles that start after it became true stay black */
     int region[4];   /* x0, y0, x1, y1 in pixels, x1 and y1 exclusive */
     int samples;     /* cones per pixel side where one is not enough; 0: 4 */
     double exposure; /* EV */

@@ -1,0 +1,188 @@
+/* Sessions: threads, reports, limits and interruption of real renders. */
+#include "analytic.h"
+
+#include <pthread.h>
+#include <time.h>
+
+static int set_up(void **state) {
+    Bench *b = malloc(sizeof *b);
+    bench_begin(b);
+    *state = b;
+    return 0;
+}
+
+static int tear_down(void **state) {
+    bench_end(*state);
+    free(*state);
+    return 0;
+}
+
+/* A bit of everything: skin with jitter, solids, two lights, sky, fog. */
+static const char meadow[] =
+    "#declare S = seed(3);\n"
+    "#declare Tuft = texel { resolution 32 cyclic x + z layer { particles { count 14 {\n"
+    "  position <rand(S), 0, rand(S)> velocity <0.3*rand(S)-0.15, 0.9, 0.3*rand(S)-0.15> acceleration <0, -0.2, 0.1> life 1\n"
+    "  width 0.06, 0.01 profile \"flat\" } } texture { pigment { rgb <0.2, 0.5, 0.1> } finish { diffuse 0.6, 0.3 } } } }\n"
+    "#declare Ball = texel { resolution 16 layer { sphere { <0.5, 0.5, 0.5>, 0.3 } texture { pigment { rgb x } } } }\n"
+    "camera { location <0, 2, -5> look_at <0, 0.4, 0> right x*image_width/image_height up y angle 50 }\n"
+    "light_source { <-20, 30, -25> rgb 1 parallel point_at 0 }\n"
+    "light_source { <5, 4, -3> rgb <0.3, 0.2, 0.1> }\n"
+    "background { rgb <0.4, 0.5, 0.8> }\n"
+    "fog { distance 40 rgb <0.4, 0.5, 0.8> }\n"
+    "#declare Ground = surface { patch_grid 8, 8 function(u, v) { <8*u - 4, 0.3*sin(7*u)*cos(5*v), 8*v - 4> } }\n"
+    "object { Ground }\n"
+    "sphere { <0.5, 0.8, -1>, 0.5 }\n"
+    "skin { surface { Ground } texel { Tuft } texel { Ball density 0.3 } mapping { repeat <12, 12> height 0.5 }\n"
+    "  jitter { direction 0.2 scale 0.8 height 0.3 scale 2 instance { rotate 360 displace 0.4 scale 0.3 mirror } seed 4 } }\n";
+
+static void threads_do_not_change_pixels(void **state) {
+    VtsOptions o = options_of_size(70, 50);
+    static const int threads[] = {1, 2, 5};
+    Picture first = {0};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(threads); i++) {
+        o.threads = threads[i];
+        Picture p = bench_render(*state, &o, meadow);
+        if (i) {
+            assert_memory_equal(p.pixels, first.pixels, 3 * sizeof(float) * 70 * 50);
+            picture_free(&p);
+        } else {
+            first = p;
+        }
+    }
+    for (size_t i = 0; i < 3 * 70 * 50; i++) assert_true(isfinite(first.pixels[i]) && first.pixels[i] >= 0 && first.pixels[i] < 20);
+    const int region[4] = {17, 23, 60, 49};
+    memcpy(o.region, region, sizeof region);
+    Picture part = bench_render(*state, &o, meadow);
+    for (int y = 0; y < part.height; y++)
+        assert_memory_equal(pixel_at(&part, 0, y), pixel_at(&first, 17, y + 23), 3 * sizeof(float) * 43);
+    picture_free(&part);
+    picture_free(&first);
+}
+
+/* ---- the report ---- */
+
+static double number_after(const char *text, const char *key) {
+    char quoted[64];
+    snprintf(quoted, sizeof quoted, "\"%s\":", key);
+    const char *at = strstr(text, quoted);
+    assert_non_null(at);
+    return strtod(at + strlen(quoted), NULL);
+}
+
+static void the_report_counts_what_was_done(void **state) {
+    const Bench *b = *state;
+    VtsOptions o = options_of_size(70, 50);
+    bench_write(b, meadow);
+    VtsSession *session = vts_session_create(&o, NULL);
+    assert_string_equal(vts_report(session), "");
+    assert_int_equal(vts_render(session, b->scene, b->output), VTS_OK);
+    const char *r = vts_report(session);
+    assert_true(number_after(r, "camera") >= 3500 && number_after(r, "camera") <= 3500 * 17);
+    assert_true(number_after(r, "shadow") > 100 && number_after(r, "shadow") < 1e7);
+    assert_true(number_after(r, "voxels_visited") > 1000);
+    assert_true(number_after(r, "march_steps") > 1000);
+    assert_true(number_after(r, "split_pixels") > 0 && number_after(r, "split_pixels") < 3500);
+    double wall = number_after(r, "wall_s"), parts = number_after(r, "parse_s") + number_after(r, "build_s") + number_after(r, "render_s");
+    assert_true(parts > 0 && parts <= wall * 1.001 + .001);
+    assert_true(number_after(r, "peak_rss_bytes") > 1e6 && number_after(r, "peak_rss_bytes") < 1e11);
+    assert_non_null(strstr(r, "\"name\":\"Tuft\""));
+    assert_non_null(strstr(r, "\"name\":\"Ball\""));
+    assert_true(number_after(r, "built") == 32 || number_after(r, "built") == 16 || number_after(r, "built") == 8);
+    assert_true(number_after(r, "bytes") > 0);
+    vts_session_destroy(session);
+}
+
+/* ---- limits ---- */
+
+/* Whatever the limit cuts short, the session ends well and another one works. */
+static void memory_runs_out_anywhere_without_harm(void **state) {
+    VtsOptions o = options_of_size(40, 30);
+    int refused = 0, done = 0;
+    remove(((const Bench *)*state)->output);
+    for (size_t limit = 1 << 16; limit < (size_t)1 << 28; limit += limit / 3) {
+        o.memory_limit = limit;
+        bench_write(*state, meadow);
+        const Bench *b = *state;
+        VtsSession *session = vts_session_create(&o, NULL);
+        if (!session) {
+            refused++;
+            continue;
+        }
+        VtsStatus status = vts_render(session, b->scene, b->output);
+        if (status != VTS_OK) {
+            assert_int_equal(status, VTS_ERROR_MEMORY);
+            assert_non_null(strstr(vts_diagnostics(session), "memory limit"));
+            assert_true(access(b->output, F_OK) != 0);
+            refused++;
+            assert_int_equal(vts_check(session, b->scene) == VTS_OK || limit < 1 << 22, true); /* the session is still of use */
+        } else {
+            done++;
+            remove(b->output);
+        }
+        vts_session_destroy(session);
+    }
+    printf("%d limits too small, %d sufficient\n", refused, done);
+    assert_true(refused > 5 && done > 2);
+}
+
+/* ---- interruption ---- */
+
+typedef struct Interrupter {
+    VtsSession *session;
+    long nanoseconds;
+} Interrupter;
+
+static void *interrupt_later(void *argument) {
+    Interrupter *i = argument;
+    struct timespec wait = {0, i->nanoseconds};
+    nanosleep(&wait, NULL);
+    vts_interrupt(i->session);
+    return NULL;
+}
+
+static void interruption_from_another_thread(void **state) {
+    const Bench *b = *state;
+    VtsOptions o = options_of_size(4000, 4000); /* minutes, if it went on */
+    bench_write(b, meadow);
+    remove(b->output);
+    static const long after[] = {100000, 20000000, 150000000, 400000000};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(after); i++) {
+        Interrupter other = {vts_session_create(&o, NULL), after[i]};
+        pthread_t thread;
+        assert_int_equal(pthread_create(&thread, NULL, interrupt_later, &other), 0);
+        assert_int_equal(vts_render(other.session, b->scene, b->output), VTS_INTERRUPTED);
+        pthread_join(thread, NULL);
+        assert_int_not_equal(access(b->output, F_OK), 0);
+        vts_session_destroy(other.session);
+    }
+}
+
+/* ---- alpha ---- */
+
+static void alpha_is_coverage(void **state) {
+    const Bench *b = *state;
+    char path[128];
+    snprintf(path, sizeof path, "%s/picture.tif", b->folder);
+    VtsOptions o = options_of_size(32, 32);
+    o.alpha = true;
+    bench_write(b,
+        "camera { orthographic location <0,0,-5> direction z right 2*x up 2*y }\n"
+        "background { rgb <0.3, 0.6, 0.9> }\n"
+        "sphere { 0, 0.7 pigment { rgb 1 } finish { ambient 1 diffuse 0 } }\n");
+    VtsSession *session = vts_session_create(&o, NULL);
+    assert_int_equal(vts_render(session, b->scene, path), VTS_OK);
+    vts_session_destroy(session);
+    assert_int_equal(access(path, F_OK), 0);
+    remove(path);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(threads_do_not_change_pixels),
+        cmocka_unit_test(the_report_counts_what_was_done),
+        cmocka_unit_test(memory_runs_out_anywhere_without_harm),
+        cmocka_unit_test(interruption_from_another_thread),
+        cmocka_unit_test(alpha_is_coverage),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

@@ -40,8 +40,11 @@ Array *array_copy(Eval *ev, const Array *from) {
 
 Slot *array_slot(Eval *ev, const Array *array, double index, Span span) {
     if (index >= 0 && index < (double)array->count) return &array->items[(size_t)index];
-    if (array->count) diag_error(ev->diags, span, "index %g is outside of the array, which goes from 0 to %zu", index, array->count - 1);
-    else diag_error(ev->diags, span, "index %g of an empty array", index);
+    if (array->count)
+        diag_error(ev->diags, span, "index %g is outside of the array, which goes from 0 to %zu", index,
+                   array->count - 1);
+    else
+        diag_error(ev->diags, span, "index %g of an empty array", index);
     return NULL;
 }
 
@@ -52,7 +55,8 @@ static Array *make(Eval *ev, const size_t *sizes, size_t rank) {
     a->rows = rank > 1;
     a->items = arena_new_array(ev->parse, Slot, a->count);
     for (size_t i = 0; rank > 1 && i < a->count; i++)
-        a->items[i] = (Slot){.value = {.kind = VALUE_ARRAY, .as.array = make(ev, sizes + 1, rank - 1)}, .set = true};
+        a->items[i] =
+            (Slot){.value = {.kind = VALUE_ARRAY, .as.array = make(ev, sizes + 1, rank - 1)}, .set = true};
     return a;
 }
 
@@ -69,7 +73,8 @@ static bool read_sizes(Eval *ev, const Node *node, size_t *sizes) {
             return false;
         }
         if (size > (double)limit || (total *= (uint64_t)size) > limit) {
-            diag_error(ev->diags, d->span, "the array would have more than %llu elements", (unsigned long long)limit);
+            diag_error(ev->diags, d->span, "the array would have more than %llu elements",
+                       (unsigned long long)limit);
             return false;
         }
         sizes[i] = (size_t)size;
@@ -78,7 +83,8 @@ static bool read_sizes(Eval *ev, const Node *node, size_t *sizes) {
 }
 
 static void check_filled(Eval *ev, const Array *a, size_t given, Span span) {
-    if (given && given < a->count) diag_error(ev->diags, span, "an array of %zu elements gets only %zu", a->count, given);
+    if (given && given < a->count)
+        diag_error(ev->diags, span, "an array of %zu elements gets only %zu", a->count, given);
 }
 
 Value eval_array(Eval *ev, const Node *node) {

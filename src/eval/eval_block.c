@@ -7,12 +7,14 @@ const EvalBlock *eval_block_items(Eval *ev, Name word, Span word_span, Span span
     Sink sink = {.kind = SINK_ITEMS, .block = word, .items = &items};
     run_body(ev, body, &sink);
     EvalBlock *block = arena_new(&ev->blocks, EvalBlock);
-    *block = (EvalBlock){.word = word, .word_span = word_span, .span = span, .items = items.items, .count = items.count};
+    *block = (EvalBlock){
+        .word = word, .word_span = word_span, .span = span, .items = items.items, .count = items.count};
     return block;
 }
 
 static Value keep_value(Arena *arena, Value v) {
-    if (v.kind == VALUE_VECTOR || v.kind == VALUE_COLOR) v.as.components = arena_copy(arena, v.as.components, v.size * sizeof(double));
+    if (v.kind == VALUE_VECTOR || v.kind == VALUE_COLOR)
+        v.as.components = arena_copy(arena, v.as.components, v.size * sizeof(double));
     return v;
 }
 
@@ -27,8 +29,10 @@ static const EvalBlock *keep_block(Arena *arena, const EvalBlock *from) {
         items[i].body = keep_block(arena, items[i].body);
         items[i].entry = keep_block(arena, items[i].entry);
         if (items[i].argument_count == 0) continue;
-        Argument *arguments = arena_copy(arena, items[i].arguments, items[i].argument_count * sizeof(Argument));
-        for (size_t k = 0; k < items[i].argument_count; k++) arguments[k].value = keep_value(arena, arguments[k].value);
+        Argument *arguments =
+            arena_copy(arena, items[i].arguments, items[i].argument_count * sizeof(Argument));
+        for (size_t k = 0; k < items[i].argument_count; k++)
+            arguments[k].value = keep_value(arena, arguments[k].value);
         items[i].arguments = arguments;
     }
     to->items = items;
@@ -47,7 +51,8 @@ Value eval_block(Eval *ev, const Node *node, Name declared_as) {
     size_t errors = ev->diags->error_count + ev->silent_errors;
     bool known = true;
     BlockBuilder *builder = block_builder_find(&ev->build, node->as.block.word, &known);
-    EvalBlock *block = (EvalBlock *)(uintptr_t)eval_block_items(ev, node->as.block.word, node->as.block.word_span, node->span, node->as.block.body);
+    EvalBlock *block = (EvalBlock *)(uintptr_t)eval_block_items(
+        ev, node->as.block.word, node->as.block.word_span, node->span, node->as.block.body);
     block->declared_as = declared_as;
     Value v = value_error();
     if (keyword_of(&ev->keywords, block->word) == KW_spline) {

@@ -10,9 +10,13 @@ bool builtin_argument_count(Eval *ev, const Node *node, size_t least, size_t mos
     size_t count = node->as.list.count;
     if (count >= least && count <= most) return true;
     const char *name = keyword_text((Keyword)node->op);
-    if (least == most) diag_error(ev->diags, node->span, "%s() takes %zu argument%s, %zu given", name, least, least == 1 ? "" : "s", count);
-    else if (count < least) diag_error(ev->diags, node->span, "%s() takes at least %zu arguments, %zu given", name, least, count);
-    else diag_error(ev->diags, node->span, "%s() takes at most %zu arguments, %zu given", name, most, count);
+    if (least == most)
+        diag_error(ev->diags, node->span, "%s() takes %zu argument%s, %zu given", name, least,
+                   least == 1 ? "" : "s", count);
+    else if (count < least)
+        diag_error(ev->diags, node->span, "%s() takes at least %zu arguments, %zu given", name, least, count);
+    else
+        diag_error(ev->diags, node->span, "%s() takes at most %zu arguments, %zu given", name, most, count);
     return false;
 }
 
@@ -22,16 +26,22 @@ static Value failure(Eval *ev, const Node *node, const char *text) {
 }
 
 static double out_of_domain(Eval *ev, const Node *node, const char *name, double value, double fallback) {
-    diag_warning(ev->diags, node->span, "%s(%g) is outside the function's domain; %g is taken", name, value, fallback);
+    diag_warning(ev->diags, node->span, "%s(%g) is outside the function's domain; %g is taken", name, value,
+                 fallback);
     return fallback;
 }
 
 static double one_argument(Eval *ev, const Node *node, double a, bool *failed) {
     switch (node->op) {
     case KW_abs: return fabs(a);
-    case KW_acos: return a > 1 ? out_of_domain(ev, node, "acos", a, 0) : a < -1 ? out_of_domain(ev, node, "acos", a, VTS_PI) : acos(a);
+    case KW_acos:
+        return a > 1    ? out_of_domain(ev, node, "acos", a, 0)
+               : a < -1 ? out_of_domain(ev, node, "acos", a, VTS_PI)
+                        : acos(a);
     case KW_asin:
-        return a > 1 ? out_of_domain(ev, node, "asin", a, VTS_PI / 2) : a < -1 ? out_of_domain(ev, node, "asin", a, -VTS_PI / 2) : asin(a);
+        return a > 1    ? out_of_domain(ev, node, "asin", a, VTS_PI / 2)
+               : a < -1 ? out_of_domain(ev, node, "asin", a, -VTS_PI / 2)
+                        : asin(a);
     case KW_acosh: return acosh(a);
     case KW_asinh: return asinh(a);
     case KW_atan: return atan(a);
@@ -50,9 +60,11 @@ static double one_argument(Eval *ev, const Node *node, double a, bool *failed) {
     case KW_sqr: return a * a;
     case KW_tan: return tan(a);
     case KW_tanh: return tanh(a);
-    case KW_ln: case KW_log:
+    case KW_ln:
+    case KW_log:
         if (a > 0) return node->op == KW_ln ? log(a) : log10(a);
-        diag_error(ev->diags, node->span, "%s(%g): the logarithm needs a number above 0", keyword_text((Keyword)node->op), a);
+        diag_error(ev->diags, node->span, "%s(%g): the logarithm needs a number above 0",
+                   keyword_text((Keyword)node->op), a);
         break;
     case KW_sqrt:
         if (!(a < 0)) return sqrt(a);
@@ -67,7 +79,8 @@ static double one_argument(Eval *ev, const Node *node, double a, bool *failed) {
 static Value float_function(Eval *ev, const Node *node) {
     double a;
     bool failed = false;
-    if (!builtin_argument_count(ev, node, 1, 1) || !eval_float(ev, node->as.list.items[0], &a)) return value_error();
+    if (!builtin_argument_count(ev, node, 1, 1) || !eval_float(ev, node->as.list.items[0], &a))
+        return value_error();
     double result = one_argument(ev, node, a, &failed);
     return failed ? value_error() : value_float(result);
 }
@@ -87,7 +100,8 @@ static Value two_arguments(Eval *ev, const Node *node) {
     case KW_mod: return value_float(fmod(a, b));
     default:
         if (a == 0 && b == 0) return failure(ev, node, "pow(0, 0) has no value");
-        if (a < 0 && b != trunc(b)) return failure(ev, node, "pow() of a negative number with a fractional exponent");
+        if (a < 0 && b != trunc(b))
+            return failure(ev, node, "pow() of a negative number with a fractional exponent");
         if (a == 0 && b < 0) return failure(ev, node, "pow() of 0 with a negative exponent");
         return value_float(pow(a, b));
     }
@@ -95,8 +109,8 @@ static Value two_arguments(Eval *ev, const Node *node) {
 
 static double fold_two(int op, double a, double b) {
     switch (op) {
-    case KW_min: return a < b ? a : b;
-    case KW_max: return a > b ? a : b;
+    case KW_min: return b < a ? b : a; /* of 0 and -0 the first, as in POV-Ray */
+    case KW_max: return b > a ? b : a;
     case KW_bitwise_and: return (double)((int64_t)a & (int64_t)b);
     case KW_bitwise_or: return (double)((int64_t)a | (int64_t)b);
     default: return (double)((int64_t)a ^ (int64_t)b);
@@ -111,7 +125,8 @@ static Value many_arguments(Eval *ev, const Node *node) {
     for (size_t i = 0; i < node->as.list.count; i++) {
         double a;
         if (!eval_float(ev, node->as.list.items[i], &a)) return value_error();
-        if (bits && !(fabs(a) < 0x1p62)) return failure(ev, node->as.list.items[i], "this is no whole number of at most 62 bits");
+        if (bits && !(fabs(a) < 0x1p62))
+            return failure(ev, node->as.list.items[i], "this is no whole number of at most 62 bits");
         result = i == 0 ? (bits ? trunc(a) : a) : fold_two(node->op, result, a);
     }
     return value_float(result);
@@ -139,8 +154,8 @@ static Value vec3_value(Eval *ev, Vec3 v) { return value_vector(ev, (double[]){v
 static Value vector_function(Eval *ev, const Node *node) {
     bool single = node->op == KW_vlength || node->op == KW_vnormalize;
     double c[2][3] = {{0}};
-    if (!builtin_argument_count(ev, node, single ? 1 : 2, single ? 1 : 2) || !vector_argument(ev, node, 0, c[0]) ||
-        (!single && !vector_argument(ev, node, 1, c[1])))
+    if (!builtin_argument_count(ev, node, single ? 1 : 2, single ? 1 : 2) ||
+        !vector_argument(ev, node, 0, c[0]) || (!single && !vector_argument(ev, node, 1, c[1])))
         return value_error();
     Vec3 a = vec3(c[0][0], c[0][1], c[0][2]), b = vec3(c[1][0], c[1][1], c[1][2]);
     switch (node->op) {
@@ -157,8 +172,8 @@ static Value vector_function(Eval *ev, const Node *node) {
 
 static Value vaxis_rotate(Eval *ev, const Node *node) {
     double a[3], axis[3], degrees;
-    if (!builtin_argument_count(ev, node, 3, 3) || !vector_argument(ev, node, 0, a) || !vector_argument(ev, node, 1, axis) ||
-        !eval_float(ev, node->as.list.items[2], &degrees))
+    if (!builtin_argument_count(ev, node, 3, 3) || !vector_argument(ev, node, 0, a) ||
+        !vector_argument(ev, node, 1, axis) || !eval_float(ev, node->as.list.items[2], &degrees))
         return value_error();
     Transform t = transform_axis_rotate(vec3(axis[0], axis[1], axis[2]), degrees);
     return vec3_value(ev, transform_point(&t, vec3(a[0], a[1], a[2])));
@@ -181,8 +196,12 @@ static Value vturbulence(Eval *ev, const Node *node) {
 
 static Value seed_stream(Eval *ev, const Node *node) {
     double s;
-    if (!builtin_argument_count(ev, node, 1, 1) || !eval_float(ev, node->as.list.items[0], &s)) return value_error();
-    struct { uint32_t *items; size_t count, capacity; } list = {ev->streams, ev->stream_count, ev->stream_capacity};
+    if (!builtin_argument_count(ev, node, 1, 1) || !eval_float(ev, node->as.list.items[0], &s))
+        return value_error();
+    struct {
+        uint32_t *items;
+        size_t count, capacity;
+    } list = {ev->streams, ev->stream_count, ev->stream_capacity};
     *list_push(ev->parse, &list) = fabs(s) < 0x1p62 ? (uint32_t)(int64_t)s : 0;
     ev->streams = list.items;
     ev->stream_count = list.count;
@@ -192,8 +211,10 @@ static Value seed_stream(Eval *ev, const Node *node) {
 
 static Value rand_next(Eval *ev, const Node *node) {
     double s;
-    if (!builtin_argument_count(ev, node, 1, 1) || !eval_float(ev, node->as.list.items[0], &s)) return value_error();
-    if (!(s >= 0 && s < (double)ev->stream_count)) return failure(ev, node, "rand() needs a stream made by seed()");
+    if (!builtin_argument_count(ev, node, 1, 1) || !eval_float(ev, node->as.list.items[0], &s))
+        return value_error();
+    if (!(s >= 0 && s < (double)ev->stream_count))
+        return failure(ev, node, "rand() needs a stream made by seed()");
     return value_float(random_pov_next(&ev->streams[(size_t)s]));
 }
 
@@ -230,8 +251,12 @@ Value eval_constant(Eval *ev, const Node *node) {
     case KW_u: return value_vector(ev, (double[]){1, 0}, 2);
     case KW_v: return value_vector(ev, (double[]){0, 1}, 2);
     case KW_pi: return value_float(VTS_PI);
-    case KW_on: case KW_yes: case KW_true: return value_float(1);
-    case KW_off: case KW_no: case KW_false: return value_float(0);
+    case KW_on:
+    case KW_yes:
+    case KW_true: return value_float(1);
+    case KW_off:
+    case KW_no:
+    case KW_false: return value_float(0);
     case KW_clock: return value_float(o->clock);
     case KW_clock_on: return value_float(o->clock_on);
     case KW_clock_delta: return value_float(o->clock_delta);
@@ -250,21 +275,48 @@ Value eval_constant(Eval *ev, const Node *node) {
 
 Value eval_builtin(Eval *ev, const Node *node) {
     switch (node->op) {
-    case KW_atan2: case KW_div: case KW_mod: case KW_pow: return two_arguments(ev, node);
-    case KW_min: case KW_max: case KW_bitwise_and: case KW_bitwise_or: case KW_bitwise_xor: return many_arguments(ev, node);
+    case KW_atan2:
+    case KW_div:
+    case KW_mod:
+    case KW_pow: return two_arguments(ev, node);
+    case KW_min:
+    case KW_max:
+    case KW_bitwise_and:
+    case KW_bitwise_or:
+    case KW_bitwise_xor: return many_arguments(ev, node);
     case KW_select: return select_value(ev, node);
-    case KW_vlength: case KW_vnormalize: case KW_vdot: case KW_vcross: case KW_vrotate: return vector_function(ev, node);
+    case KW_vlength:
+    case KW_vnormalize:
+    case KW_vdot:
+    case KW_vcross:
+    case KW_vrotate: return vector_function(ev, node);
     case KW_vaxis_rotate: return vaxis_rotate(ev, node);
     case KW_seed: return seed_stream(ev, node);
     case KW_rand: return rand_next(ev, node);
     case KW_defined: return defined_value(ev, node);
-    case KW_dimensions: case KW_dimension_size: return dimensions(ev, node);
-    case KW_asc: case KW_chr: case KW_concat: case KW_datetime: case KW_file_exists: case KW_str: case KW_strcmp: case KW_strlen:
-    case KW_strlwr: case KW_strupr: case KW_substr: case KW_val: case KW_vstr: return eval_builtin_string(ev, node);
-    case KW_min_extent: case KW_max_extent: return eval_extent(ev, node);
-    case KW_inside: case KW_trace: return eval_geometry(ev, node);
+    case KW_dimensions:
+    case KW_dimension_size: return dimensions(ev, node);
+    case KW_asc:
+    case KW_chr:
+    case KW_concat:
+    case KW_datetime:
+    case KW_file_exists:
+    case KW_str:
+    case KW_strcmp:
+    case KW_strlen:
+    case KW_strlwr:
+    case KW_strupr:
+    case KW_substr:
+    case KW_val:
+    case KW_vstr: return eval_builtin_string(ev, node);
+    case KW_min_extent:
+    case KW_max_extent: return eval_extent(ev, node);
+    case KW_inside:
+    case KW_trace: return eval_geometry(ev, node);
     case KW_vturbulence: return vturbulence(ev, node);
-    case KW_internal: case KW_sum: case KW_prod:
+    case KW_internal:
+    case KW_sum:
+    case KW_prod:
         diag_error(ev->diags, node->span, "%s() is not available here", keyword_text((Keyword)node->op));
         return value_error();
     default: return float_function(ev, node);

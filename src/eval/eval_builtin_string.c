@@ -14,7 +14,8 @@ static bool within_limit(Eval *ev, size_t length, Span span) {
 }
 
 static Value take(Eval *ev, StrBuf *text, Span span) {
-    Value v = within_limit(ev, text->size, span) ? value_string(ev, text->data ? text->data : "", text->size) : value_error();
+    Value v = within_limit(ev, text->size, span) ? value_string(ev, text->data ? text->data : "", text->size)
+                                                 : value_error();
     strbuf_free(text);
     return v;
 }
@@ -41,9 +42,12 @@ static Value concat(Eval *ev, const Node *node) {
 /* POV-Ray's format: as C's %w.df; a negative width pads with zeros; negative digits ask for C's own six. */
 static void add_number(StrBuf *out, double value, double width, double digits) {
     int w = (int)double_clamp(width, -1000, 1000), d = (int)double_clamp(digits, -1, 1000);
-    if (digits < 0) strbuf_addf(out, "%f", value);
-    else if (w < 0) strbuf_addf(out, "%0*.*f", -w, d, value);
-    else strbuf_addf(out, "%*.*f", w, d, value);
+    if (digits < 0)
+        strbuf_addf(out, "%f", value);
+    else if (w < 0)
+        strbuf_addf(out, "%0*.*f", -w, d, value);
+    else
+        strbuf_addf(out, "%*.*f", w, d, value);
 }
 
 static Value str(Eval *ev, const Node *node) {
@@ -60,7 +64,8 @@ static Value str(Eval *ev, const Node *node) {
 static Value vstr(Eval *ev, const Node *node) {
     double count, width, digits;
     const char *separator;
-    if (!builtin_argument_count(ev, node, 5, 5) || !eval_float(ev, node->as.list.items[0], &count)) return value_error();
+    if (!builtin_argument_count(ev, node, 5, 5) || !eval_float(ev, node->as.list.items[0], &count))
+        return value_error();
     Value v = eval_node(ev, node->as.list.items[1]);
     if (!string_argument(ev, node, 2, &separator, NULL) || !eval_float(ev, node->as.list.items[3], &width) ||
         !eval_float(ev, node->as.list.items[4], &digits))
@@ -80,17 +85,20 @@ static Value vstr(Eval *ev, const Node *node) {
 static Value change_case(Eval *ev, const Node *node) {
     const char *text;
     size_t length;
-    if (!builtin_argument_count(ev, node, 1, 1) || !string_argument(ev, node, 0, &text, &length)) return value_error();
+    if (!builtin_argument_count(ev, node, 1, 1) || !string_argument(ev, node, 0, &text, &length))
+        return value_error();
     Value v = value_string(ev, text, length);
     char *own = (char *)(uintptr_t)v.as.string.text;
     for (size_t i = 0; i < length; i++)
-        own[i] = (char)(node->op == KW_strupr ? toupper((unsigned char)own[i]) : tolower((unsigned char)own[i]));
+        own[i] =
+            (char)(node->op == KW_strupr ? toupper((unsigned char)own[i]) : tolower((unsigned char)own[i]));
     return v;
 }
 
 static Value chr(Eval *ev, const Node *node) {
     double code;
-    if (!builtin_argument_count(ev, node, 1, 1) || !eval_float(ev, node->as.list.items[0], &code)) return value_error();
+    if (!builtin_argument_count(ev, node, 1, 1) || !eval_float(ev, node->as.list.items[0], &code))
+        return value_error();
     if (!(code >= 0 && code < 65536)) {
         diag_error(ev->diags, node->span, "chr(%g): characters are numbered 0 to 65535", code);
         return value_error();
@@ -120,7 +128,8 @@ static Value substr(Eval *ev, const Node *node) {
         !eval_float(ev, node->as.list.items[1], &first) || !eval_float(ev, node->as.list.items[2], &count))
         return value_error();
     if (!(first >= 1 && count >= 0 && first - 1 + count <= (double)length)) {
-        diag_error(ev->diags, node->span, "substr(): characters %g to %g of a string of %zu", first, first + count - 1, length);
+        diag_error(ev->diags, node->span, "substr(): characters %g to %g of a string of %zu", first,
+                   first + count - 1, length);
         return value_error();
     }
     return value_string(ev, text + (size_t)first - 1, (size_t)count);
@@ -130,7 +139,8 @@ static Value substr(Eval *ev, const Node *node) {
 static Value datetime(Eval *ev, const Node *node) {
     double days;
     const char *format = "%Y-%m-%d %H:%M:%SZ";
-    if (!builtin_argument_count(ev, node, 1, 2) || !eval_float(ev, node->as.list.items[0], &days)) return value_error();
+    if (!builtin_argument_count(ev, node, 1, 2) || !eval_float(ev, node->as.list.items[0], &days))
+        return value_error();
     if (node->as.list.count == 2 && !string_argument(ev, node, 1, &format, NULL)) return value_error();
     if (!(days > -700000 && days < 3000000)) {
         diag_error(ev->diags, node->span, "datetime(%g) is no date", days);
@@ -148,7 +158,9 @@ static Value text_measure(Eval *ev, const Node *node) {
     const char *a, *b;
     size_t length;
     bool two = node->op == KW_strcmp;
-    if (!builtin_argument_count(ev, node, two ? 2 : 1, two ? 2 : 1) || !string_argument(ev, node, 0, &a, &length)) return value_error();
+    if (!builtin_argument_count(ev, node, two ? 2 : 1, two ? 2 : 1) ||
+        !string_argument(ev, node, 0, &a, &length))
+        return value_error();
     switch (node->op) {
     case KW_asc: return value_float((unsigned char)a[0]);
     case KW_strlen: return value_float((double)length);
@@ -163,7 +175,8 @@ Value eval_builtin_string(Eval *ev, const Node *node) {
     case KW_concat: return concat(ev, node);
     case KW_str: return str(ev, node);
     case KW_vstr: return vstr(ev, node);
-    case KW_strlwr: case KW_strupr: return change_case(ev, node);
+    case KW_strlwr:
+    case KW_strupr: return change_case(ev, node);
     case KW_chr: return chr(ev, node);
     case KW_substr: return substr(ev, node);
     case KW_datetime: return datetime(ev, node);

@@ -4,7 +4,15 @@
 
 #include <string.h>
 
-typedef enum FrameKind { FRAME_BASE, FRAME_BRANCH, FRAME_WHILE, FRAME_FOR, FRAME_SWITCH, FRAME_MACRO, FRAME_INCLUDE } FrameKind;
+typedef enum FrameKind {
+    FRAME_BASE,
+    FRAME_BRANCH,
+    FRAME_WHILE,
+    FRAME_FOR,
+    FRAME_SWITCH,
+    FRAME_MACRO,
+    FRAME_INCLUDE
+} FrameKind;
 
 /* A piece of text that is being read; tokens come from the innermost. */
 typedef struct Frame Frame;
@@ -13,13 +21,13 @@ struct Frame {
     FrameKind kind;
     TokenList *list;
     uint32_t at, end;
-    const Node *node;     /* WHILE, FOR, SWITCH */
-    size_t next_case;     /* SWITCH */
-    double to, step;      /* FOR */
+    const Node *node; /* WHILE, FOR, SWITCH */
+    size_t next_case; /* SWITCH */
+    double to, step;  /* FOR */
     uint64_t passes;
     size_t errors;
-    uint32_t head;        /* WHILE: the token of #while; its condition may itself need the slow road */
-    Scope scope;          /* MACRO, INCLUDE */
+    uint32_t head; /* WHILE: the token of #while; its condition may itself need the slow road */
+    Scope scope;   /* MACRO, INCLUDE */
     CallRecord record;
 };
 
@@ -28,8 +36,8 @@ typedef struct Source {
     Frame base;
     Frame *top;
     Parser *parser;
-    bool at_start;        /* the statement's own directive is not for the source to run */
-    Frame *window_frame;  /* where the last token came from */
+    bool at_start;       /* the statement's own directive is not for the source to run */
+    Frame *window_frame; /* where the last token came from */
     uint32_t window_at;
     size_t groups_ended;
     Flow flow;
@@ -60,9 +68,7 @@ static void pop(Source *s) {
     s->top = f->outer;
 }
 
-static void fail(Source *s) {
-    s->parser->failed = true;
-}
+static void fail(Source *s) { s->parser->failed = true; }
 
 static void to_body(Frame *f, const Body *body) {
     f->list = body->tokens;
@@ -83,7 +89,8 @@ static bool repeat_while(Source *s, Frame *f) {
     uint32_t next;
     bool go_on = false;
     const Node *head = head_at(s, f->outer, f->head, &next);
-    if (!head || !eval_condition(s->ev, head->as.loop.condition, &go_on) || !go_on || !next_pass(s, f)) return false;
+    if (!head || !eval_condition(s->ev, head->as.loop.condition, &go_on) || !go_on || !next_pass(s, f))
+        return false;
     to_body(f, &head->as.loop.body);
     return true;
 }
@@ -108,7 +115,7 @@ static bool next_case(Source *s, Frame *f) {
 
 static void end_frame(Source *s) {
     Frame *f = s->top;
-    bool again = f->kind == FRAME_WHILE   ? repeat_while(s, f)
+    bool again = f->kind == FRAME_WHILE    ? repeat_while(s, f)
                  : f->kind == FRAME_FOR    ? repeat_for(s, f, false)
                  : f->kind == FRAME_SWITCH ? next_case(s, f)
                                            : false;
@@ -215,14 +222,21 @@ static const Node *slow_head(Source *outer, Frame *f, uint32_t at, uint32_t *nex
         outer->parser->failed = true;
         return NULL;
     }
-    if (*next == 0) *next = p.has_window && inner.window_frame == &inner.base ? inner.window_at : inner.base.at;
+    if (*next == 0)
+        *next = p.has_window && inner.window_frame == &inner.base ? inner.window_at : inner.base.at;
     return n;
 }
 
 /* The directive at `at`: its head parsed, *next the token after all of it. */
 static const Node *head_at(Source *s, Frame *f, uint32_t at, uint32_t *next) {
-    Parser p = {.arena = s->ev->parse, .diags = s->ev->diags, .keywords = &s->ev->keywords, .host = &s->ev->fast_host, .list = f->list,
-                .at = at, .end = f->end, .heads_only = true};
+    Parser p = {.arena = s->ev->parse,
+                .diags = s->ev->diags,
+                .keywords = &s->ev->keywords,
+                .host = &s->ev->fast_host,
+                .list = f->list,
+                .at = at,
+                .end = f->end,
+                .heads_only = true};
     parser_take(&p);
     Node *n = parser_directive(&p, f->list, at, next);
     bool holds = n != NULL;
@@ -294,7 +308,9 @@ static Token value_token(Eval *ev, const Token *word, const Slot *slot) {
 /* Whether a name stays a name: an index's running name, a word of this block, something not declared. */
 static bool stays_name(const Source *s, const Parser *p, const Token *t) {
     const Macro *macro;
+    const Frame *f = s->top;
     if (t->keyword || is_parameter(p, t->as.name) || context_is_item(p->block, t->as.name)) return true;
+    if (f->at < f->end && f->list->items[f->at].kind == '{' && context_is_block(t->as.name)) return true;
     return scope_classify(s->ev, t->as.name, &macro) == NAME_UNKNOWN;
 }
 
@@ -320,7 +336,8 @@ static Token pull(void *context, Parser *p) {
         f->at++;
         if (t->kind != TOKEN_WORD || p->raw || stays_name(s, p, t)) return *t;
         const Macro *macro;
-        if (scope_classify(s->ev, t->as.name, &macro) != NAME_MACRO) return value_token(s->ev, t, scope_find(s->ev, t->as.name)->slot);
+        if (scope_classify(s->ev, t->as.name, &macro) != NAME_MACRO)
+            return value_token(s->ev, t, scope_find(s->ev, t->as.name)->slot);
         if (f->at >= f->end || f->list->items[f->at].kind != '(') return *t;
         begin_call(s, f, macro, t->span);
     }
@@ -335,7 +352,8 @@ static const Token *after(void *context, uint32_t skip) {
     static const Token end = {.kind = TOKEN_END};
     const Source *s = context;
     const Frame *f = s->top;
-    while (f->at >= f->end && (f->kind == FRAME_BRANCH || f->kind == FRAME_MACRO || f->kind == FRAME_INCLUDE)) f = f->outer;
+    while (f->at >= f->end && (f->kind == FRAME_BRANCH || f->kind == FRAME_MACRO || f->kind == FRAME_INCLUDE))
+        f = f->outer;
     return f->at + skip < f->end ? &f->list->items[f->at + skip] : &end;
 }
 
@@ -354,6 +372,8 @@ static bool take_body(void *context, Body *body) {
 
 static Node *fold(void *context, Node *node) {
     Source *s = context;
+    if (node->kind == NODE_CONSTANT && keyword_class((Keyword)node->op) == KEYWORD_WORD)
+        return node; /* a type of spline */
     Value *v = arena_new(&s->ev->temp, Value);
     *v = eval_node(s->ev, node);
     Node *n = arena_new(&s->ev->temp, Node);
@@ -373,7 +393,9 @@ static NameClass classify(void *context, Name name, const void **macro) {
     return class;
 }
 
-static Binding binding(void *context, const void *macro) { return macro_binding(((Source *)context)->ev, macro); }
+static Binding binding(void *context, const void *macro) {
+    return macro_binding(((Source *)context)->ev, macro);
+}
 
 static bool is_block(void *context, const void *macro) {
     (void)context;
@@ -381,8 +403,16 @@ static bool is_block(void *context, const void *macro) {
 }
 
 static void make_host(ParserHost *host, Source *s) {
-    *host = (ParserHost){.context = s, .classify = classify, .macro_binding = binding, .macro_is_block = is_block, .pull = pull, .after = after, .position = position,
-                         .take_body = take_body, .fold = fold, .groups_ended = groups_ended};
+    *host = (ParserHost){.context = s,
+                         .classify = classify,
+                         .macro_binding = binding,
+                         .macro_is_block = is_block,
+                         .pull = pull,
+                         .after = after,
+                         .position = position,
+                         .take_body = take_body,
+                         .fold = fold,
+                         .groups_ended = groups_ended};
 }
 
 static void source_init(Source *s, Eval *ev, Parser *p, const ParserHost *host, Frame *frame, uint32_t at) {
@@ -390,7 +420,12 @@ static void source_init(Source *s, Eval *ev, Parser *p, const ParserHost *host, 
     s->base = (Frame){.kind = FRAME_BASE, .list = frame->list, .at = at, .end = frame->end};
     s->top = &s->base;
     make_host((ParserHost *)(uintptr_t)host, s);
-    *p = (Parser){.arena = &ev->temp, .diags = ev->diags, .keywords = &ev->keywords, .host = host, .slow = true, .list = frame->list};
+    *p = (Parser){.arena = &ev->temp,
+                  .diags = ev->diags,
+                  .keywords = &ev->keywords,
+                  .host = host,
+                  .slow = true,
+                  .list = frame->list};
 }
 
 /* ---- statements ---- */
@@ -401,15 +436,25 @@ static uint32_t recover(const TokenList *list, uint32_t at, uint32_t end) {
     for (; at < end; at++) {
         const Token *t = &list->items[at];
         if (t->kind == '{' || t->kind == '(' || t->kind == '[') {
-            if (t->match && t->match < end) at = t->match;
-            else depth++;
+            if (t->match && t->match < end)
+                at = t->match;
+            else
+                depth++;
         } else if (t->kind == ';' || (t->kind == '}' && depth-- <= 0)) {
             return at + 1;
-        } else if (t->kind == TOKEN_DIRECTIVE && depth <= 0 && t->keyword != KW_end && t->keyword != KW_else) {
+        } else if (t->kind == TOKEN_DIRECTIVE && depth <= 0 && t->keyword != KW_end &&
+                   t->keyword != KW_else) {
             return at;
         }
     }
     return end;
+}
+
+/* The macros whose text has been read to its end are left: what the statement declares is not theirs. */
+static void leave_finished(Source *s) {
+    while (!s->parser->has_window && s->top != &s->base && s->top->at >= s->top->end &&
+           (s->top->kind == FRAME_MACRO || s->top->kind == FRAME_BRANCH || s->top->kind == FRAME_INCLUDE))
+        pop(s);
 }
 
 /* After a #declare that cannot be read, uses of its name stay silent. */
@@ -440,10 +485,15 @@ Flow run_slow(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink
     for (;;) {
         bool directive = s.at_start && first->kind == TOKEN_DIRECTIVE;
         uint32_t next = 0;
-        if (directive) parser_take(&p);
+        if (directive)
+            parser_take(&p);
+        else if (parser_at_end(&p))
+            break;
         Node *n = directive ? parser_directive(&p, program->tokens, begin, &next) : parser_statement(&p);
         if (p.failed) break;
         if (next) s.base.at = next;
+        if (n->kind == NODE_DECLARE || n->kind == NODE_UNDEF || n->kind == NODE_FOPEN || n->kind == NODE_READ)
+            leave_finished(&s);
         flow = run_node(ev, n, sink);
         /* What is left of the macros that were expanded belongs here too. */
         if (flow != FLOW_NEXT || (s.top == &s.base && !(p.has_window && s.window_frame != &s.base))) break;
@@ -452,8 +502,11 @@ Flow run_slow(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink
 done:
     while (s.top != &s.base) pop(&s);
     if (p.failed) declare_error(ev, program->tokens, begin);
-    if (p.failed) *at = recover(program->tokens, s.base.at > begin ? s.base.at : begin + 1, end);
-    else *at = p.has_window && s.window_frame == &s.base && p.window.kind != TOKEN_END ? s.window_at : s.base.at;
+    if (p.failed)
+        *at = recover(program->tokens, s.base.at > begin ? s.base.at : begin + 1, end);
+    else
+        *at =
+            p.has_window && s.window_frame == &s.base && p.window.kind != TOKEN_END ? s.window_at : s.base.at;
     if (p.failed && sink->kind == SINK_SINGLE) sink->filled = true;
     if (*at <= begin) *at = begin + 1;
     ev->nesting--;

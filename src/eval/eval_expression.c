@@ -53,7 +53,8 @@ static Value eval_dot(Eval *ev, const Node *node) {
         return v = value_error();
     }
     if (node->op == DOT_GRAY)
-        return value_float(0.297 * value_component(&v, 0) + 0.589 * value_component(&v, 1) + 0.114 * value_component(&v, 2));
+        return value_float(0.297 * value_component(&v, 0) + 0.589 * value_component(&v, 1) +
+                           0.114 * value_component(&v, 2));
     return value_float(value_component(&v, node->op));
 }
 
@@ -67,7 +68,8 @@ static Value eval_choice(Eval *ev, const Node *node) {
 
 Value eval_compound(Eval *ev, const Node *node) {
     switch (node->kind) {
-    case NODE_STRING: return (Value){.kind = VALUE_STRING, .as.string = {node->as.string->text, node->as.string->length}};
+    case NODE_STRING:
+        return (Value){.kind = VALUE_STRING, .as.string = {node->as.string->text, node->as.string->length}};
     case NODE_CONSTANT: return eval_constant(ev, node);
     case NODE_VECTOR: return eval_vector(ev, node);
     case NODE_INDEX: return eval_index(ev, node);
@@ -109,7 +111,8 @@ Slot *eval_target(Eval *ev, const Node *target, bool *failed) {
     if (base->value.kind != VALUE_ARRAY) {
         *failed = true;
         if (base->value.kind != VALUE_ERROR)
-            diag_error(ev->diags, target->as.apply.base->span, "expected an array before '[', found %s", value_kind_text(base->value.kind));
+            diag_error(ev->diags, target->as.apply.base->span, "expected an array before '[', found %s",
+                       value_kind_text(base->value.kind));
         return NULL;
     }
     Slot *slot = array_slot(ev, base->value.as.array, index, target->span);
@@ -135,8 +138,10 @@ static void color_from(int keyword, const Value *v, double out[5]) {
     int given = v->kind == VALUE_FLOAT ? (whole && keyword == KW_color ? 3 : 5) : v->size;
     for (int i = 0; i < 5; i++) out[i] = i < given || v->kind != VALUE_FLOAT ? value_component(v, i) : 0;
     if (keyword == KW_rgb || keyword == KW_srgb) {
-        if (v->kind == VALUE_FLOAT) out[3] = out[4] = 0;
-        else if (v->size <= 3) out[3] = out[4] = 0;
+        if (v->kind == VALUE_FLOAT)
+            out[3] = out[4] = 0;
+        else if (v->size <= 3)
+            out[3] = out[4] = 0;
     } else if (keyword == KW_rgbf || keyword == KW_srgbf) {
         if (v->size <= 4) out[4] = 0;
     } else if (keyword == KW_rgbt || keyword == KW_srgbt) {
@@ -156,8 +161,10 @@ Value eval_color(Eval *ev, const Node *node) {
         const ColorPart *part = &node->as.color.parts[i];
         Value v = eval_node(ev, part->value);
         if (keyword_class((Keyword)part->component) == KEYWORD_COLOR) {
-            if (!value_is_numeric(&v)) ok = value_to_vector(ev, &v, part->value->span, c, 5);
-            else color_from(part->component, &v, c);
+            if (!value_is_numeric(&v))
+                ok = value_to_vector(ev, &v, part->value->span, c, 5);
+            else
+                color_from(part->component, &v, c);
         } else {
             ok = value_to_float(ev, &v, part->value->span, &c[component_index(part->component)]) && ok;
         }

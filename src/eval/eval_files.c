@@ -62,7 +62,11 @@ static bool open_for_writing(Eval *ev, UserFile *f, const char *name, Span span)
         f->memory = &m->text;
         return true;
     }
-    const char *path = name[0] == '/' ? name : arena_printf(ev->parse, "%s/%s", ev->options->allow_write_count ? ev->options->allow_write[0] : ".", name);
+    const char *path =
+        name[0] == '/'
+            ? name
+            : arena_printf(ev->parse, "%s/%s",
+                           ev->options->allow_write_count ? ev->options->allow_write[0] : ".", name);
     if (!path_may_write(ev, path)) {
         Diagnostic *d = diag_error(ev->diags, span, "the scene may not write '%s'", name);
         diag_hint(ev->diags, d, "--allow-write gives it a folder");
@@ -84,9 +88,12 @@ void run_fopen(Eval *ev, const Node *node) {
     UserFile *f = arena_new(ev->parse, UserFile);
     *f = (UserFile){.path = arena_strdup(ev->parse, name), .mode = (Keyword)node->op};
     Value v = {.kind = VALUE_FILE, .as.file = f};
-    f->open = f->mode == KW_read ? open_for_reading(ev, f, name, path->span) : open_for_writing(ev, f, name, path->span);
-    if (!f->open) v = value_error();
-    else f->next = ev->files, ev->files = f;
+    f->open = f->mode == KW_read ? open_for_reading(ev, f, name, path->span)
+                                 : open_for_writing(ev, f, name, path->span);
+    if (!f->open)
+        v = value_error();
+    else
+        f->next = ev->files, ev->files = f;
     slot_set(ev, scope_declare(ev, handle->as.name, false), &v);
 }
 
@@ -123,8 +130,10 @@ static bool take(UserFile *f, int kind) {
 /* ["-" | "+"] number */
 static bool read_number(UserFile *f, double *out) {
     double sign = 1;
-    if (take(f, '-')) sign = -1;
-    else take(f, '+');
+    if (take(f, '-'))
+        sign = -1;
+    else
+        take(f, '+');
     const Token *t = &f->tokens->items[f->at];
     if (!take(f, TOKEN_NUMBER)) return false;
     *out = sign * t->as.number;
@@ -167,12 +176,14 @@ void run_read(Eval *ev, const Node *node) {
         if (!read_value(ev, f, &v)) {
             const Token *t = &f->tokens->items[f->at];
             Diagnostic *d = diag_error(ev->diags, target->span, "'%s' has no further value to read", f->path);
-            if (t->kind != TOKEN_END) diag_note(ev->diags, d, t->span, "this is not a number, vector or string");
+            if (t->kind != TOKEN_END)
+                diag_note(ev->diags, d, t->span, "this is not a number, vector or string");
             return;
         }
         take(f, ',');
         bool failed = false;
-        Slot *slot = target->kind == NODE_NAME ? scope_declare(ev, target->as.name, false) : eval_target(ev, target, &failed);
+        Slot *slot = target->kind == NODE_NAME ? scope_declare(ev, target->as.name, false)
+                                               : eval_target(ev, target, &failed);
         if (slot) slot_set(ev, slot, &v);
     }
 }
@@ -180,8 +191,10 @@ void run_read(Eval *ev, const Node *node) {
 /* ---- #write ---- */
 
 static void format_value(StrBuf *out, const Value *v) {
-    if (v->kind == VALUE_STRING) strbuf_add(out, v->as.string.text, v->as.string.length);
-    else if (v->kind == VALUE_FLOAT) strbuf_addf(out, "%g", v->as.number);
+    if (v->kind == VALUE_STRING)
+        strbuf_add(out, v->as.string.text, v->as.string.length);
+    else if (v->kind == VALUE_FLOAT)
+        strbuf_addf(out, "%g", v->as.number);
     else {
         for (int i = 0; i < v->size; i++) strbuf_addf(out, "%c%g", i ? ',' : '<', v->as.components[i]);
         strbuf_adds(out, "> ");
@@ -193,12 +206,19 @@ void run_write(Eval *ev, const Node *node) {
     StrBuf text = {0};
     for (size_t i = 1; i < node->as.list.count; i++) {
         Value v = eval_node(ev, node->as.list.items[i]);
-        if (value_is_numeric(&v) || v.kind == VALUE_STRING) format_value(&text, &v);
-        else if (v.kind != VALUE_ERROR) diag_error(ev->diags, node->as.list.items[i]->span, "%s cannot be written", value_kind_text(v.kind));
+        if (value_is_numeric(&v) || v.kind == VALUE_STRING)
+            format_value(&text, &v);
+        else if (v.kind != VALUE_ERROR)
+            diag_error(ev->diags, node->as.list.items[i]->span, "%s cannot be written",
+                       value_kind_text(v.kind));
     }
-    if (f && f->mode == KW_read) diag_error(ev->diags, node->as.list.items[0]->span, "this file is open for reading");
-    else if (f && f->memory && f->memory->size + text.size > ev->options->limits.string_bytes) diag_error(ev->diags, node->span, "the scene writes more than the limit");
-    else if (f && f->memory) strbuf_add(f->memory, text.data ? text.data : "", text.size);
-    else if (f && text.size && fwrite(text.data, 1, text.size, f->stream) != text.size) diag_error(ev->diags, node->span, "writing '%s' failed", f->path);
+    if (f && f->mode == KW_read)
+        diag_error(ev->diags, node->as.list.items[0]->span, "this file is open for reading");
+    else if (f && f->memory && f->memory->size + text.size > ev->options->limits.string_bytes)
+        diag_error(ev->diags, node->span, "the scene writes more than the limit");
+    else if (f && f->memory)
+        strbuf_add(f->memory, text.data ? text.data : "", text.size);
+    else if (f && text.size && fwrite(text.data, 1, text.size, f->stream) != text.size)
+        diag_error(ev->diags, node->span, "writing '%s' failed", f->path);
     strbuf_free(&text);
 }

@@ -9,7 +9,7 @@
 struct UserFile {
     UserFile *next;
     const char *path;
-    Keyword mode;      /* KW_read, KW_write, KW_append */
+    Keyword mode; /* KW_read, KW_write, KW_append */
     bool open;
     FILE *stream;      /* writing to disk */
     StrBuf *memory;    /* writing to memory */

@@ -6,8 +6,8 @@
 typedef struct Compiler {
     Eval *ev;
     TapeBuilder *tape;
-    const Name *names;      /* of the parameters */
-    const TapeRef *values;  /* their values */
+    const Name *names;     /* of the parameters */
+    const TapeRef *values; /* their values */
     size_t count;
     bool failed;
 } Compiler;
@@ -33,8 +33,11 @@ static bool find_parameter(const Compiler *c, Name name, TapeRef *out) {
 
 static TapeRef captured(Compiler *c, const Value *v, Span span) {
     if (v->kind == VALUE_FLOAT) return number(c, v->as.number);
-    if (v->kind == VALUE_ERROR) c->failed = true;
-    else diag_error(c->ev->diags, span, "a function is made of floats, this is %s", value_kind_text(v->kind)), c->failed = true;
+    if (v->kind == VALUE_ERROR)
+        c->failed = true;
+    else
+        diag_error(c->ev->diags, span, "a function is made of floats, this is %s", value_kind_text(v->kind)),
+            c->failed = true;
     return number(c, 0);
 }
 
@@ -59,12 +62,26 @@ static TapeRef compile_constant(Compiler *c, const Node *n) {
     return captured(c, &v, n->span);
 }
 
-static TapeRef truth(Compiler *c, TapeRef a, Span span) { return tape_binary(c->tape, TAPE_NE, a, number(c, 0), span); }
+static TapeRef truth(Compiler *c, TapeRef a, Span span) {
+    return tape_binary(c->tape, TAPE_NE, a, number(c, 0), span);
+}
 
 static TapeRef compile_binary(Compiler *c, const Node *n) {
-    static const struct { int op; TapeOp tape; } ops[] = {
-        {'+', TAPE_ADD}, {'-', TAPE_SUB}, {'*', TAPE_MUL}, {'/', TAPE_DIV}, {'<', TAPE_LT}, {'>', TAPE_GT}, {'=', TAPE_EQ},
-        {TOKEN_LESS_EQUAL, TAPE_LE}, {TOKEN_GREATER_EQUAL, TAPE_GE}, {TOKEN_NOT_EQUAL, TAPE_NE}, {'&', TAPE_AND}, {'|', TAPE_OR}};
+    static const struct {
+        int op;
+        TapeOp tape;
+    } ops[] = {{'+', TAPE_ADD},
+               {'-', TAPE_SUB},
+               {'*', TAPE_MUL},
+               {'/', TAPE_DIV},
+               {'<', TAPE_LT},
+               {'>', TAPE_GT},
+               {'=', TAPE_EQ},
+               {TOKEN_LESS_EQUAL, TAPE_LE},
+               {TOKEN_GREATER_EQUAL, TAPE_GE},
+               {TOKEN_NOT_EQUAL, TAPE_NE},
+               {'&', TAPE_AND},
+               {'|', TAPE_OR}};
     TapeRef a = compile(c, n->as.operand.a), b = compile(c, n->as.operand.b);
     for (size_t i = 0; i < VTS_ARRAY_COUNT(ops); i++)
         if (ops[i].op == n->op) return tape_binary(c->tape, ops[i].tape, a, b, n->span);
@@ -96,7 +113,8 @@ static TapeRef compile_select(Compiler *c, const Node *n) {
     size_t count = n->as.list.count;
     for (size_t i = 0; i < count; i++) a[i] = compile(c, n->as.list.items[i]);
     if (count == 3) return tape_ternary(c->tape, TAPE_SELECT, a[0], a[1], a[2], n->span);
-    TapeRef above = tape_ternary(c->tape, TAPE_SELECT, tape_unary(c->tape, TAPE_NEG, a[0], n->span), a[3], a[2], n->span);
+    TapeRef above =
+        tape_ternary(c->tape, TAPE_SELECT, tape_unary(c->tape, TAPE_NEG, a[0], n->span), a[3], a[2], n->span);
     return tape_ternary(c->tape, TAPE_SELECT, a[0], a[1], above, n->span);
 }
 
@@ -108,7 +126,11 @@ static TapeRef compile_loop(Compiler *c, const Node *n) {
     size_t inner_count = c->count + 1;
     Name *names = arena_new_array(&ev->temp, Name, inner_count);
     TapeRef *values = arena_new_array(&ev->temp, TapeRef, inner_count);
-    Compiler inner = {.ev = ev, .tape = tape_builder_create(ev->build.arena, (int)inner_count), .names = names, .values = values, .count = inner_count};
+    Compiler inner = {.ev = ev,
+                      .tape = tape_builder_create(ev->build.arena, (int)inner_count),
+                      .names = names,
+                      .values = values,
+                      .count = inner_count};
     for (size_t i = 0; i < c->count; i++) names[i] = c->names[i];
     names[c->count] = n->as.list.items[0]->as.name;
     for (size_t i = 0; i < inner_count; i++) values[i] = tape_input(inner.tape, (int)i);
@@ -119,21 +141,35 @@ static TapeRef compile_loop(Compiler *c, const Node *n) {
 }
 
 static bool unary_op(int keyword, TapeOp *out) {
-    static const struct { int keyword; TapeOp op; } ops[] = {
-        {KW_abs, TAPE_ABS}, {KW_floor, TAPE_FLOOR}, {KW_ceil, TAPE_CEIL}, {KW_int, TAPE_INT}, {KW_sqrt, TAPE_SQRT}, {KW_exp, TAPE_EXP},
-        {KW_ln, TAPE_LN}, {KW_log, TAPE_LOG}, {KW_sin, TAPE_SIN}, {KW_cos, TAPE_COS}, {KW_tan, TAPE_TAN}, {KW_asin, TAPE_ASIN},
-        {KW_acos, TAPE_ACOS}, {KW_atan, TAPE_ATAN}, {KW_sinh, TAPE_SINH}, {KW_cosh, TAPE_COSH}, {KW_tanh, TAPE_TANH},
-        {KW_asinh, TAPE_ASINH}, {KW_acosh, TAPE_ACOSH}, {KW_atanh, TAPE_ATANH}, {KW_degrees, TAPE_DEGREES}, {KW_radians, TAPE_RADIANS},
-        {KW_sqr, TAPE_SQR}};
+    static const struct {
+        int keyword;
+        TapeOp op;
+    } ops[] = {{KW_abs, TAPE_ABS},         {KW_floor, TAPE_FLOOR}, {KW_ceil, TAPE_CEIL},
+               {KW_int, TAPE_INT},         {KW_sqrt, TAPE_SQRT},   {KW_exp, TAPE_EXP},
+               {KW_ln, TAPE_LN},           {KW_log, TAPE_LOG},     {KW_sin, TAPE_SIN},
+               {KW_cos, TAPE_COS},         {KW_tan, TAPE_TAN},     {KW_asin, TAPE_ASIN},
+               {KW_acos, TAPE_ACOS},       {KW_atan, TAPE_ATAN},   {KW_sinh, TAPE_SINH},
+               {KW_cosh, TAPE_COSH},       {KW_tanh, TAPE_TANH},   {KW_asinh, TAPE_ASINH},
+               {KW_acosh, TAPE_ACOSH},     {KW_atanh, TAPE_ATANH}, {KW_degrees, TAPE_DEGREES},
+               {KW_radians, TAPE_RADIANS}, {KW_sqr, TAPE_SQR}};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(ops); i++)
         if (ops[i].keyword == keyword) return *out = ops[i].op, true;
     return false;
 }
 
 static bool binary_op(int keyword, TapeOp *out) {
-    static const struct { int keyword; TapeOp op; } ops[] = {
-        {KW_min, TAPE_MIN}, {KW_max, TAPE_MAX}, {KW_pow, TAPE_POW}, {KW_mod, TAPE_MOD}, {KW_div, TAPE_IDIV}, {KW_atan2, TAPE_ATAN2},
-        {KW_bitwise_and, TAPE_BITWISE_AND}, {KW_bitwise_or, TAPE_BITWISE_OR}, {KW_bitwise_xor, TAPE_BITWISE_XOR}};
+    static const struct {
+        int keyword;
+        TapeOp op;
+    } ops[] = {{KW_min, TAPE_MIN},
+               {KW_max, TAPE_MAX},
+               {KW_pow, TAPE_POW},
+               {KW_mod, TAPE_MOD},
+               {KW_div, TAPE_IDIV},
+               {KW_atan2, TAPE_ATAN2},
+               {KW_bitwise_and, TAPE_BITWISE_AND},
+               {KW_bitwise_or, TAPE_BITWISE_OR},
+               {KW_bitwise_xor, TAPE_BITWISE_XOR}};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(ops); i++)
         if (ops[i].keyword == keyword) return *out = ops[i].op, true;
     return false;
@@ -141,12 +177,16 @@ static bool binary_op(int keyword, TapeOp *out) {
 
 static TapeRef compile_builtin(Compiler *c, const Node *n) {
     TapeOp op;
-    if (unary_op(n->op, &op)) return takes(c, n, 1, 1) ? tape_unary(c->tape, op, compile(c, n->as.list.items[0]), n->span) : number(c, 0);
+    if (unary_op(n->op, &op))
+        return takes(c, n, 1, 1) ? tape_unary(c->tape, op, compile(c, n->as.list.items[0]), n->span)
+                                 : number(c, 0);
     if (binary_op(n->op, &op)) {
-        bool many = op == TAPE_MIN || op == TAPE_MAX || op == TAPE_BITWISE_AND || op == TAPE_BITWISE_OR || op == TAPE_BITWISE_XOR;
+        bool many = op == TAPE_MIN || op == TAPE_MAX || op == TAPE_BITWISE_AND || op == TAPE_BITWISE_OR ||
+                    op == TAPE_BITWISE_XOR;
         if (!takes(c, n, 2, many ? SIZE_MAX : 2)) return number(c, 0);
         TapeRef result = compile(c, n->as.list.items[0]);
-        for (size_t i = 1; i < n->as.list.count; i++) result = tape_binary(c->tape, op, result, compile(c, n->as.list.items[i]), n->span);
+        for (size_t i = 1; i < n->as.list.count; i++)
+            result = tape_binary(c->tape, op, result, compile(c, n->as.list.items[i]), n->span);
         return result;
     }
     if (n->op == KW_select) return compile_select(c, n);
@@ -165,7 +205,8 @@ static TapeRef compile_builtin(Compiler *c, const Node *n) {
     return number(c, 0);
 }
 
-static TapeRef inline_function(Compiler *c, const EvalFunction *f, const NodeList *list, Span span, int output) {
+static TapeRef inline_function(Compiler *c, const EvalFunction *f, const NodeList *list, Span span,
+                               int output) {
     TapeRef inputs[FUNCTION_INPUTS], outputs[8] = {0};
     if (f->missing) return fail(c, span, f->missing);
     if ((size_t)f->base.parameter_count != list->count) {
@@ -175,30 +216,38 @@ static TapeRef inline_function(Compiler *c, const EvalFunction *f, const NodeLis
         return number(c, 0);
     }
     for (size_t i = 0; i < list->count; i++) inputs[i] = compile(c, list->items[i]);
-    if (output >= tape_output_count(f->base.tape) || output < 0) return fail(c, span, "the function's value has no such component");
+    if (output >= tape_output_count(f->base.tape) || output < 0)
+        return fail(c, span, "the function's value has no such component");
     tape_inline(c->tape, f->base.tape, inputs, outputs);
     return outputs[output];
+}
+
+static TapeRef compile_known(Compiler *c, const Node *n, const KnownFunction *known) {
+    TapeRef arguments[8] = {0}, result;
+    const NodeList *list = &n->as.apply.list;
+    if (!known_function_takes(c->ev, n, known)) {
+        c->failed = true;
+        return number(c, 0);
+    }
+    for (size_t i = known->takes_noise ? 1 : 0; i < list->count; i++)
+        arguments[i] = compile(c, list->items[i]);
+    if (known->compile(c->ev, c->tape, n, arguments, list->count, &result)) return result;
+    c->failed = true;
+    return number(c, 0);
 }
 
 static TapeRef compile_call(Compiler *c, const Node *n, int output) {
     const Node *base = n->as.apply.base;
     Value callee = value_error();
-    TapeRef result;
     if (base->kind == NODE_NAME) {
         VarBinding *b = scope_find(c->ev, base->as.name);
         if (!b || !b->slot->set) {
-            TapeRef arguments[FUNCTION_INPUTS] = {0};
-            size_t count = n->as.apply.list.count;
             const KnownFunction *known = known_function_find(base->as.name);
-            if (known && known->compile && count <= FUNCTION_INPUTS) {
-                size_t first = known->takes_noise ? 1 : 0;
-                for (size_t i = first; i < count; i++) arguments[i] = compile(c, n->as.apply.list.items[i]);
-                if (known->compile(c->ev, c->tape, n, arguments, count, &result)) return result;
-                c->failed = true;
-                return number(c, 0);
-            }
-            Diagnostic *d = diag_error(c->ev->diags, base->span, "function '%s' is not declared", base->as.name->text);
-            if (strncmp(base->as.name->text, "f_", 2) == 0) diag_hint(c->ev->diags, d, "#include \"functions.inc\" declares the f_ functions");
+            if (known) return compile_known(c, n, known);
+            Diagnostic *d =
+                diag_error(c->ev->diags, base->span, "function '%s' is not declared", base->as.name->text);
+            if (strncmp(base->as.name->text, "f_", 2) == 0)
+                diag_hint(c->ev->diags, d, "#include \"functions.inc\" declares the f_ functions");
             c->failed = true;
             return number(c, 0);
         }
@@ -206,7 +255,9 @@ static TapeRef compile_call(Compiler *c, const Node *n, int output) {
     } else {
         callee = eval_node(c->ev, base);
     }
-    if (callee.kind == VALUE_FUNCTION) return inline_function(c, (const EvalFunction *)callee.as.function, &n->as.apply.list, n->span, output);
+    if (callee.kind == VALUE_FUNCTION)
+        return inline_function(c, (const EvalFunction *)callee.as.function, &n->as.apply.list, n->span,
+                               output);
     if (callee.kind == VALUE_MACRO) {
         Value v = eval_node(c->ev, n);
         return captured(c, &v, n->span);
@@ -234,7 +285,8 @@ static TapeRef compile(Compiler *c, const Node *n) {
     case NODE_BUILTIN: return compile_builtin(c, n);
     case NODE_CALL: return compile_call(c, n, 0);
     case NODE_DOT:
-        return n->as.operand.a->kind == NODE_CALL ? compile_call(c, n->as.operand.a, n->op) : compile_value(c, n);
+        return n->as.operand.a->kind == NODE_CALL ? compile_call(c, n->as.operand.a, n->op)
+                                                  : compile_value(c, n);
     case NODE_INDEX: return compile_value(c, n);
     case NODE_STRING: return fail(c, n->span, "functions know no strings");
     case NODE_VECTOR: return fail(c, n->span, "a vector can only be a function's whole body");
@@ -253,7 +305,8 @@ static EvalFunction *function_new(Eval *ev, const Node *node, int count) {
 static Value block_function(Eval *ev, const Node *node, const Node *body) {
     if (body->kind == NODE_BUILTIN) {
         double id;
-        if (!builtin_argument_count(ev, body, 1, 1) || !eval_float(ev, body->as.list.items[0], &id)) return value_error();
+        if (!builtin_argument_count(ev, body, 1, 1) || !eval_float(ev, body->as.list.items[0], &id))
+            return value_error();
         return internal_function(ev, node, (int)double_clamp(id, -1, 1000));
     }
     Keyword word = keyword_of(&ev->keywords, body->as.block.word);
@@ -270,12 +323,14 @@ static Value block_function(Eval *ev, const Node *node, const Node *body) {
     if (v.kind == VALUE_PIGMENT && ev->options->geometry && ev->options->geometry->pigment_function) {
         const EvalGeometry *g = ev->options->geometry;
         TapeExternal *external = arena_new(ev->build.arena, TapeExternal);
-        if (g->pigment_function(g->context, ev->build.arena, v.as.pigment, external)) return external_function(ev, node, external);
+        if (g->pigment_function(g->context, ev->build.arena, v.as.pigment, external))
+            return external_function(ev, node, external);
     }
     if (v.kind == VALUE_TRANSFORM) return transform_function(ev, node, v.as.transform);
     EvalFunction *f = function_new(ev, node, 3);
-    f->missing = word == KW_pigment || word == KW_pattern ? "pigments and patterns as functions are not available in this version"
-                                                           : "this kind of function is not available in this version";
+    f->missing = word == KW_pigment || word == KW_pattern
+                     ? "pigments and patterns as functions are not available in this version"
+                     : "this kind of function is not available in this version";
     TapeBuilder *tape = tape_builder_create(ev->build.arena, 3);
     TapeRef zero = tape_constant(tape, 0);
     f->base.tape = tape_finish(tape, &zero, 1);
@@ -298,18 +353,26 @@ Value eval_function(Eval *ev, const Node *node) {
         return value_error();
     }
     const Node *first = body->items[0];
-    if (first->kind == NODE_BLOCK || (first->kind == NODE_BUILTIN && first->op == KW_internal)) return block_function(ev, node, first);
+    if (first->kind == NODE_BLOCK || (first->kind == NODE_BUILTIN && first->op == KW_internal))
+        return block_function(ev, node, first);
     bool vector = body->count == 1 && first->kind == NODE_VECTOR;
     const NodeList *outputs = vector ? &first->as.list : body;
     size_t count = node->as.function.count ? node->as.function.count : 3;
     if (count > FUNCTION_INPUTS || outputs->count > 5) {
-        diag_error(ev->diags, node->span, "a function has at most %d parameters and 5 components", FUNCTION_INPUTS);
+        diag_error(ev->diags, node->span, "a function has at most %d parameters and 5 components",
+                   FUNCTION_INPUTS);
         return value_error();
     }
     EvalFunction *f = function_new(ev, node, (int)count);
-    f->base.parameters = node->as.function.count ? arena_copy(ev->build.arena, node->as.function.parameters, count * sizeof(Name)) : default_parameters(ev);
+    f->base.parameters = node->as.function.count
+                             ? arena_copy(ev->build.arena, node->as.function.parameters, count * sizeof(Name))
+                             : default_parameters(ev);
     TapeRef inputs[FUNCTION_INPUTS], results[5];
-    Compiler c = {.ev = ev, .tape = tape_builder_create(ev->build.arena, (int)count), .names = f->base.parameters, .values = inputs, .count = count};
+    Compiler c = {.ev = ev,
+                  .tape = tape_builder_create(ev->build.arena, (int)count),
+                  .names = f->base.parameters,
+                  .values = inputs,
+                  .count = count};
     for (size_t i = 0; i < count; i++) inputs[i] = tape_input(c.tape, (int)i);
     for (size_t i = 0; i < outputs->count; i++) results[i] = compile(&c, outputs->items[i]);
     if (c.failed) return value_error();
@@ -328,7 +391,8 @@ Value call_function(Eval *ev, const UserFunction *function, const NodeList *argu
     for (size_t i = 0; i < arguments->count && i < FUNCTION_INPUTS; i++) {
         Value v = eval_node(ev, arguments->items[i]);
         /* F(<x, y, z>) is F(x, y, z) */
-        if (arguments->count == 1 && function->parameter_count > 1 && v.kind == VALUE_VECTOR && v.size == function->parameter_count) {
+        if (arguments->count == 1 && function->parameter_count > 1 && v.kind == VALUE_VECTOR &&
+            v.size == function->parameter_count) {
             vector = true;
             for (int k = 0; k < v.size; k++) in[k] = v.as.components[k];
         } else {

@@ -17,7 +17,8 @@ typedef struct KnownFunction {
     size_t arguments;
     bool takes_noise; /* the first argument is the name of a noise */
     /* The value of the call for the compiled arguments; false after a report. NULL: not for functions. */
-    bool (*compile)(Eval *ev, TapeBuilder *tape, const Node *call, const TapeRef *arguments, size_t count, TapeRef *out);
+    bool (*compile)(Eval *ev, TapeBuilder *tape, const Node *call, const TapeRef *arguments, size_t count,
+                    TapeRef *out);
 } KnownFunction;
 const KnownFunction *known_function_find(Name name);
 /* Whether the call has the right number of arguments (at most 8); reported. */

@@ -50,7 +50,9 @@ static double f_quartic_cylinder(const double *p) {
 /* Kinds 1 and 2 are POV-Ray's own noises, 3 is Perlin's. */
 static double f_noise_generator(const double *p) {
     Vec3 at = vec3(p[0], p[1], p[2]);
-    return p[3] == 1 ? noise_pov_original(at) : p[3] == 3 ? double_clamp(0.5 * (1 + noise_perlin(at)), 0, 1) : noise_pov(at);
+    return p[3] == 1   ? noise_pov_original(at)
+           : p[3] == 3 ? double_clamp(0.5 * (1 + noise_perlin(at)), 0, 1)
+                       : noise_pov(at);
 }
 static double f_noise3d(const double *p) { return noise_pov(vec3(p[0], p[1], p[2])); }
 
@@ -58,13 +60,27 @@ static const struct {
     int id, inputs;
     InternalEval *eval;
 } internals[] = {
-    {18, 6, f_ellipsoid},   {23, 4, f_heart}, {45, 4, f_paraboloid}, {47, 3, f_ph},   {57, 3, f_r},      {60, 7, f_rounded_box},
-    {61, 4, f_sphere},      {68, 5, f_superellipsoid}, {69, 3, f_th}, {70, 5, f_torus}, {56, 6, f_quartic_cylinder}, {76, 3, f_noise3d}, {78, 4, f_noise_generator},
+    {18, 6, f_ellipsoid},
+    {23, 4, f_heart},
+    {45, 4, f_paraboloid},
+    {47, 3, f_ph},
+    {57, 3, f_r},
+    {60, 7, f_rounded_box},
+    {61, 4, f_sphere},
+    {68, 5, f_superellipsoid},
+    {69, 3, f_th},
+    {70, 5, f_torus},
+    {56, 6, f_quartic_cylinder},
+    {76, 3, f_noise3d},
+    {78, 4, f_noise_generator},
 };
 
-static void eval_internal(const void *data, const double *in, double *out) { out[0] = (*(InternalEval *const *)data)(in); }
+static void eval_internal(const void *data, const double *in, double *out) {
+    out[0] = (*(InternalEval *const *)data)(in);
+}
 
-static Value as_function(Eval *ev, const Node *node, int inputs, TapeBuilder *tape, TapeRef *out, int outputs) {
+static Value as_function(Eval *ev, const Node *node, int inputs, TapeBuilder *tape, TapeRef *out,
+                         int outputs) {
     EvalFunction *f = arena_new(ev->build.arena, EvalFunction);
     f->base.span = node->span;
     f->base.parameter_count = inputs;
@@ -72,8 +88,8 @@ static Value as_function(Eval *ev, const Node *node, int inputs, TapeBuilder *ta
     return (Value){.kind = VALUE_FUNCTION, .as.function = &f->base};
 }
 
-static const TapeExternal *external_new(Eval *ev, const char *name, int inputs, int outputs, const void *data, size_t size,
-                                        void (*eval)(const void *, const double *, double *)) {
+static const TapeExternal *external_new(Eval *ev, const char *name, int inputs, int outputs, const void *data,
+                                        size_t size, void (*eval)(const void *, const double *, double *)) {
     TapeExternal *e = arena_new(ev->build.arena, TapeExternal);
     *e = (TapeExternal){.name = name, .input_count = inputs, .output_count = outputs, .eval = eval};
     e->data = arena_copy(ev->build.arena, data, size);
@@ -93,7 +109,8 @@ Value external_function(Eval *ev, const Node *node, const TapeExternal *external
 Value internal_function(Eval *ev, const Node *node, int id) {
     for (size_t i = 0; i < VTS_ARRAY_COUNT(internals); i++) {
         if (internals[i].id != id) continue;
-        TapeExternal *e = (TapeExternal *)(uintptr_t)external_new(ev, "internal", internals[i].inputs, 1, &internals[i].eval,
+        TapeExternal *e = (TapeExternal *)(uintptr_t)external_new(ev, "internal", internals[i].inputs, 1,
+                                                                  &internals[i].eval,
                                                                   sizeof internals[i].eval, eval_internal);
         hash_add_u64(&e->hash, (uint64_t)id);
         return external_function(ev, node, e);
@@ -101,7 +118,8 @@ Value internal_function(Eval *ev, const Node *node, int id) {
     TapeBuilder *tape = tape_builder_create(ev->build.arena, 3);
     TapeRef zero = tape_constant(tape, 0);
     Value v = as_function(ev, node, 3, tape, &zero, 1);
-    ((EvalFunction *)(uintptr_t)v.as.function)->missing = "this internal function is not available in this version";
+    ((EvalFunction *)(uintptr_t)v.as.function)->missing =
+        "this internal function is not available in this version";
     return v;
 }
 
@@ -113,7 +131,8 @@ static void eval_spline_external(const void *data, const double *in, double *out
 }
 
 Value spline_function(Eval *ev, const Node *node, const Spline *spline) {
-    TapeExternal *e = (TapeExternal *)(uintptr_t)external_new(ev, "spline", 1, spline->size, &spline, sizeof(const Spline *), eval_spline_external);
+    TapeExternal *e = (TapeExternal *)(uintptr_t)external_new(ev, "spline", 1, spline->size, &spline,
+                                                              sizeof(const Spline *), eval_spline_external);
     hash_add(&e->hash, spline->points, spline->count * sizeof *spline->points);
     hash_add_u64(&e->hash, (uint64_t)spline->type);
     return external_function(ev, node, e);
@@ -127,7 +146,9 @@ Value transform_function(Eval *ev, const Node *node, const Transform *t) {
         TapeRef sum = tape_constant(tape, vec3_get(t->offset, row));
         for (int column = 0; column < 3; column++) {
             TapeRef m = tape_constant(tape, vec3_get(t->linear.c[column], row));
-            sum = tape_binary(tape, TAPE_ADD, sum, tape_binary(tape, TAPE_MUL, m, tape_input(tape, column), node->span), node->span);
+            sum =
+                tape_binary(tape, TAPE_ADD, sum,
+                            tape_binary(tape, TAPE_MUL, m, tape_input(tape, column), node->span), node->span);
         }
         out[row] = sum;
     }
@@ -136,17 +157,21 @@ Value transform_function(Eval *ev, const Node *node, const Transform *t) {
 
 /* ---- functions that vts adds ---- */
 
-static bool compile_perlin(Eval *ev, TapeBuilder *tape, const Node *call, const TapeRef *a, size_t count, TapeRef *out) {
+static bool compile_perlin(Eval *ev, TapeBuilder *tape, const Node *call, const TapeRef *a, size_t count,
+                           TapeRef *out) {
     (void)ev;
     (void)count;
     *out = tape_ternary(tape, TAPE_PERLIN, a[0], a[1], a[2], call->span);
     return true;
 }
 
-static bool constant_argument(Eval *ev, const Node *call, size_t i, double *out) { return eval_float(ev, call->as.apply.list.items[i], out); }
+static bool constant_argument(Eval *ev, const Node *call, size_t i, double *out) {
+    return eval_float(ev, call->as.apply.list.items[i], out);
+}
 
 /* fbm(noise, x, y, z, octaves, lacunarity, gain) = Σ gainᵏ · noise(lacunarityᵏ · p) */
-static bool compile_fbm(Eval *ev, TapeBuilder *tape, const Node *call, const TapeRef *a, size_t count, TapeRef *out) {
+static bool compile_fbm(Eval *ev, TapeBuilder *tape, const Node *call, const TapeRef *a, size_t count,
+                        TapeRef *out) {
     (void)count;
     const Node *noise = call->as.apply.list.items[0];
     double octaves, lacunarity, gain;
@@ -154,7 +179,8 @@ static bool compile_fbm(Eval *ev, TapeBuilder *tape, const Node *call, const Tap
         diag_error(ev->diags, noise->span, "fbm() takes the name of a noise first: perlin");
         return false;
     }
-    if (!constant_argument(ev, call, 4, &octaves) || !constant_argument(ev, call, 5, &lacunarity) || !constant_argument(ev, call, 6, &gain))
+    if (!constant_argument(ev, call, 4, &octaves) || !constant_argument(ev, call, 5, &lacunarity) ||
+        !constant_argument(ev, call, 6, &gain))
         return false;
     if (!(octaves >= 1 && octaves <= 64)) {
         diag_error(ev->diags, call->as.apply.list.items[4]->span, "fbm() takes 1 to 64 octaves");
@@ -165,9 +191,11 @@ static bool compile_fbm(Eval *ev, TapeBuilder *tape, const Node *call, const Tap
     double frequency = 1, weight = 1;
     for (int k = 0; k < (int)octaves; k++, frequency *= lacunarity, weight *= gain) {
         TapeRef f = tape_constant(tape, frequency);
-        TapeRef value = tape_ternary(tape, TAPE_PERLIN, tape_binary(tape, TAPE_MUL, a[1], f, s), tape_binary(tape, TAPE_MUL, a[2], f, s),
-                                     tape_binary(tape, TAPE_MUL, a[3], f, s), s);
-        sum = tape_binary(tape, TAPE_ADD, sum, tape_binary(tape, TAPE_MUL, tape_constant(tape, weight), value, s), s);
+        TapeRef value =
+            tape_ternary(tape, TAPE_PERLIN, tape_binary(tape, TAPE_MUL, a[1], f, s),
+                         tape_binary(tape, TAPE_MUL, a[2], f, s), tape_binary(tape, TAPE_MUL, a[3], f, s), s);
+        sum = tape_binary(tape, TAPE_ADD, sum,
+                          tape_binary(tape, TAPE_MUL, tape_constant(tape, weight), value, s), s);
     }
     *out = sum;
     return true;

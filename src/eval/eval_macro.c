@@ -4,7 +4,8 @@ void run_define_macro(Eval *ev, const Node *node) {
     Macro *m = arena_new(ev->parse, Macro);
     m->name = node->as.macro.name;
     m->parameter_count = node->as.macro.count;
-    m->parameters = arena_copy(ev->parse, node->as.macro.parameters, m->parameter_count * sizeof(Name)); /* the tree may be a passing one */
+    m->parameters = arena_copy(ev->parse, node->as.macro.parameters,
+                               m->parameter_count * sizeof(Name)); /* the tree may be a passing one */
     m->body = node->as.macro.body;
     m->whole = !node->as.macro.unbalanced && parser_body_is_whole(&m->body);
     m->next = ev->macros;
@@ -35,7 +36,9 @@ static Binding node_binding(Eval *ev, const Node *n) {
     case NODE_CONDITION: return BIND_NONE;
     case NODE_COLOR: return BIND_ANY;
     case NODE_CALL:
-        if (n->as.apply.base->kind != NODE_NAME || scope_classify(ev, n->as.apply.base->as.name, &macro) != NAME_MACRO) return BIND_PRIMARY;
+        if (n->as.apply.base->kind != NODE_NAME ||
+            scope_classify(ev, n->as.apply.base->as.name, &macro) != NAME_MACRO)
+            return BIND_PRIMARY;
         return macro_binding(ev, macro);
     default: return BIND_PRIMARY;
     }
@@ -73,7 +76,8 @@ static Shape cases_shape(Eval *ev, const Node *n) {
 
 static Shape call_shape(Eval *ev, const Node *n) {
     const Macro *macro;
-    if (n->as.apply.base->kind != NODE_NAME || scope_classify(ev, n->as.apply.base->as.name, &macro) != NAME_MACRO)
+    if (n->as.apply.base->kind != NODE_NAME ||
+        scope_classify(ev, n->as.apply.base->as.name, &macro) != NAME_MACRO)
         return (Shape){1, BIND_PRIMARY, false};
     Macro *m = (Macro *)(uintptr_t)macro;
     if (m->measuring) return (Shape){1, BIND_PRIMARY, false};
@@ -86,13 +90,31 @@ static Shape call_shape(Eval *ev, const Node *n) {
 
 static Shape node_shape(Eval *ev, const Node *n) {
     switch (n->kind) {
-    case NODE_DECLARE: case NODE_UNDEF: case NODE_BREAK: case NODE_MACRO: case NODE_VERSION: case NODE_DEFAULT: case NODE_MESSAGE:
-    case NODE_FOPEN: case NODE_FCLOSE: case NODE_READ: case NODE_WRITE: return (Shape){0, BIND_PRIMARY, false};
+    case NODE_DECLARE:
+    case NODE_UNDEF:
+    case NODE_BREAK:
+    case NODE_MACRO:
+    case NODE_VERSION:
+    case NODE_DEFAULT:
+    case NODE_MESSAGE:
+    case NODE_FOPEN:
+    case NODE_FCLOSE:
+    case NODE_READ:
+    case NODE_WRITE: return (Shape){0, BIND_PRIMARY, false};
     case NODE_IF: return branches_shape(ev, n);
     case NODE_SWITCH: return cases_shape(ev, n);
-    case NODE_WHILE: return body_shape(ev, &n->as.loop.body).values ? (Shape){2, BIND_NONE, false} : (Shape){0, BIND_PRIMARY, false};
-    case NODE_FOR: return body_shape(ev, &n->as.for_loop.body).values ? (Shape){2, BIND_NONE, false} : (Shape){0, BIND_PRIMARY, false};
-    case NODE_INCLUDE: case NODE_WORD: case NODE_ENTRY: case NODE_LIST: case NODE_EMPTY: case NODE_ERROR: return (Shape){2, BIND_NONE, false};
+    case NODE_WHILE:
+        return body_shape(ev, &n->as.loop.body).values ? (Shape){2, BIND_NONE, false}
+                                                       : (Shape){0, BIND_PRIMARY, false};
+    case NODE_FOR:
+        return body_shape(ev, &n->as.for_loop.body).values ? (Shape){2, BIND_NONE, false}
+                                                           : (Shape){0, BIND_PRIMARY, false};
+    case NODE_INCLUDE:
+    case NODE_WORD:
+    case NODE_ENTRY:
+    case NODE_LIST:
+    case NODE_EMPTY:
+    case NODE_ERROR: return (Shape){2, BIND_NONE, false};
     case NODE_CALL: return call_shape(ev, n);
     default: return (Shape){1, node_binding(ev, n), n->kind == NODE_BLOCK};
     }
@@ -102,8 +124,14 @@ static Shape node_shape(Eval *ev, const Node *n) {
 static Shape body_shape(Eval *ev, const Body *body) {
     Shape shape = {0, BIND_PRIMARY, false};
     if (!body->tokens) return (Shape){2, BIND_NONE, false};
-    Parser p = {.arena = &ev->temp, .diags = ev->diags, .keywords = &ev->keywords, .host = &ev->fast_host, .list = body->tokens,
-                .at = body->begin, .end = body->end, .guessing = true};
+    Parser p = {.arena = &ev->temp,
+                .diags = ev->diags,
+                .keywords = &ev->keywords,
+                .host = &ev->fast_host,
+                .list = body->tokens,
+                .at = body->begin,
+                .end = body->end,
+                .guessing = true};
     while (p.at < p.end && shape.values < 2) {
         Node *n = parser_statement(&p);
         if (!n) return (Shape){2, BIND_NONE, false};
@@ -155,17 +183,19 @@ static bool pass(Eval *ev, const Node *argument, Passed *out) {
 
 static bool count_matches(Eval *ev, const Macro *m, size_t given, Span span) {
     if (given == m->parameter_count) return true;
-    diag_error(ev->diags, span, "macro '%s' takes %zu argument%s, %zu given", m->name->text, m->parameter_count,
-               m->parameter_count == 1 ? "" : "s", given);
+    diag_error(ev->diags, span, "macro '%s' takes %zu argument%s, %zu given", m->name->text,
+               m->parameter_count, m->parameter_count == 1 ? "" : "s", given);
     return false;
 }
 
 enum { FEW_ARGUMENTS = 16 };
 
-bool macro_enter(Eval *ev, const Macro *m, const NodeList *arguments, Span span, Scope *scope, CallRecord *record) {
+bool macro_enter(Eval *ev, const Macro *m, const NodeList *arguments, Span span, Scope *scope,
+                 CallRecord *record) {
     if (!count_matches(ev, m, arguments->count, span)) return false;
     if (ev->call_depth >= ev->options->limits.recursion) {
-        diag_error(ev->diags, span, "macro calls are nested more than %u deep", ev->options->limits.recursion);
+        diag_error(ev->diags, span, "macro calls are nested more than %u deep",
+                   ev->options->limits.recursion);
         ev->stopped = true; /* what called itself this often would go on to do so on every level */
         return false;
     }
@@ -174,7 +204,8 @@ bool macro_enter(Eval *ev, const Macro *m, const NodeList *arguments, Span span,
         return false;
     }
     Passed few[FEW_ARGUMENTS] = {{0}};
-    Passed *passed = arguments->count <= FEW_ARGUMENTS ? few : arena_new_array(&ev->temp, Passed, arguments->count);
+    Passed *passed =
+        arguments->count <= FEW_ARGUMENTS ? few : arena_new_array(&ev->temp, Passed, arguments->count);
     for (size_t i = 0; i < arguments->count; i++)
         if (!pass(ev, arguments->items[i], &passed[i])) return false;
     scope_enter(ev, scope);

@@ -19,7 +19,8 @@ static bool lies_in(const char *path, const char *folder) {
     char *real = realpath(folder, NULL);
     if (!real) return false;
     size_t n = strlen(real);
-    bool in = strncmp(path, real, n) == 0 && (path[n] == '/' || path[n] == '\0' || (n == 1 && real[0] == '/'));
+    bool in =
+        strncmp(path, real, n) == 0 && (path[n] == '/' || path[n] == '\0' || (n == 1 && real[0] == '/'));
     free(real);
     return in;
 }
@@ -35,7 +36,8 @@ bool path_may_read(const Eval *ev, const char *path) {
     char *real = realpath(path, NULL);
     if (!real) return false;
     bool may = lies_in(real, ev->scene_folder) || lies_in_any(real, o->include_dirs, o->include_dir_count) ||
-               lies_in_any(real, o->allow_read, o->allow_read_count) || (o->stdlib_dir && lies_in(real, o->stdlib_dir));
+               lies_in_any(real, o->allow_read, o->allow_read_count) ||
+               (o->stdlib_dir && lies_in(real, o->stdlib_dir));
     free(real);
     return may;
 }
@@ -57,7 +59,8 @@ static bool is_file(const char *path) {
 }
 
 static const char *join(Eval *ev, const char *folder, const char *name) {
-    return strcmp(folder, ".") == 0 ? arena_strdup(ev->parse, name) : arena_printf(ev->parse, "%s/%s", folder, name);
+    return strcmp(folder, ".") == 0 ? arena_strdup(ev->parse, name)
+                                    : arena_printf(ev->parse, "%s/%s", folder, name);
 }
 
 const char *path_find(Eval *ev, const char *name, Span from, Diagnostic **refused, StrBuf *looked_in) {
@@ -67,7 +70,8 @@ const char *path_find(Eval *ev, const char *name, Span from, Diagnostic **refuse
     SourcePlace place = source_locate(ev->sources, from);
     if (place.file) folders[count++] = folder_of(ev, place.file->path);
     folders[count++] = ev->scene_folder;
-    for (size_t i = 0; i < o->include_dir_count && count < VTS_ARRAY_COUNT(folders) - 1; i++) folders[count++] = o->include_dirs[i];
+    for (size_t i = 0; i < o->include_dir_count && count < VTS_ARRAY_COUNT(folders) - 1; i++)
+        folders[count++] = o->include_dirs[i];
     if (o->stdlib_dir) folders[count++] = o->stdlib_dir;
     if (name[0] == '/') {
         folders[0] = "";
@@ -79,7 +83,9 @@ const char *path_find(Eval *ev, const char *name, Span from, Diagnostic **refuse
         if (seen) continue;
         const char *path = name[0] == '/' ? name : join(ev, folders[i], name);
         if (!is_file(path)) {
-            if (looked_in) strbuf_addf(looked_in, "%s%s", looked_in->size ? ", " : "", name[0] == '/' ? "/" : folders[i]);
+            if (looked_in)
+                strbuf_addf(looked_in, "%s%s", looked_in->size ? ", " : "",
+                            name[0] == '/' ? "/" : folders[i]);
             continue;
         }
         if (path_may_read(ev, path)) return path;

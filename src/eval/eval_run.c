@@ -38,7 +38,8 @@ Program *eval_program(Eval *ev, TokenList *tokens) {
 /* What a call's macro must be for the fast road: the text around the call would read its body as one operand. */
 static bool calls_hold(Eval *ev, const Assumption *a, size_t count) {
     for (size_t i = 0; i < count; i++)
-        if (a[i].class == NAME_MACRO && a[i].call && macro_binding(ev, a[i].macro) < a[i].call->need) return false;
+        if (a[i].class == NAME_MACRO && a[i].call && macro_binding(ev, a[i].macro) < a[i].call->need)
+            return false;
     return true;
 }
 
@@ -58,7 +59,8 @@ static uint32_t drop_repetitions(Assumption *a, size_t count) {
     size_t kept = 0;
     for (size_t i = 0; i < count; i++) {
         bool seen = false;
-        for (size_t k = 0; k < kept && !seen; k++) seen = a[k].name == a[i].name && (!a[i].call || a[k].call == a[i].call);
+        for (size_t k = 0; k < kept && !seen; k++)
+            seen = a[k].name == a[i].name && (!a[i].call || a[k].call == a[i].call);
         if (!seen) a[kept++] = a[i];
     }
     return (uint32_t)kept;
@@ -67,13 +69,24 @@ static uint32_t drop_repetitions(Assumption *a, size_t count) {
 const Statement *statement_at(Eval *ev, Program *program, uint32_t at, uint32_t end, Name block) {
     Statement *s = program->memo[at];
     if (s && s->end == end && s->block == block && still_holds(ev, s)) return s;
-    Parser p = {.arena = ev->parse, .diags = ev->diags, .keywords = &ev->keywords, .host = &ev->fast_host, .list = program->tokens,
-                .at = at, .end = end, .block = block};
-    Node *n = parser_statement(&p);
+    Parser p = {.arena = ev->parse,
+                .diags = ev->diags,
+                .keywords = &ev->keywords,
+                .host = &ev->fast_host,
+                .list = program->tokens,
+                .at = at,
+                .end = end,
+                .block = block};
+    Node *n = ev->options->expand_always ? NULL : parser_statement(&p);
     if (!s) s = program->memo[at] = arena_new(ev->parse, Statement);
     if (n && !calls_hold(ev, p.assumptions.items, p.assumptions.count)) n = NULL;
-    *s = (Statement){.node = n, .next = p.at, .end = end, .block = block, .assumptions = p.assumptions.items,
-                     .assumption_count = drop_repetitions(p.assumptions.items, p.assumptions.count), .stamp = ev->macro_stamp};
+    *s = (Statement){.node = n,
+                     .next = p.at,
+                     .end = end,
+                     .block = block,
+                     .assumptions = p.assumptions.items,
+                     .assumption_count = drop_repetitions(p.assumptions.items, p.assumptions.count),
+                     .stamp = ev->macro_stamp};
     return s;
 }
 
@@ -88,7 +101,8 @@ Flow run_statement(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink 
 Flow run_body(Eval *ev, const Body *body, Sink *sink) {
     Flow flow = FLOW_NEXT;
     if (!body->tokens) {
-        for (size_t i = 0; i < body->items.count && flow == FLOW_NEXT; i++) flow = run_node(ev, body->items.items[i], sink);
+        for (size_t i = 0; i < body->items.count && flow == FLOW_NEXT; i++)
+            flow = run_node(ev, body->items.items[i], sink);
         return flow;
     }
     Program *program = eval_program(ev, body->tokens);
@@ -120,7 +134,8 @@ static Flow run_if(Eval *ev, const Node *node, Sink *sink) {
 Flow run_loop_guard(Eval *ev, uint64_t *passes, size_t errors, Span span) {
     if (ev->diags->error_count != errors) return FLOW_BREAK;
     if (++*passes > ev->options->limits.loops) {
-        diag_error(ev->diags, span, "the loop has made %llu passes without ending", (unsigned long long)ev->options->limits.loops);
+        diag_error(ev->diags, span, "the loop has made %llu passes without ending",
+                   (unsigned long long)ev->options->limits.loops);
         return FLOW_BREAK;
     }
     if (ev->options->interrupted && *ev->options->interrupted) {
@@ -201,7 +216,9 @@ static Flow run_switch(Eval *ev, const Node *node, Sink *sink) {
 
 void run_assign(Eval *ev, const Node *node) {
     const Node *target = node->as.declare.target, *source = node->as.declare.value;
-    Value v = source->kind == NODE_BLOCK && target->kind == NODE_NAME ? eval_block(ev, source, target->as.name) : eval_node(ev, source);
+    Value v = source->kind == NODE_BLOCK && target->kind == NODE_NAME
+                  ? eval_block(ev, source, target->as.name)
+                  : eval_node(ev, source);
     if (target->kind == NODE_NAME) {
         Slot *slot = scope_declare(ev, target->as.name, node->as.declare.local);
         slot_set(ev, slot, &v);
@@ -222,8 +239,10 @@ static void run_undef(Eval *ev, const Node *node) {
     bool failed = false;
     if (target->kind == NODE_NAME) {
         VarBinding *b = scope_find(ev, target->as.name);
-        if (!b || !b->slot->set) diag_warning(ev->diags, target->span, "'%s' is not declared", target->as.name->text);
-        else if (b->slot != &b->own) slot_clear(b->slot);
+        if (!b || !b->slot->set)
+            diag_warning(ev->diags, target->span, "'%s' is not declared", target->as.name->text);
+        else if (b->slot != &b->own)
+            slot_clear(b->slot);
         scope_undef(ev, target->as.name);
         return;
     }
@@ -247,27 +266,33 @@ static void run_message(Eval *ev, const Node *node) {
     default: break;
     }
     /* After an error the program goes on only to find more errors. */
-    if (ev->options->on_text && ev->diags->error_count == 0) ev->options->on_text(ev->options->context, stream, text);
+    if (ev->options->on_text && ev->diags->error_count == 0)
+        ev->options->on_text(ev->options->context, stream, text);
 }
 
 static void run_version(Eval *ev, const Node *node) {
     double version;
     if (!eval_float(ev, node->as.operand.a, &version)) return;
-    if (version > 3.85) diag_error(ev->diags, node->as.operand.a->span, "the scene asks for version %g of the language, this is 3.8 at most", version);
-    else ev->version = version;
+    if (version > 3.85)
+        diag_error(ev->diags, node->as.operand.a->span,
+                   "the scene asks for version %g of the language, this is 3.8 at most", version);
+    else
+        ev->version = version;
 }
 
 static void run_default(Eval *ev, const Node *node) {
     ArenaMark mark = arena_mark(&ev->blocks);
     size_t errors = ev->diags->error_count;
-    const EvalBlock *block = eval_block_items(ev, node->as.block.word, node->as.block.word_span, node->span, node->as.block.body);
+    const EvalBlock *block =
+        eval_block_items(ev, node->as.block.word, node->as.block.word_span, node->span, node->as.block.body);
     if (errors == ev->diags->error_count) scene_draft_default(ev->draft, &ev->build, block);
     arena_reset_to(&ev->blocks, mark);
 }
 
 static bool is_macro_call(const Eval *ev, const Node *node) {
     const Macro *macro;
-    return node->as.apply.base->kind == NODE_NAME && scope_classify(ev, node->as.apply.base->as.name, &macro) == NAME_MACRO;
+    return node->as.apply.base->kind == NODE_NAME &&
+           scope_classify(ev, node->as.apply.base->as.name, &macro) == NAME_MACRO;
 }
 
 Flow run_node(Eval *ev, const Node *node, Sink *sink) {
@@ -292,7 +317,8 @@ Flow run_node(Eval *ev, const Node *node, Sink *sink) {
     case NODE_WORD: sink_word(ev, sink, node); break;
     case NODE_ENTRY: sink_entry(ev, sink, node); break;
     case NODE_LIST: sink_list(ev, sink, node); break;
-    case NODE_EMPTY: case NODE_ERROR: break;
+    case NODE_EMPTY:
+    case NODE_ERROR: break;
     case NODE_CALL:
         if (is_macro_call(ev, node)) return run_call(ev, node, sink);
         sink_value(ev, sink, eval_node(ev, node), node->span);

@@ -35,8 +35,10 @@ static void make_room(Eval *ev, uint32_t id) {
 static VarBinding *push(Eval *ev, Name name, Scope *scope) {
     make_room(ev, name->id);
     VarBinding *b = ev->free_bindings;
-    if (b) ev->free_bindings = b->scope_next;
-    else b = arena_new(ev->parse, VarBinding);
+    if (b)
+        ev->free_bindings = b->scope_next;
+    else
+        b = arena_new(ev->parse, VarBinding);
     b->slot = &b->own;
     b->name_id = name->id;
     b->scope = scope->number;
@@ -86,7 +88,8 @@ NameClass scope_classify(const Eval *ev, Name name, const Macro **macro) {
     if (!b || !b->slot->set) return NAME_UNKNOWN;
     switch (b->slot->value.kind) {
     case VALUE_MACRO: *macro = b->slot->value.as.macro; return NAME_MACRO;
-    case VALUE_FUNCTION: case VALUE_SPLINE:
+    case VALUE_FUNCTION:
+    case VALUE_SPLINE:
     case VALUE_ERROR: /* might have been one */ return NAME_CALLABLE;
     default: return NAME_PLAIN;
     }

@@ -7,7 +7,8 @@ static Value keep(Eval *ev, Value v) {
     if (v.kind == VALUE_VECTOR || v.kind == VALUE_COLOR)
         v.as.components = arena_copy(&ev->blocks, v.as.components, v.size * sizeof(double));
     else if (v.kind == VALUE_STRING)
-        v.as.string.text = arena_copy(ev->build.arena, v.as.string.text, v.as.string.length + 1); /* builders keep texts */
+        v.as.string.text =
+            arena_copy(ev->build.arena, v.as.string.text, v.as.string.length + 1); /* builders keep texts */
     return v;
 }
 
@@ -15,7 +16,9 @@ static Value keep(Eval *ev, Value v) {
  * there. */
 static bool continues_word(const Eval *ev, const Sink *sink, const Value *v) {
     const ItemList *items = sink->items;
-    if (sink->word_body == ev->body || items->count == 0 || items->items[items->count - 1].kind != ITEM_WORD || items->items[items->count - 1].body) return false;
+    if (sink->word_body == ev->body || items->count == 0 ||
+        items->items[items->count - 1].kind != ITEM_WORD || items->items[items->count - 1].body)
+        return false;
     return value_is_numeric(v) || v->kind == VALUE_STRING;
 }
 
@@ -28,13 +31,18 @@ static void add_argument(Eval *ev, BlockItem *item, Value v, Span span) {
 
 static void add_item(Eval *ev, Sink *sink, Value v, Span span) {
     v = keep(ev, v);
-    if (continues_word(ev, sink, &v)) add_argument(ev, &sink->items->items[sink->items->count - 1], v, span);
-    else *list_push(&ev->blocks, sink->items) = (BlockItem){.kind = ITEM_VALUE, .span = span, .value = v};
+    if (continues_word(ev, sink, &v))
+        add_argument(ev, &sink->items->items[sink->items->count - 1], v, span);
+    else
+        *list_push(&ev->blocks, sink->items) = (BlockItem){.kind = ITEM_VALUE, .span = span, .value = v};
 }
 
 /* An array without a size grows as it is filled. */
 static void grow_array(Eval *ev, Array *a) {
-    struct { Slot *items; size_t count, capacity; } list = {a->items, a->count, a->capacity};
+    struct {
+        Slot *items;
+        size_t count, capacity;
+    } list = {a->items, a->count, a->capacity};
     *list_push(ev->parse, &list) = (Slot){0};
     a->items = list.items;
     a->count = list.count;
@@ -86,7 +94,9 @@ static const Argument *eval_arguments(Eval *ev, const NodeList *list, bool *ok) 
 
 /* particles { count N { … } }: one item for each particle, with `index` counting. */
 static void add_particles(Eval *ev, Sink *sink, const Node *node, BlockItem item) {
-    double count = item.argument_count == 1 && item.arguments[0].value.kind == VALUE_FLOAT ? item.arguments[0].value.as.number : -1;
+    double count = item.argument_count == 1 && item.arguments[0].value.kind == VALUE_FLOAT
+                       ? item.arguments[0].value.as.number
+                       : -1;
     if (!(count >= 0) || count != (double)(uint64_t)count || count > (double)ev->options->limits.loops) {
         diag_error(ev->diags, node->span, "count takes a whole number of particles");
         return;
@@ -115,19 +125,26 @@ static void add_particles(Eval *ev, Sink *sink, const Node *node, BlockItem item
 static void unknown_word(Eval *ev, const Node *node) {
     Name word = node->as.word.word;
     const char *suggestion = block_word_suggest(word->text);
-    Diagnostic *d = diag_error(ev->diags, node->as.word.word_span, keyword_of(&ev->keywords, word) ? "'%s' has no meaning here" : "unknown word '%s'", word->text);
+    Diagnostic *d = diag_error(
+        ev->diags, node->as.word.word_span,
+        keyword_of(&ev->keywords, word) ? "'%s' has no meaning here" : "unknown word '%s'", word->text);
     if (suggestion) diag_hint(ev->diags, d, "did you mean '%s'?", suggestion);
 }
 
 void sink_word(Eval *ev, Sink *sink, const Node *node) {
     if (sink->kind != SINK_ITEMS) {
-        if (sink->kind != SINK_SCENE && !keyword_of(&ev->keywords, node->as.word.word)) eval_undeclared(ev, node->as.word.word, node->as.word.word_span);
-        else unknown_word(ev, node);
+        if (sink->kind != SINK_SCENE && !keyword_of(&ev->keywords, node->as.word.word))
+            eval_undeclared(ev, node->as.word.word, node->as.word.word_span);
+        else
+            unknown_word(ev, node);
         sink->filled = sink->filled || sink->kind == SINK_SINGLE;
         return;
     }
     bool ok = true;
-    BlockItem item = {.kind = ITEM_WORD, .span = node->span, .word_span = node->as.word.word_span, .word = node->as.word.word};
+    BlockItem item = {.kind = ITEM_WORD,
+                      .span = node->span,
+                      .word_span = node->as.word.word_span,
+                      .word = node->as.word.word};
     item.argument_count = node->as.word.list.count;
     item.arguments = eval_arguments(ev, &node->as.word.list, &ok);
     if (!ok) {
@@ -138,7 +155,8 @@ void sink_word(Eval *ev, Sink *sink, const Node *node) {
         add_particles(ev, sink, node, item);
         return;
     }
-    if (node->as.word.body) item.body = eval_block_items(ev, item.word, item.word_span, item.span, node->as.word.body);
+    if (node->as.word.body)
+        item.body = eval_block_items(ev, item.word, item.word_span, item.span, node->as.word.body);
     *list_push(&ev->blocks, sink->items) = item;
     sink->word_body = ev->body;
 }
@@ -156,7 +174,8 @@ void sink_entry(Eval *ev, Sink *sink, const Node *node) {
 /* { … } among the elements of an array is one row of it. */
 void sink_list(Eval *ev, Sink *sink, const Node *node) {
     if (sink->kind != SINK_ARRAY) {
-        diag_error(ev->diags, (Span){node->span.file, node->span.begin, node->span.begin + 1}, "unexpected '{'");
+        diag_error(ev->diags, (Span){node->span.file, node->span.begin, node->span.begin + 1},
+                   "unexpected '{'");
         return;
     }
     Array *a = sink->array;
@@ -173,5 +192,6 @@ void sink_list(Eval *ev, Sink *sink, const Node *node) {
     size_t errors = ev->diags->error_count;
     run_body(ev, node->as.block.body, &inner);
     if (errors == ev->diags->error_count && inner.next < inner.array->count)
-        diag_error(ev->diags, node->span, "a row of %zu elements gets only %zu", inner.array->count, inner.next);
+        diag_error(ev->diags, node->span, "a row of %zu elements gets only %zu", inner.array->count,
+                   inner.next);
 }

@@ -9,8 +9,10 @@ static size_t segment_of(const Spline *s, double at) {
     size_t low = 0, high = s->count - 1;
     while (high - low > 1) {
         size_t middle = (low + high) / 2;
-        if (s->points[middle].at <= at) low = middle;
-        else high = middle;
+        if (s->points[middle].at <= at)
+            low = middle;
+        else
+            high = middle;
     }
     return low;
 }
@@ -40,13 +42,15 @@ static double catmull_rom(const Spline *s, size_t i, int k, double at) {
     double m0 = (p[i + 1].value[k] - p[i - 1].value[k]) / (p[i + 1].at - p[i - 1].at) * h;
     double m1 = (p[i + 2].value[k] - p[i].value[k]) / (p[i + 2].at - p[i].at) * h;
     double u2 = u * u, u3 = u2 * u;
-    return (2 * u3 - 3 * u2 + 1) * p[i].value[k] + (u3 - 2 * u2 + u) * m0 + (3 * u2 - 2 * u3) * p[i + 1].value[k] + (u3 - u2) * m1;
+    return (2 * u3 - 3 * u2 + 1) * p[i].value[k] + (u3 - 2 * u2 + u) * m0 +
+           (3 * u2 - 2 * u3) * p[i + 1].value[k] + (u3 - u2) * m1;
 }
 
 static double natural(const Spline *s, size_t i, int k, double at) {
     const SplinePoint *a = &s->points[i], *b = a + 1;
     double h = b->at - a->at, u = (b->at - at) / h, v = (at - a->at) / h;
-    return u * a->value[k] + v * b->value[k] + ((u * u * u - u) * a->second[k] + (v * v * v - v) * b->second[k]) * h * h / 6;
+    return u * a->value[k] + v * b->value[k] +
+           ((u * u * u - u) * a->second[k] + (v * v * v - v) * b->second[k]) * h * h / 6;
 }
 
 void spline_evaluate(const Spline *s, int type, double at, double *out) {
@@ -55,17 +59,19 @@ void spline_evaluate(const Spline *s, int type, double at, double *out) {
         low = 1;
         high = s->count - 2;
     }
-    const SplinePoint *end = at <= s->points[low].at ? &s->points[low] : at >= s->points[high].at || high == 0 ? &s->points[high] : NULL;
+    const SplinePoint *end = at <= s->points[low].at                 ? &s->points[low]
+                             : at >= s->points[high].at || high == 0 ? &s->points[high]
+                                                                     : NULL;
     if (end) {
         memcpy(out, end->value, (size_t)s->size * sizeof *out);
         return;
     }
     size_t i = segment_of(s, at);
     for (int k = 0; k < s->size; k++)
-        out[k] = type == SPLINE_QUADRATIC ? quadratic(s, i, k, at)
+        out[k] = type == SPLINE_QUADRATIC                ? quadratic(s, i, k, at)
                  : type == SPLINE_CUBIC && s->count >= 4 ? catmull_rom(s, i, k, at)
-                 : type == SPLINE_NATURAL ? natural(s, i, k, at)
-                                          : lagrange(s->points + i, 2, k, at);
+                 : type == SPLINE_NATURAL                ? natural(s, i, k, at)
+                                                         : lagrange(s->points + i, 2, k, at);
 }
 
 /* Second derivatives of the natural cubic spline: a tridiagonal system, solved by elimination. */
@@ -78,7 +84,8 @@ static void find_second_derivatives(Eval *ev, Spline *s) {
         c[0] = d[0] = 0;
         for (size_t i = 1; i + 1 < n; i++) {
             double h0 = p[i].at - p[i - 1].at, h1 = p[i + 1].at - p[i].at;
-            double right = 6 * ((p[i + 1].value[k] - p[i].value[k]) / h1 - (p[i].value[k] - p[i - 1].value[k]) / h0);
+            double right =
+                6 * ((p[i + 1].value[k] - p[i].value[k]) / h1 - (p[i].value[k] - p[i - 1].value[k]) / h0);
             double pivot = 2 * (h0 + h1) - h0 * c[i - 1];
             c[i] = h1 / pivot;
             d[i] = (right - h0 * d[i - 1]) / pivot;
@@ -109,10 +116,14 @@ typedef struct SplineReader {
 } SplineReader;
 
 static void add_point(SplineReader *r, const Value *v) {
-    struct { SplinePoint *items; size_t count, capacity; } list = {r->spline->points, r->spline->count, r->capacity};
+    struct {
+        SplinePoint *items;
+        size_t count, capacity;
+    } list = {r->spline->points, r->spline->count, r->capacity};
     SplinePoint *p = list_push(r->ev->build.arena, &list);
     *p = (SplinePoint){.at = r->time};
-    for (int k = 0; k < 5; k++) p->value[k] = k < v->size || v->kind != VALUE_FLOAT ? value_component(v, k) : 0;
+    for (int k = 0; k < 5; k++)
+        p->value[k] = k < v->size || v->kind != VALUE_FLOAT ? value_component(v, k) : 0;
     r->spline->points = list.items;
     r->spline->count = list.count;
     r->capacity = list.capacity;
@@ -123,7 +134,8 @@ static void add_point(SplineReader *r, const Value *v) {
 static void take_value(SplineReader *r, const Value *v, Span span) {
     if (v->kind == VALUE_SPLINE) {
         *r->spline = *v->as.spline;
-        r->spline->points = arena_copy(r->ev->build.arena, v->as.spline->points, v->as.spline->count * sizeof(SplinePoint));
+        r->spline->points =
+            arena_copy(r->ev->build.arena, v->as.spline->points, v->as.spline->count * sizeof(SplinePoint));
         r->capacity = r->spline->count;
     } else if (!r->have_time) {
         r->have_time = value_to_float(r->ev, v, span, &r->time);
@@ -132,7 +144,8 @@ static void take_value(SplineReader *r, const Value *v, Span span) {
         add_point(r, v);
         r->have_time = false;
     } else {
-        diag_error(r->ev->diags, span, "a spline's points are floats or vectors, this is %s", value_kind_text(v->kind));
+        diag_error(r->ev->diags, span, "a spline's points are floats or vectors, this is %s",
+                   value_kind_text(v->kind));
         r->failed = true;
     }
 }
@@ -162,11 +175,13 @@ Value eval_spline(Eval *ev, const EvalBlock *block) {
         }
         int type = item->kind == ITEM_WORD ? spline_type(ev, item->word) : -1;
         if (type < 0) {
-            diag_error(ev->diags, item->kind == ITEM_WORD ? item->word_span : item->span, "this has no meaning in a spline");
+            diag_error(ev->diags, item->kind == ITEM_WORD ? item->word_span : item->span,
+                       "this has no meaning in a spline");
             return value_error();
         }
         r.spline->type = type;
-        for (size_t k = 0; k < item->argument_count && !r.failed; k++) take_value(&r, &item->arguments[k].value, item->arguments[k].span);
+        for (size_t k = 0; k < item->argument_count && !r.failed; k++)
+            take_value(&r, &item->arguments[k].value, item->arguments[k].span);
     }
     if (r.failed) return value_error();
     if (r.spline->count == 0) {
@@ -183,7 +198,8 @@ Value call_spline(Eval *ev, const Spline *spline, const NodeList *arguments, Spa
     double at, out[5] = {0};
     int type = spline->type;
     if (arguments->count < 1 || arguments->count > 2) {
-        diag_error(ev->diags, span, "a spline takes a time and possibly a type, %zu arguments given", arguments->count);
+        diag_error(ev->diags, span, "a spline takes a time and possibly a type, %zu arguments given",
+                   arguments->count);
         return value_error();
     }
     if (!eval_float(ev, arguments->items[0], &at)) return value_error();
@@ -191,7 +207,8 @@ Value call_spline(Eval *ev, const Spline *spline, const NodeList *arguments, Spa
         const Node *n = arguments->items[1];
         type = n->kind == NODE_CONSTANT ? spline_type(ev, ev->keywords.name_of[n->op]) : -1;
         if (type < 0) {
-            diag_error(ev->diags, n->span, "expected linear_spline, quadratic_spline, cubic_spline or natural_spline");
+            diag_error(ev->diags, n->span,
+                       "expected linear_spline, quadratic_spline, cubic_spline or natural_spline");
             return value_error();
         }
     }

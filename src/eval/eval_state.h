@@ -21,12 +21,12 @@ typedef struct Slot {
 /* Scope is dynamic: the visible meaning of a name is on top of that name's own stack of bindings, so that looking it up is one load. */
 typedef struct VarBinding VarBinding;
 struct VarBinding {
-    Slot *slot;             /* &own, or the caller's for a parameter that went by reference */
+    Slot *slot; /* &own, or the caller's for a parameter that went by reference */
     Slot own;
     VarBinding *outer;      /* what the name meant outside */
     VarBinding *scope_next; /* next binding of the same scope; also links the free ones */
     uint32_t name_id;
-    uint32_t scope;         /* number of the scope that it belongs to; 0: global */
+    uint32_t scope; /* number of the scope that it belongs to; 0: global */
 };
 
 typedef struct Scope {
@@ -42,14 +42,15 @@ struct Macro {
     const Name *parameters;
     size_t parameter_count;
     Body body;
-    bool whole;              /* brackets balance and no operator dangles */
+    bool whole; /* brackets balance and no operator dangles */
     /* Whether a call stands for one expression and how tightly it binds; found on first need, and again when `stamp` is old. */
     Binding binding;
     uint32_t stamp;
-    bool is_block;           /* its value is a block: an item of its own, never an argument of a word before it */
+    bool is_block; /* its value is a block: an item of its own, never an argument of a word before it */
     bool measuring;
-    Span last_call;          /* for notes of errors that show only after the call, when its text is part of a larger expression */
-    struct Macro *next;      /* of all that were defined */
+    Span
+        last_call; /* for notes of errors that show only after the call, when its text is part of a larger expression */
+    struct Macro *next; /* of all that were defined */
 };
 
 typedef struct CallRecord CallRecord;
@@ -62,11 +63,11 @@ struct CallRecord {
 /* ---- where the values of a body go ---- */
 
 typedef enum SinkKind {
-    SINK_NONE,  /* nothing is expected: a body of directives */
-    SINK_SCENE, /* top level of the file */
-    SINK_ITEMS, /* a block's items */
-    SINK_SINGLE,/* one value */
-    SINK_ARRAY, /* the elements of an array, in order */
+    SINK_NONE,   /* nothing is expected: a body of directives */
+    SINK_SCENE,  /* top level of the file */
+    SINK_ITEMS,  /* a block's items */
+    SINK_SINGLE, /* one value */
+    SINK_ARRAY,  /* the elements of an array, in order */
 } SinkKind;
 
 typedef struct ItemList {
@@ -76,13 +77,13 @@ typedef struct ItemList {
 
 typedef struct Sink {
     SinkKind kind;
-    Name block;       /* SINK_ITEMS */
-    ItemList *items;  /* SINK_ITEMS */
+    Name block;         /* SINK_ITEMS */
+    ItemList *items;    /* SINK_ITEMS */
     uint64_t word_body; /* SINK_ITEMS: the run of a body that brought the last word */
-    Value value;      /* SINK_SINGLE */
+    Value value;        /* SINK_SINGLE */
     bool filled;
-    Array *array;     /* SINK_ARRAY */
-    size_t next;      /* element */
+    Array *array; /* SINK_ARRAY */
+    size_t next;  /* element */
 } Sink;
 
 typedef enum Flow { FLOW_NEXT, FLOW_BREAK, FLOW_STOP } Flow;
@@ -93,7 +94,7 @@ struct Array {
     Slot *items;
     size_t count, capacity;
     bool growing; /* written without a size: array { … } */
-    bool rows; /* its elements are arrays themselves: more than one dimension */
+    bool rows;    /* its elements are arrays themselves: more than one dimension */
 };
 
 enum { SPLINE_LINEAR, SPLINE_QUADRATIC, SPLINE_CUBIC, SPLINE_NATURAL };
@@ -133,9 +134,9 @@ struct Eval {
     DiagList *diags;
     Interner *names;
     KeywordTable keywords;
-    Arena *parse;     /* trees, memos, variables */
-    Arena temp;       /* values of the statement that is running */
-    Arena blocks;     /* items of blocks that are being read */
+    Arena *parse; /* trees, memos, variables */
+    Arena temp;   /* values of the statement that is running */
+    Arena blocks; /* items of blocks that are being read */
     BuildContext build;
     SceneDraft *draft;
     const char *scene_path, *scene_folder;
@@ -149,7 +150,7 @@ struct Eval {
     Macro *macros;
     uint32_t call_depth, include_depth;
     uint64_t body, body_count; /* the run of a body that is going on, and how many there were */
-    int nesting; /* C stack: bodies and expressions within each other */
+    int nesting;               /* C stack: bodies and expressions within each other */
 
     Program **programs; /* by file id */
     uint32_t program_count;
@@ -169,7 +170,9 @@ struct Eval {
 
 /* ---- eval_value.c ---- */
 static inline Value value_error(void) { return (Value){.kind = VALUE_ERROR}; }
-static inline Value value_float(double number) { return (Value){.kind = VALUE_FLOAT, .size = 1, .as.number = number}; }
+static inline Value value_float(double number) {
+    return (Value){.kind = VALUE_FLOAT, .size = 1, .as.number = number};
+}
 Value value_vector(Eval *ev, const double *components, int size);
 Value value_string(Eval *ev, const char *text, size_t length);
 bool value_is_numeric(const Value *v);
@@ -259,7 +262,8 @@ Value eval_call(Eval *ev, const Node *node);
 /* A call as an item: its body's items go to the sink. */
 Flow run_call(Eval *ev, const Node *node, Sink *sink);
 /* Binds the arguments of a call in a new scope. False after a report: nothing is then entered. */
-bool macro_enter(Eval *ev, const Macro *macro, const NodeList *arguments, Span span, Scope *scope, CallRecord *record);
+bool macro_enter(Eval *ev, const Macro *macro, const NodeList *arguments, Span span, Scope *scope,
+                 CallRecord *record);
 void macro_leave(Eval *ev, Scope *scope);
 Binding macro_binding(Eval *ev, const Macro *macro);
 

@@ -5,13 +5,34 @@
 
 const char *value_kind_text(ValueKind kind) {
     static const char *const texts[] = {
-        [VALUE_ERROR] = "an erroneous value", [VALUE_FLOAT] = "a float", [VALUE_VECTOR] = "a vector", [VALUE_COLOR] = "a colour",
-        [VALUE_STRING] = "a string", [VALUE_ARRAY] = "an array", [VALUE_FUNCTION] = "a function", [VALUE_SPLINE] = "a spline",
-        [VALUE_TRANSFORM] = "a transform", [VALUE_FILE] = "a file handle", [VALUE_MACRO] = "a macro", [VALUE_OBJECT] = "an object",
-        [VALUE_LIGHT] = "a light source", [VALUE_CAMERA] = "a camera", [VALUE_TEXTURE] = "a texture", [VALUE_PIGMENT] = "a pigment",
-        [VALUE_NORMAL] = "a normal", [VALUE_FINISH] = "a finish", [VALUE_INTERIOR] = "an interior", [VALUE_MATERIAL] = "a material",
-        [VALUE_COLOR_MAP] = "a colour map", [VALUE_FOG] = "a fog", [VALUE_SKY_SPHERE] = "a sky sphere", [VALUE_TEXEL] = "a texel",
-        [VALUE_SURFACE] = "a surface", [VALUE_SKIN] = "a skin", [VALUE_WIND_FIELD] = "a wind field", [VALUE_BLOCK] = "a block",
+        [VALUE_ERROR] = "an erroneous value",
+        [VALUE_FLOAT] = "a float",
+        [VALUE_VECTOR] = "a vector",
+        [VALUE_COLOR] = "a colour",
+        [VALUE_STRING] = "a string",
+        [VALUE_ARRAY] = "an array",
+        [VALUE_FUNCTION] = "a function",
+        [VALUE_SPLINE] = "a spline",
+        [VALUE_TRANSFORM] = "a transform",
+        [VALUE_FILE] = "a file handle",
+        [VALUE_MACRO] = "a macro",
+        [VALUE_OBJECT] = "an object",
+        [VALUE_LIGHT] = "a light source",
+        [VALUE_CAMERA] = "a camera",
+        [VALUE_TEXTURE] = "a texture",
+        [VALUE_PIGMENT] = "a pigment",
+        [VALUE_NORMAL] = "a normal",
+        [VALUE_FINISH] = "a finish",
+        [VALUE_INTERIOR] = "an interior",
+        [VALUE_MATERIAL] = "a material",
+        [VALUE_COLOR_MAP] = "a colour map",
+        [VALUE_FOG] = "a fog",
+        [VALUE_SKY_SPHERE] = "a sky sphere",
+        [VALUE_TEXEL] = "a texel",
+        [VALUE_SURFACE] = "a surface",
+        [VALUE_SKIN] = "a skin",
+        [VALUE_WIND_FIELD] = "a wind field",
+        [VALUE_BLOCK] = "a block",
     };
     return (size_t)kind < VTS_ARRAY_COUNT(texts) && texts[kind] ? texts[kind] : "a value";
 }
@@ -42,7 +63,8 @@ static const double TOLERANCE = 1e-10;
 bool value_is_true(double number) { return !(fabs(number) < TOLERANCE); }
 
 static Value mismatch(Eval *ev, Span span, const char *wanted, const Value *found) {
-    if (found->kind != VALUE_ERROR) diag_error(ev->diags, span, "expected %s, found %s", wanted, value_kind_text(found->kind));
+    if (found->kind != VALUE_ERROR)
+        diag_error(ev->diags, span, "expected %s, found %s", wanted, value_kind_text(found->kind));
     return value_error();
 }
 
@@ -106,14 +128,16 @@ static Value vector_binary(Eval *ev, int op, Value a, Value b, Span span) {
     if (!value_is_numeric(&b)) return mismatch(ev, span, "a float or a vector", &b);
     int size = a.kind == VALUE_FLOAT ? b.size : b.kind == VALUE_FLOAT ? a.size : int_max(a.size, b.size);
     double out[UINT8_MAX];
-    for (int i = 0; i < size; i++) out[i] = binary(ev, op, value_component(&a, i), value_component(&b, i), span);
+    for (int i = 0; i < size; i++)
+        out[i] = binary(ev, op, value_component(&a, i), value_component(&b, i), span);
     Value v = value_vector(ev, out, size);
     if (a.kind == VALUE_COLOR || b.kind == VALUE_COLOR) v.kind = VALUE_COLOR;
     return v;
 }
 
 Value value_binary(Eval *ev, int op, Value a, Value b, Span span) {
-    if (a.kind == VALUE_FLOAT && b.kind == VALUE_FLOAT) return value_float(binary(ev, op, a.as.number, b.as.number, span));
+    if (a.kind == VALUE_FLOAT && b.kind == VALUE_FLOAT)
+        return value_float(binary(ev, op, a.as.number, b.as.number, span));
     return vector_binary(ev, op, a, b, span);
 }
 
@@ -163,7 +187,8 @@ void slot_set(Eval *ev, Slot *slot, const Value *value) {
     Value v = *value;
     if (v.kind == VALUE_VECTOR || v.kind == VALUE_COLOR) {
         size_t bytes = v.size * sizeof(double);
-        double *own = memcpy(slot_buffer(ev, slot, size_max(bytes, 5 * sizeof(double))), v.as.components, bytes);
+        double *own =
+            memcpy(slot_buffer(ev, slot, size_max(bytes, 5 * sizeof(double))), v.as.components, bytes);
         /* POV-Ray keeps colours in single precision. */
         for (int i = 0; v.kind == VALUE_COLOR && i < v.size; i++) own[i] = (double)(float)own[i];
         v.as.components = own;

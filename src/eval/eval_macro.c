@@ -233,6 +233,7 @@ Flow run_call(Eval *ev, const Node *node, Sink *sink) {
     if (!eval_deeper(ev, node->span)) return FLOW_STOP;
     if (!macro_enter(ev, b->slot->value.as.macro, &node->as.apply.list, node->span, &scope, &record)) {
         ev->nesting--;
+        ev->silent_errors++; /* what the call would have left is missing */
         sink->filled = sink->filled || sink->kind == SINK_SINGLE;
         return FLOW_NEXT;
     }

@@ -87,6 +87,18 @@ static const char *option_fault(const VtsOptions *o) {
     return NULL;
 }
 
+/* False when memory or threads run out. */
+static bool prepare(VtsSession *session) {
+    if (setjmp(session->out_of_memory) != 0) return false;
+    arena_init(&session->arena, &session->memory, 0);
+    source_set_init(&session->sources, &session->arena);
+    diag_init(&session->diags, &session->arena, &session->sources);
+    interner_init(&session->names, &session->arena);
+    find_stdlib(session);
+    session->pool = pool_create(session->options.threads);
+    return session->pool != NULL;
+}
+
 VtsSession *vts_session_create(const VtsOptions *options, const char **error) {
     const char *fault = option_fault(options);
     VtsSession *session = fault ? NULL : calloc(1, sizeof *session);
@@ -97,15 +109,7 @@ VtsSession *vts_session_create(const VtsOptions *options, const char **error) {
     session->options = *options;
     session->memory = (MemoryBudget){.limit = options->memory_limit, .on_exhausted = memory_exhausted, .context = session};
     session->progress = (Progress){pass_progress, session};
-    if (setjmp(session->out_of_memory) == 0) {
-        arena_init(&session->arena, &session->memory, 0);
-        source_set_init(&session->sources, &session->arena);
-        diag_init(&session->diags, &session->arena, &session->sources);
-        interner_init(&session->names, &session->arena);
-        find_stdlib(session);
-        session->pool = pool_create(options->threads);
-    }
-    if (!session->pool) {
+    if (!prepare(session)) {
         vts_session_destroy(session);
         if (error) *error = "out of memory, or threads cannot be started";
         return NULL;

@@ -40,15 +40,8 @@ typedef struct Builder {
     double tolerance;
 } Builder;
 
-static void warn_inert(Builder *b, const InertNote *note) {
-    for (; note; note = note->next)
-        diag_warning(b->diags, note->span, "'%s' is not drawn in this version: it has no effect here", note->word);
-}
-
 static const Look *make_look(Builder *b, const Texture *texture) {
     Look *look = arena_new(b->arena, Look);
-    warn_inert(b, texture->inert);
-    warn_inert(b, texture->pigment->inert);
     *look = look_from_texture(texture, &b->scene->settings);
     return look;
 }
@@ -77,7 +70,6 @@ static void add_surface(Builder *b, const Object *object, const Transform *to_wo
     SurfaceMesh mesh;
     ShapeRefusal refusal;
     const Surface *surface = object->as.surface;
-    warn_inert(b, surface->inert);
     if (!surface_mesh_build(surface, &options, b->arena, &mesh, &refusal)) {
         diag_error(b->diags, refusal.span, "this surface cannot be drawn: %s", refusal.reason);
         return;
@@ -106,7 +98,6 @@ static void add_surface(Builder *b, const Object *object, const Transform *to_wo
 static void add_object(Builder *b, const Object *object, const Transform *parent, const Texture *inherited) {
     Transform to_world = transform_then(&object->transform, parent);
     const Texture *texture = object->texture ? object->texture : inherited;
-    warn_inert(b, object->inert);
     switch (object->kind) {
     case OBJECT_UNION:
     case OBJECT_MERGE:

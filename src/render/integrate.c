@@ -203,7 +203,6 @@ static Vec3f add_shadowed(Tracer *tr, const Cone *cone, size_t count, size_t lig
         float light_here = r->weight * luminance(direct[i * stride]);
         float target = total * ((float)next + 0.5f) / (float)points;
         if (passed + light_here >= target) {
-            Vec3 point = cone_point(cone, r->t);
             at[next] = passed + light_here / 2;
             seen[next] = record_visibility(tr, light, cone, r);
             next++;

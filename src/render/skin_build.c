@@ -72,8 +72,6 @@ BuiltTexel *texel_build(const TexelDef *def, int needed, const CompileOptions *o
     list[compiled->texel_count] = texel;
     compiled->texels = list;
     compiled->texel_count++;
-    for (const InertNote *note = def->inert; note; note = note->next)
-        diag_warning(diags, note->span, "'%s' is not modelled in this version: it has no effect here", note->word);
     if (!build_matter(texel, options, compiled, diags)) return NULL;
     if (texel->matter_count == 0) return texel;
     int size[3];
@@ -337,8 +335,6 @@ bool skin_compile(const Skin *skin, const CompileOptions *options, CompiledScene
     SurfaceMesh mesh;
     ShapeRefusal refusal;
     *out = (CompiledSkin){.def = skin, .top = tallest_copy(skin)};
-    for (const InertNote *note = skin->inert; note; note = note->next)
-        diag_warning(diags, note->span, "'%s' is not modelled in this version: it has no effect here", note->word);
     if (skin->texel_count > MOST_PLACED_TEXELS) {
         diag_error(diags, skin->texels[MOST_PLACED_TEXELS].span, "a skin holds at most %d superimposed texels", MOST_PLACED_TEXELS);
         return false;

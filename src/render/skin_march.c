@@ -378,7 +378,7 @@ static void sample(SkinMarch *m, double t0, double t1, SkinSegment *out) {
     out->voxel_world = span->voxel_world;
     /* Blur spreads a blade over the voxels used, and it must not shadow itself; but where many blades share a voxel they do
      * shadow each other, so that the distance stays within a few of the finest voxels, which resolve single blades. */
-    out->clearance = float_min(span->voxel_world, 2 * span->finest_world);
+    out->clearance = float_min(2 * span->voxel_world, 3 * span->finest_world);
 }
 
 bool skin_march_next(SkinMarch *m, SkinSegment *segment) {

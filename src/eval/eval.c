@@ -105,7 +105,7 @@ TokenList *eval_load_include(Eval *ev, const Node *node, Span *path_span) {
 void run_include(Eval *ev, const Node *node, Sink *sink) {
     Span span;
     TokenList *tokens = eval_load_include(ev, node, &span);
-    if (!tokens || !eval_deeper(ev, span)) return;
+    if (!tokens) return;
     Scope scope;
     CallRecord record = {.outer = ev->calls, .span = span};
     ev->calls = &record;
@@ -116,7 +116,6 @@ void run_include(Eval *ev, const Node *node, Sink *sink) {
     ev->include_depth--;
     scope_leave(ev, &scope);
     ev->calls = record.outer;
-    ev->nesting--;
 }
 
 /* ---- the whole ---- */

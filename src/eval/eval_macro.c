@@ -230,9 +230,7 @@ Flow run_call(Eval *ev, const Node *node, Sink *sink) {
     VarBinding *b = scope_find(ev, node->as.apply.base->as.name);
     Scope scope;
     CallRecord record;
-    if (!eval_deeper(ev, node->span)) return FLOW_STOP;
     if (!macro_enter(ev, b->slot->value.as.macro, &node->as.apply.list, node->span, &scope, &record)) {
-        ev->nesting--;
         ev->silent_errors++; /* what the call would have left is missing */
         sink->filled = sink->filled || sink->kind == SINK_SINGLE;
         return FLOW_NEXT;
@@ -240,7 +238,6 @@ Flow run_call(Eval *ev, const Node *node, Sink *sink) {
     const Macro *macro = b->slot->set && b->slot->value.kind == VALUE_MACRO ? b->slot->value.as.macro : NULL;
     Flow flow = macro ? run_body(ev, &macro->body, sink) : FLOW_NEXT;
     macro_leave(ev, &scope);
-    ev->nesting--;
     return flow == FLOW_STOP ? FLOW_STOP : FLOW_NEXT;
 }
 

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-enum { NESTING_LIMIT = 2000 };
+enum { NESTING_LIMIT = 3000 }; /* bodies within each other, each of which takes about a kilobyte of the C stack */
 
 bool eval_deeper(Eval *ev, Span span) {
     if (ev->nesting < NESTING_LIMIT) {
@@ -98,13 +98,8 @@ Flow run_statement(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink 
     return run_node(ev, s->node, sink);
 }
 
-Flow run_body(Eval *ev, const Body *body, Sink *sink) {
+static Flow run_tokens(Eval *ev, const Body *body, Sink *sink) {
     Flow flow = FLOW_NEXT;
-    if (!body->tokens) {
-        for (size_t i = 0; i < body->items.count && flow == FLOW_NEXT; i++)
-            flow = run_node(ev, body->items.items[i], sink);
-        return flow;
-    }
     Program *program = eval_program(ev, body->tokens);
     uint64_t outer = ev->body;
     ev->body = ++ev->body_count;
@@ -115,6 +110,19 @@ Flow run_body(Eval *ev, const Body *body, Sink *sink) {
         if (ev->stopped) flow = FLOW_STOP;
     }
     ev->body = outer;
+    return flow;
+}
+
+Flow run_body(Eval *ev, const Body *body, Sink *sink) {
+    Flow flow = FLOW_NEXT;
+    if (body->tokens) {
+        if (body->begin >= body->end) return FLOW_NEXT;
+        if (!eval_deeper(ev, body->tokens->items[body->begin].span)) return FLOW_STOP;
+        flow = run_tokens(ev, body, sink);
+        ev->nesting--;
+        return flow;
+    }
+    for (size_t i = 0; i < body->items.count && flow == FLOW_NEXT; i++) flow = run_node(ev, body->items.items[i], sink);
     return flow;
 }
 

@@ -79,7 +79,7 @@ struct Parser {
     AssumptionList assumptions;
 };
 
-enum { PARSER_DEPTH_LIMIT = 200, PARSER_CHAIN_LIMIT = 20000, VECTOR_LONGEST = 255 };
+enum { PARSER_DEPTH_LIMIT = 200, PARSER_CHAIN_LIMIT = 4000, VECTOR_LONGEST = 255 };
 
 /* One statement of a body: an item or a directive. NULL when it failed; TOKEN_END is not a statement. */
 Node *parser_statement(Parser *parser);

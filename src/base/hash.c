@@ -17,7 +17,7 @@ void hash_add(Hash128 *hash, const void *data, size_t size) {
         memcpy(&word, bytes, 8);
         add_word(hash, word);
     }
-    word = (uint64_t)size << 56; /* the length too, so that concatenations differ */
+    word = 0;
     if (rest) memcpy(&word, bytes, rest);
-    add_word(hash, word ^ (uint64_t)size << 56);
+    add_word(hash, word ^ (uint64_t)size << 56); /* the length too, so that concatenations differ */
 }

@@ -2,7 +2,9 @@
 
 #include <math.h>
 
-enum { NESTING_LIMIT = 3000 }; /* bodies within each other, each of which takes about a kilobyte of the C stack */
+enum {
+    NESTING_LIMIT = 3000
+}; /* bodies within each other, each of which takes about a kilobyte of the C stack */
 
 bool eval_deeper(Eval *ev, Span span) {
     if (ev->nesting < NESTING_LIMIT) {
@@ -122,7 +124,8 @@ Flow run_body(Eval *ev, const Body *body, Sink *sink) {
         ev->nesting--;
         return flow;
     }
-    for (size_t i = 0; i < body->items.count && flow == FLOW_NEXT; i++) flow = run_node(ev, body->items.items[i], sink);
+    for (size_t i = 0; i < body->items.count && flow == FLOW_NEXT; i++)
+        flow = run_node(ev, body->items.items[i], sink);
     return flow;
 }
 

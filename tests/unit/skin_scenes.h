@@ -125,6 +125,7 @@ typedef struct SkinScene {
     Skin skin;
     const Skin *skins[1];
     CompiledScene compiled;
+    SkinMarch march; /* through the compiled skin */
 } SkinScene;
 
 static inline void skin_scene_begin(SkinScene *s) {
@@ -205,7 +206,9 @@ static inline CompileStatus skin_scene_compile(SkinScene *s) {
     s->scene.skins = s->skins;
     s->scene.skin_count = 1;
     const CompileOptions options = {.width = 100, .height = 100};
-    return compile_scene(&s->scene, &options, &s->arena, &s->diags, &s->compiled);
+    CompileStatus status = compile_scene(&s->scene, &options, &s->arena, &s->diags, &s->compiled);
+    if (s->compiled.skin_count) skin_march_init(&s->march, &s->compiled.skins[0], &s->arena);
+    return status;
 }
 
 /* Corner k of the cell (foot or top) as its mapping has it. */

@@ -365,18 +365,16 @@ static void degenerate_skins_do_no_harm(void **state) {
         skin_scene_fill(&s, 8, 500, .1, TEXEL_CYCLIC_X | TEXEL_CYCLIC_Z, 1);
         skin_scene_grid(&s, 3, 3, feet[k], heights[k]);
         assert_int_equal(skin_scene_compile(&s), COMPILE_OK);
-        const CompiledSkin *skin = &s.compiled.skins[0];
         for (int i = 0; i < 3000; i++) {
             Vec3 target = vec3(random_next_unit(&r), i % 3 ? 0 : random_next_unit(&r), random_next_unit(&r));
             Cone cone = {vec3_madd(target, spread_direction(&r), -3), {0, 0, 0}, .001, .001};
             cone.direction = vec3_normalize(vec3_sub(target, cone.origin));
             if (i % 4 == 0) cone.direction = vec3(1, 0, 0), cone.origin = vec3(-2, 0, target.z);
-            SkinMarch march;
             TraceCounters counters = {0};
             SkinSegment segment;
             double sum = 0;
-            skin_march_begin(&march, skin, &cone, 0, VTS_INFINITY, &s.compiled.march, &counters, true);
-            for (int n = 0; n < 100000 && skin_march_next(&march, &segment); n++) {
+            skin_march_begin(&s.march, &cone, 0, VTS_INFINITY, &s.compiled.march, &counters, true);
+            for (int n = 0; n < 100000 && skin_march_next(&s.march, &segment); n++) {
                 assert_true(segment.t1 >= segment.t0 && isfinite(segment.t1));
                 assert_true(segment.transmittance >= 0 && segment.transmittance < 1);
                 sum += segment.t1 - segment.t0;

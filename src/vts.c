@@ -219,6 +219,7 @@ static VtsStatus apply_settings(VtsSession *session) {
         if (status != VTS_OK) return status;
     }
     if (session->options.samples) settings->samples = session->options.samples;
+    if (session->options.max_error > 0) settings->max_error = session->options.max_error;
     session->scene = &session->scene_with_settings;
     return VTS_OK;
 }
@@ -352,7 +353,7 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
     double built = stopwatch_wall();
     RenderOptions options = {.pool = session->pool, .progress = &session->progress, .interrupted = &session->interrupted,
                              .samples = session->scene->settings.samples,
-                             .exposure = o->exposure, .alpha = o->alpha};
+                             .seed = o->seed, .exposure = o->exposure, .alpha = o->alpha};
     memcpy(options.region, o->region, sizeof options.region);
     if (options.region[2] == 0) options.region[2] = o->width, options.region[3] = o->height;
     RenderStats stats;

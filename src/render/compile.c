@@ -64,18 +64,43 @@ static OpacityModel opacity_of(const char *name) {
     return OPACITY_CORRELATED;
 }
 
+static const double DEFAULT_MAX_ERROR = 1.0 / 255;
+
+/* What the error that a user accepts buys. At 1/255: voxels half as wide as the cone (with linear interpolation between their
+ * centres that is the cone's own blur, and finer levels hold more air to skip), steps of one and a half of them, two for
+ * shadows, and 4 × 4 cones where explicit edges cross a pixel. The error of steps falls with their length, that of edges with
+ * the number of cones. */
+static void choose_detail(double max_error, OpacityModel opacity, CompiledScene *out) {
+    double e = max_error / DEFAULT_MAX_ERROR, root = pow(e, 0.25);
+    out->march = (MarchSettings){.opacity = opacity,
+                                 .voxel_width = (float)double_clamp(0.5 * pow(e, 0.15), 0.5, 0.75),
+                                 .step = (float)double_clamp(1.5 * root, 0.75, 2.5)};
+    out->shadow_march = out->march;
+    out->shadow_march.voxel_width *= 2; /* shadows are parts of pixels (Neyret 1998 sec. IV-B: "a rougher level") */
+    out->shadow_march.step = (float)double_clamp(1.5 * root, 1, 2);
+    out->split = (int)double_clamp(round(4 * pow(e, -0.35)), 2, 12);
+}
+
+/* Settings that parse and have no effect yet are said to. */
+static void warn_idle_settings(const GlobalSettings *s, DiagList *diags) {
+    const char *idle = NULL;
+    if (s->ray_path) idle = "ray_path";
+    if (s->detail && strcmp(s->detail, "auto") != 0) idle = "detail";
+    if (idle) diag_warning(diags, (Span){0}, "global_settings: '%s' has no effect in this version", idle);
+    if (s->quadrature && strcmp(s->quadrature, "lune") == 0)
+        diag_warning(diags, (Span){0}, "global_settings: the quadrature 'lune' is not there in this version, ring8 takes its place");
+}
+
 CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, Arena *arena, DiagList *diags, CompiledScene *out) {
     double start = stopwatch_wall();
     size_t errors = diags->error_count;
     *out = (CompiledScene){.scene = scene, .arena = arena, .view = {.camera = scene->camera, .width = options->width, .height = options->height}};
+    arena_init(&out->scratch, options->memory, 0);
     out->quadrature = quadrature_of(scene->settings.quadrature);
     out->shadow_aperture = scene->settings.shadow_aperture;
     OpacityModel opacity = opacity_of(scene->settings.opacity_model);
-    /* Voxels half as wide as the cone: with linear interpolation between their centres that is the cone's own blur, and finer
-     * levels hold more air to skip (measured: smaller error and less time than voxels as wide as the cone). */
-    out->march = (MarchSettings){.opacity = opacity, .voxel_width = 0.5f, .step = 1.5f};
-    out->shadow_march = out->march;
-    out->shadow_march.step = 2;
+    choose_detail(scene->settings.max_error > 0 ? scene->settings.max_error : DEFAULT_MAX_ERROR, opacity, out);
+    warn_idle_settings(&scene->settings, diags);
     out->hierarchy = hierarchy_build(scene, arena, diags);
     if (!out->hierarchy) return COMPILE_FAILED;
     SkinList skins = {0};
@@ -97,6 +122,7 @@ void compiled_scene_destroy(CompiledScene *compiled) {
     for (size_t i = 0; i < compiled->texel_count; i++)
         for (size_t k = 0; k < compiled->texels[i]->matter_count; k++) voxel_layer_destroy(compiled->texels[i]->matter[k].voxels);
     hierarchy_destroy(compiled->hierarchy);
+    arena_destroy(&compiled->scratch);
     compiled->skin_count = compiled->texel_count = 0;
     compiled->hierarchy = NULL;
 }

@@ -27,6 +27,7 @@ typedef struct CompileOptions {
 typedef struct CompiledScene {
     const Scene *scene;
     Arena *arena;
+    Arena scratch;        /* of building; a field, so that it is released when building breaks off */
     View view;
     Hierarchy *hierarchy; /* explicit objects */
     CompiledSkin *skins;
@@ -36,6 +37,7 @@ typedef struct CompiledScene {
     MarchSettings march, shadow_march;
     Quadrature quadrature;
     double shadow_aperture;
+    int split;            /* cones per pixel side where explicit edges cross the pixel */
     double build_seconds;
 } CompiledScene;
 

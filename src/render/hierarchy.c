@@ -1,6 +1,7 @@
 #include "render/hierarchy.h"
 
 #include "grow/particles.h"
+#include "pattern/pattern.h"
 #include "shape/intersect.h"
 #include "shape/surface_mesh.h"
 #include "shape/tessellate.h"
@@ -40,8 +41,22 @@ typedef struct Builder {
     double tolerance;
 } Builder;
 
+/* Once for each place in the text. */
+static void warn_once(Builder *b, Span span, const char *what) {
+    for (const Diagnostic *d = b->diags->first; d; d = d->next)
+        if (d->span.file == span.file && d->span.begin == span.begin && d->severity == SEVERITY_WARNING) return;
+    diag_warning(b->diags, span, "%s not drawn in this version: this is opaque and does not mirror", what);
+}
+
+static void warn_undrawn(Builder *b, const Texture *texture) {
+    Color mirror = texture->finish->reflection_max, color;
+    if (mirror.red + mirror.green + mirror.blue > 0) warn_once(b, texture->span, "'reflection' is");
+    if (pigment_is_uniform(texture->pigment, &color) && color.filter + color.transmit > 0) warn_once(b, texture->span, "'filter' and 'transmit' are");
+}
+
 static const Look *make_look(Builder *b, const Texture *texture) {
     Look *look = arena_new(b->arena, Look);
+    warn_undrawn(b, texture);
     *look = look_from_texture(texture, &b->scene->settings);
     return look;
 }

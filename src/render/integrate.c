@@ -1,5 +1,6 @@
 #include "render/integrate.h"
 
+#include "base/random.h"
 #include "pattern/pattern.h"
 
 #include <string.h>
@@ -15,8 +16,16 @@ struct ShadeRecord {
     Vec3f ambient;    /* light that no shadow takes away */
 };
 
-/* A segment that lets less than this through ends the march: one step of 8-bit pictures, four times over. */
-static const float OPAQUE_BELOW = 1.0f / 1024;
+struct LightRay {
+    Vec3 direction;  /* unit, towards the light */
+    double distance; /* VTS_INFINITY for parallel light */
+    Vec3f color;     /* arriving, unshadowed */
+};
+
+/* A segment that lets less than this through ends the march: half a step of 8-bit pictures. */
+static const float OPAQUE_BELOW = 1.0f / 512;
+/* The same for light on its way to what is seen, which makes but a part of a pixel. */
+static const float DARK_BELOW = 1.0f / 128;
 /* Light that shadows could take away is tested where it makes more than this of a pixel. */
 static const float SHADOW_WORTH = 1.0f / 1024;
 enum { MOST_SHADOW_POINTS = 2 };
@@ -29,7 +38,8 @@ void tracer_init(Tracer *tracer, const CompiledScene *compiled, Arena *arena) {
                        .segments = arena_new_array(arena, SkinSegment, skins),
                        .has_segment = arena_new_array(arena, bool, skins),
                        .records = arena_new_array(arena, ShadeRecord, MOST_SHADE_RECORDS),
-                       .direct = arena_new_array(arena, Vec3f, MOST_SHADE_RECORDS * (compiled->scene->light_count + 1))};
+                       .direct = arena_new_array(arena, Vec3f, MOST_SHADE_RECORDS * (compiled->scene->light_count + 1)),
+                       .light_rays = arena_new_array(arena, LightRay, compiled->scene->light_count)};
     for (size_t i = 0; i < compiled->skin_count; i++) {
         skin_march_init(&tracer->marches[i], &compiled->skins[i], arena);
         skin_march_init(&tracer->shadow_marches[i], &compiled->skins[i], arena);
@@ -37,12 +47,6 @@ void tracer_init(Tracer *tracer, const CompiledScene *compiled, Arena *arena) {
 }
 
 /* ---- lights ---- */
-
-typedef struct LightRay {
-    Vec3 direction;  /* unit, towards the light */
-    double distance; /* VTS_INFINITY for parallel light */
-    Vec3f color;     /* arriving, unshadowed */
-} LightRay;
 
 static double spot_factor(const Light *light, Vec3 to_light) {
     Vec3 axis = vec3_normalize(vec3_sub(light->point_at, light->location));
@@ -81,7 +85,7 @@ static LightRay light_ray(const Light *light, Vec3 point) {
 static float skin_transmittance(Tracer *tr, const Cone *cone, double t_max, int own, const SkinPoint *point, double offset) {
     const CompiledScene *scene = tr->compiled;
     float transmittance = 1;
-    for (size_t i = 0; i < scene->skin_count && transmittance > OPAQUE_BELOW; i++) {
+    for (size_t i = 0; i < scene->skin_count && transmittance > DARK_BELOW; i++) {
         SkinMarch *march = &tr->shadow_marches[i];
         if ((int)i == own) {
             skin_march_begin_at(march, cone, point, offset, t_max, &scene->shadow_march, &tr->counters, false);
@@ -89,9 +93,9 @@ static float skin_transmittance(Tracer *tr, const Cone *cone, double t_max, int 
             skin_march_begin(march, cone, 0, t_max, &scene->shadow_march, &tr->counters, false);
         }
         SkinSegment segment;
-        while (transmittance > OPAQUE_BELOW && skin_march_next(march, &segment)) transmittance *= segment.transmittance;
+        while (transmittance > DARK_BELOW && skin_march_next(march, &segment)) transmittance *= segment.transmittance;
     }
-    return transmittance > OPAQUE_BELOW ? transmittance : 0;
+    return transmittance > DARK_BELOW ? transmittance : 0;
 }
 
 /* `width` is that of the eye's cone at the point; `start` the distance from it at which shadows begin. */
@@ -122,8 +126,9 @@ static Vec3f shade_segment(const Tracer *tr, const Cone *cone, const SkinSegment
     for (int i = 0; i < segment->hit_count; i++) {
         const MatterHit *hit = &segment->hits[i];
         const Look *look = hit->look;
-        Vec3f color = look->uniform ? look->color
-                                    : look_color(look, place_in_bounds(hit), cone->direction, (double)segment->voxel_world);
+        /* A texel's own texture lives in its bounds, one laid over it by the skin in the scene. */
+        Vec3 place = look == &hit->matter->look ? place_in_bounds(hit) : cone_point(cone, (segment->t0 + segment->t1) / 2);
+        Vec3f color = look->uniform ? look->color : look_color(look, place, vec3(0, 0, 0), (double)segment->voxel_world);
         color = vec3f_mul(color, hit->tint);
         ambient = vec3f_madd(ambient, vec3f_add(vec3f_mul(look->ambient, color), vec3f_mul(look->emission, color)), hit->share);
         for (size_t l = 0; l < lights; l++) {
@@ -141,7 +146,7 @@ static Vec3f shade_segment(const Tracer *tr, const Cone *cone, const SkinSegment
 static size_t gather(Tracer *tr, const Cone *cone, double t_max, float *transmittance) {
     const CompiledScene *scene = tr->compiled;
     size_t lights = scene->scene->light_count, count = 0;
-    LightRay rays[64];
+    LightRay *rays = tr->light_rays;
     for (size_t i = 0; i < scene->skin_count; i++) {
         skin_march_begin(&tr->marches[i], cone, 0, t_max, &scene->march, &tr->counters, true);
         tr->has_segment[i] = skin_march_next(&tr->marches[i], &tr->segments[i]);
@@ -156,7 +161,7 @@ static size_t gather(Tracer *tr, const Cone *cone, double t_max, float *transmit
         ShadeRecord *record = &tr->records[count];
         double t = (segment->t0 + segment->t1) / 2;
         Vec3 point = cone_point(cone, t);
-        for (size_t l = 0; l < lights && l < VTS_ARRAY_COUNT(rays); l++) rays[l] = light_ray(&scene->scene->lights[l], point);
+        for (size_t l = 0; l < lights; l++) rays[l] = light_ray(&scene->scene->lights[l], point);
         *record = (ShadeRecord){.weight = *transmittance * (1 - segment->transmittance), .t = t, .clearance = (double)segment->clearance,
                                 .tolerance = 0.02 * (double)segment->voxel_world, .skin = (uint32_t)nearest,
                                 .point = skin_march_guess(&tr->marches[nearest], t)};
@@ -234,6 +239,31 @@ static Vec3f add_shadowed(Tracer *tr, const Cone *cone, size_t count, size_t lig
 
 /* ---- explicit surfaces ---- */
 
+/* Points of the footprint on an explicit surface from which its shadow is tested, so that edges of shadows are not stairs. */
+enum { SHADOW_SAMPLES = 4 };
+
+static float surface_visibility(Tracer *tr, const Light *light, const LightRay *ray, const Cone *cone, const SurfaceHit *hit, double bias) {
+    if (light->shadowless) return 1;
+    Vec3 point = cone_point(cone, hit->t), s, t;
+    double width = cone_diameter(cone, hit->t), turn = 2 * VTS_PI * random_unit(random_mix(tr->seed));
+    vec3_frame(cone->direction, &s, &t);
+    double facing = vec3_dot(cone->direction, hit->normal), free_samples = 0;
+    for (int i = 0; i < SHADOW_SAMPLES; i++) {
+        double angle = turn + 2 * VTS_PI * i / SHADOW_SAMPLES;
+        Vec3 across = vec3_madd(vec3_scale(s, 0.35 * width * cos(angle)), t, 0.35 * width * sin(angle));
+        /* Along the cone back onto the surface's plane; not far at grazing angles. */
+        double slide = fabs(facing) > 0.1 ? -vec3_dot(across, hit->normal) / facing : 0;
+        Vec3 from = vec3_madd(vec3_madd(vec3_add(point, across), cone->direction, slide), hit->normal, bias);
+        Ray shadow = {from, ray->direction};
+        free_samples += !hierarchy_occluded(tr->compiled->hierarchy, &shadow, fabs(bias), ray->distance);
+    }
+    tr->counters.shadow_rays += SHADOW_SAMPLES;
+    if (free_samples == 0) return 0;
+    double aperture = tr->compiled->shadow_aperture;
+    Cone shadow_cone = {vec3_madd(point, hit->normal, bias), ray->direction, width * aperture, cone->spread * aperture};
+    return (float)(free_samples / SHADOW_SAMPLES) * skin_transmittance(tr, &shadow_cone, ray->distance, -1, NULL, 0);
+}
+
 static Vec3f shade_surface(Tracer *tr, const Cone *cone, const SurfaceHit *hit) {
     const Scene *scene = tr->compiled->scene;
     Vec3 point = cone_point(cone, hit->t);
@@ -243,15 +273,14 @@ static Vec3f shade_surface(Tracer *tr, const Cone *cone, const SurfaceHit *hit) 
     double shrink = cbrt(fabs(mat3_determinant(&hit->space->inverse_linear)));
     Vec3f color = look_color(hit->look, local, local_normal, width / facing * shrink);
     Vec3f sum = vec3f_mul(vec3f_add(hit->look->ambient, hit->look->emission), color);
-    double bias = 1e-5 * (1 + hit->t) + 0.01 * width;
-    Vec3 start = vec3_madd(point, hit->normal, bias);
+    double bias = 1e-5 * hit->t + 0.01 * width;
     for (size_t l = 0; l < scene->light_count; l++) {
         LightRay ray = light_ray(&scene->lights[l], point);
         NdfShade shade = sheet_shade(vec3f_from(hit->normal), vec3f_from(vec3_negate(cone->direction)), vec3f_from(ray.direction),
                                      &hit->look->sheet);
         if (shade.diffuse <= 0 && shade.highlight <= 0) continue;
-        Vec3 from = vec3_dot(ray.direction, hit->normal) > 0 ? start : vec3_madd(point, hit->normal, -bias);
-        float visible = visibility(tr, &scene->lights[l], &ray, from, width, cone->spread, -1, NULL, 0, bias);
+        double outside = vec3_dot(ray.direction, hit->normal) > 0 ? bias : -bias;
+        float visible = surface_visibility(tr, &scene->lights[l], &ray, cone, hit, outside);
         Vec3f metal = vec3f_add(vec3f_scale(color, hit->look->metallic), vec3f_scale(vec3f(1, 1, 1), 1 - hit->look->metallic));
         Vec3f tone = vec3f_madd(vec3f_scale(color, shade.diffuse), metal, shade.highlight);
         sum = vec3f_madd(sum, vec3f_mul(tone, ray.color), visible);

@@ -7,6 +7,7 @@
 enum { MOST_SHADE_RECORDS = 1024 };
 
 typedef struct ShadeRecord ShadeRecord;
+typedef struct LightRay LightRay;
 
 /* What one worker needs; sized once, so that tracing allocates nothing. */
 typedef struct Tracer {
@@ -17,6 +18,8 @@ typedef struct Tracer {
     bool *has_segment;
     ShadeRecord *records;
     Vec3f *direct;             /* [record][light] */
+    LightRay *light_rays;      /* [light], at the segment that is being shaded */
+    uint64_t seed;             /* of what is sampled in this pixel */
     TraceCounters counters;
 } Tracer;
 

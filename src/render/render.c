@@ -1,9 +1,11 @@
 #include "render/render.h"
 
+#include "base/random.h"
+
 #include <pthread.h>
 #include <stdatomic.h>
 
-enum { TILE = 16, DEFAULT_SPLIT = 4 };
+enum { TILE = 16 };
 
 typedef struct Frame {
     const CompiledScene *compiled;
@@ -38,13 +40,15 @@ static bool surfaces_vary(const CompiledScene *compiled, double x, double y, boo
 }
 
 /* Explicit edges narrower than a pixel: an n × n grid of thinner cones, one cone for each. */
-static Radiance trace_split(Tracer *tracer, double x, double y, int n) {
+static Radiance trace_split(Tracer *tracer, double x, double y, int n, const volatile bool *interrupted) {
     Radiance sum = {{0, 0, 0}, 0};
-    for (int j = 0; j < n; j++)
+    uint64_t seed = tracer->seed;
+    for (int j = 0; j < n && !(interrupted && *interrupted); j++)
         for (int i = 0; i < n; i++) {
             Cone cone = view_cone(&tracer->compiled->view, x + (i + 0.5) / n - 0.5, y + (j + 0.5) / n - 0.5, 1.0 / n);
             SurfaceHit hit;
             float reaching;
+            tracer->seed = random_mix(seed + (uint64_t)(j * n + i));
             bool found = find_surface(tracer->compiled, &cone, &hit);
             Radiance part = trace_cone(tracer, &cone, found ? &hit : NULL, &reaching);
             sum.color = vec3f_add(sum.color, part.color);
@@ -62,13 +66,14 @@ static Radiance trace_pixel(Frame *frame, Tracer *tracer, int worker, int px, in
     Cone cone = view_cone(&frame->compiled->view, x, y, 1);
     SurfaceHit hit;
     float reaching;
+    tracer->seed = random_hash((uint64_t)px, (uint64_t)py, frame->options->seed, 0);
     bool found = find_surface(frame->compiled, &cone, &hit);
     Radiance radiance = trace_cone(tracer, &cone, found ? &hit : NULL, &reaching);
     if (reaching < EDGE_WORTH || !surfaces_vary(frame->compiled, x, y, found, &hit)) return radiance;
-    int n = frame->options->samples > 0 ? frame->options->samples : DEFAULT_SPLIT;
+    int n = frame->options->samples > 0 ? frame->options->samples : frame->compiled->split;
     if (n == 1) return radiance;
     frame->split_pixels[worker]++;
-    return trace_split(tracer, x, y, n);
+    return trace_split(tracer, x, y, n, frame->options->interrupted);
 }
 
 static void render_tile(void *context, size_t index, int worker) {
@@ -79,7 +84,7 @@ static void render_tile(void *context, size_t index, int worker) {
     int x0 = options->region[0] + tx * TILE, y0 = options->region[1] + ty * TILE;
     int x1 = int_min(x0 + TILE, options->region[2]), y1 = int_min(y0 + TILE, options->region[3]);
     for (int y = y0; y < y1; y++)
-        for (int x = x0; x < x1; x++) {
+        for (int x = x0; x < x1 && !(options->interrupted && *options->interrupted); x++) {
             Radiance r = trace_pixel(frame, &frame->tracers[worker], worker, x, y);
             float *pixel = image_pixel(frame->image, x - options->region[0], y - options->region[1]);
             pixel[0] = r.color.x * frame->gain;

@@ -24,8 +24,7 @@ static const double CONTENT_TOLERANCE_VOXELS = 0.2;
 static bool build_matter(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
     const TexelDef *def = texel->def;
     texel->matter = arena_new_array(compiled->arena, TexelMatter, def->layer_count);
-    Arena triangles;
-    arena_init(&triangles, options->memory, 0);
+    Arena *triangles = &compiled->scratch;
     TexelBuildOptions build = {.resolution = texel->built, .extent = texel->extent, .cyclic = def->cyclic,
                                .pool = options->pool, .memory = options->memory, .progress = options->progress,
                                .name = def->name};
@@ -35,15 +34,15 @@ static bool build_matter(BuiltTexel *texel, const CompileOptions *options, Compi
         TexelMesh mesh;
         ShapeRefusal refusal;
         TexelBuildStats stats = {0};
-        ArenaMark mark = arena_mark(&triangles);
-        if (!texel_layer_mesh(def, layer, CONTENT_TOLERANCE_VOXELS / texel->built, &triangles, &mesh, &refusal)) {
+        ArenaMark mark = arena_mark(triangles);
+        if (!texel_layer_mesh(def, layer, CONTENT_TOLERANCE_VOXELS / texel->built, triangles, &mesh, &refusal)) {
             diag_error(diags, refusal.span, "this cannot be part of a texel: %s", refusal.reason);
             ok = false;
             break;
         }
         if (mesh.triangle_count == 0) diag_warning(diags, layer->span, "this layer of the texel '%s' is empty", def->name);
         VoxelLayer *voxels = voxel_layer_build(&mesh, &build, &stats);
-        arena_reset_to(&triangles, mark);
+        arena_reset_to(triangles, mark);
         if (!voxels) {
             if (!options->interrupted || !*options->interrupted) memory_budget_fail(options->memory);
             ok = false;
@@ -51,11 +50,12 @@ static bool build_matter(BuiltTexel *texel, const CompileOptions *options, Compi
         }
         const Texture *texture = layer->texture ? layer->texture : compiled->scene->default_texture;
         texel->matter[texel->matter_count++] = (TexelMatter){voxels, look_from_texture(texture, &compiled->scene->settings)};
+        if (mesh.triangle_count && stats.levels && stats.voxels[stats.levels - 1] == 0)
+            diag_warning(diags, layer->span, "nothing of this layer of the texel '%s' lies within its bounds", def->name);
         for (int l = 0; l < stats.levels; l++) texel->voxel_count += stats.voxels[l];
         texel->bytes += stats.bytes;
         texel->build_seconds += stats.seconds;
     }
-    arena_destroy(&triangles);
     return ok;
 }
 

@@ -1,11 +1,13 @@
 #include "render/skin_march.h"
 
-enum { MOST_ENTRIES = 64, MOST_HALVINGS = 6, SPAN_STEPS = 48, BORDER_BISECTIONS = 12 };
+enum { MOST_ENTRIES = 64, MOST_HALVINGS = 7, SPAN_STEPS = 48, BORDER_BISECTIONS = 7 };
 /* A step crosses at most this share of the layer, so that what is homogeneous on the large is not stepped over. */
 static const double LAYER_STEP = 0.3;
 /* A span crosses at most this many tiles, and bends at most this many voxels from its chord: the quadratic through its
  * middle takes the bend along, what it misses is of third order. */
-static const double SPAN_TILES = 1.0, SPAN_BEND_VOXELS = 4;
+static const double SPAN_TILES = 1.0, SPAN_BEND_VOXELS = 1;
+/* Empty way is looked for along the tangent as far as the path stays this near to it, in voxels. */
+static const double TANGENT_VOXELS = 1;
 
 void skin_march_init(SkinMarch *m, const CompiledSkin *skin, Arena *arena) {
     m->skin = skin;
@@ -23,6 +25,7 @@ static void begin(SkinMarch *m, const Cone *cone, double t_min, double t_max, co
     m->t_max = t_max;
     m->entries = 0;
     m->number++;
+    m->fitted = false;
     m->span.t1 = -VTS_INFINITY;
     m->span.leaves = true;
 }
@@ -49,6 +52,7 @@ static void fit_span(const SkinMarch *m, const TexturePlace *place, double t, Ma
         const PlacedTexel *placed = &m->skin->texels[i];
         float speed;
         span->fits[i] = fit_voxels(place, placed->finest_extent, placed->finest_voxel, d, width, &speed);
+        span->fits[i].coarsening = exp2f(float_min(span->fits[i].lod, (float)(placed->levels - 1)));
         if (!(speed > 0)) continue;
         side = float_min(side, span->fits[i].voxel / speed);
         finest = float_min(finest, placed->finest_voxel / speed);
@@ -131,6 +135,8 @@ static bool try_span(SkinMarch *m, double length, bool shortest) {
     }
     double bend = vec3_length(vec3_scale(vec3_sub(vec3_add(x0, x1), vec3_scale(xm, 2)), 0.25));
     if (!shortest && bend > SPAN_BEND_VOXELS * (double)m->span.voxel_world * vec3_length(vec3_sub(x1, x0)) / length) return false;
+    /* A span that dips out of the layer and in again, or whose exit is found late, does no harm: beyond the texel's box
+     * nothing is met. */
     double part = 1;
     if (side == SKIN_ABOVE || side == SKIN_BELOW) part = crossing(m->point.w, middle.w, end.w, side == SKIN_ABOVE ? 1 : 0);
     if (side == SKIN_BORDER) part = border(m, &m->point, t0, t1, tolerance);
@@ -141,25 +147,57 @@ static bool try_span(SkinMarch *m, double length, bool shortest) {
     span->middle = middle;
     span->leaves = side != SKIN_INSIDE;
     fit_span(m, &place_m, tm, span);
+    /* The path leaves its tangent by |c2|·s². */
+    double bending = vec3_length(span->c2), voxel = (double)span->voxel_world * vec3_length(span->c1);
+    span->straight = bending > 0 ? sqrt(TANGENT_VOXELS * voxel / bending) : VTS_INFINITY;
     m->point = end;
     m->place = place_e;
     m->inside = !span->leaves;
     return true;
 }
 
+/* The way in t until (a, b), moving at these rates, leaves the cell's square or triangle. */
+static double to_wall(const SkinCell *cell, const SkinPoint *p, double rate_a, double rate_b) {
+    double way = VTS_INFINITY;
+    if (rate_a < 0) way = double_min(way, -p->a / rate_a);
+    if (rate_b < 0) way = double_min(way, -p->b / rate_b);
+    if (cell->triangle) {
+        if (rate_a + rate_b > 0) way = double_min(way, (1 - p->a - p->b) / (rate_a + rate_b));
+    } else {
+        if (rate_a > 0) way = double_min(way, (1 - p->a) / rate_a);
+        if (rate_b > 0) way = double_min(way, (1 - p->b) / rate_b);
+    }
+    return double_max(way, 0);
+}
+
 /* The next span from the current point. False where the mapping is lost: the march then looks for another entry. */
 static bool next_span(SkinMarch *m) {
-    fit_span(m, &m->place, m->t, &m->span);
+    if (!m->fitted) fit_span(m, &m->place, m->t, &m->span); /* else the span before tells how long steps are here */
+    m->fitted = true;
     Vec3 d = m->cone->direction;
     double rate = fmax(fabs(vec3_dot(m->place.grad_u, d)), fabs(vec3_dot(m->place.grad_v, d)));
-    double cells = fmax(fabs(vec3_dot(m->place.grad_a, d)), fabs(vec3_dot(m->place.grad_b, d)));
     double length = SPAN_STEPS * m->span.step;
     if (rate > 0) length = double_min(length, SPAN_TILES / rate);
-    if (cells > 0) length = double_min(length, 2 / cells);
+    /* To just past the wall of the cell: the mapping has a kink there, which no quadratic follows. */
+    length = double_min(length, 1.01 * to_wall(&m->skin->cells[m->point.cell], &m->point, vec3_dot(m->place.grad_a, d), vec3_dot(m->place.grad_b, d)));
     length = double_max(length, m->span.step);
     length = double_min(length, m->t_max - m->t);
-    for (int i = 0; i <= MOST_HALVINGS; i++, length /= 2)
-        if (try_span(m, length, i == MOST_HALVINGS || length <= m->span.step)) return true;
+    const SkinPoint point = m->point;
+    const TexturePlace place = m->place;
+    for (int i = 0; i <= MOST_HALVINGS; i++) {
+        bool shortest = i == MOST_HALVINGS || length <= m->span.step;
+        if (!try_span(m, length, shortest)) {
+            length /= 2;
+            continue;
+        }
+        /* A span that ends far outside of the layer fits it badly: once more, to just past the exit. */
+        double used = m->span.t1 - m->span.t0;
+        if (!m->span.leaves || shortest || used > 0.7 * length) return true;
+        m->point = point;
+        m->place = place;
+        m->inside = true;
+        length = double_max(1.1 * used, 0.05 * length);
+    }
     m->inside = false;
     m->span.leaves = true;
     m->t += double_max(length, 1e-9);
@@ -212,13 +250,19 @@ static Vec3f rate_to_copy(const TexelCopy *copy, Vec3 rate) {
 }
 
 static float wrapped(float x, float size) {
-    float turns = x / size;
-    return (turns - floorf(turns)) * size;
+    float turns = x / size, whole = (float)(int64_t)turns;
+    return (turns - whole + (turns < whole ? 1.0f : 0.0f)) * size;
 }
+
+/* A path along the foot or the top of the layer may pass them by a hair, by rounding and by what the quadratic misses. */
+static const float HAIR = 0.02f;
 
 /* Wrapped on cyclic axes. */
 static Vec3f wrap(const BuiltTexel *texel, Vec3f p) {
     unsigned cyclic = texel->def->cyclic;
+    float hair = HAIR * texel->extent.y;
+    if (p.y < 0 && p.y > -hair) p.y = 0;
+    if (p.y > texel->extent.y && p.y < texel->extent.y + hair) p.y = texel->extent.y;
     if (cyclic & TEXEL_CYCLIC_X) p.x = wrapped(p.x, texel->extent.x);
     if (cyclic & TEXEL_CYCLIC_Y) p.y = wrapped(p.y, texel->extent.y);
     if (cyclic & TEXEL_CYCLIC_Z) p.z = wrapped(p.z, texel->extent.z);
@@ -251,24 +295,45 @@ static void clip_slab(float p, float v, float size, float *t0, float *t1) {
     *t1 = float_min(*t1, float_max(a, b));
 }
 
-/* How far in t a copy is certainly empty from here, at most `limit`. */
-static float copy_gap(const TexelCopy *copy, Vec3f p, Vec3f velocity, const VoxelFit *fit, bool cyclic, float limit) {
+/* How far in t the copy's box is away, at most `limit`; 0 inside. */
+static float box_gap(const TexelCopy *copy, Vec3f p, Vec3f velocity, float limit) {
+    Vec3f e = copy->texel->extent;
+    float t0 = 0, t1 = limit, hair = HAIR * e.y;
+    clip_slab(p.x, velocity.x, e.x, &t0, &t1);
+    clip_slab(p.y + hair, velocity.y, e.y + 2 * hair, &t0, &t1);
+    clip_slab(p.z, velocity.z, e.z, &t0, &t1);
+    return t0 > t1 ? limit : t0;
+}
+
+/* Brings clear_until of all layers of a copy up to date at t; returns the smallest. `x` and `rate` are texture coordinates
+ * and their rate there, `rest` the length of way that is nearly straight. */
+static double clear_copy(CopyOnWay *on_way, const VoxelFit *fit, bool cyclic, uint32_t cone, double t, Vec3 x, Vec3 rate, float rest) {
+    const TexelCopy *copy = &on_way->copy;
     const BuiltTexel *texel = copy->texel;
-    float speed = vec3f_length(velocity);
-    if (!(speed > 0)) return 0;
-    if (!cyclic) {
-        float t0 = 0, t1 = limit, margin = float_min(fit->voxel, 1); /* interpolation reaches half a voxel out */
-        clip_slab(p.x + margin, velocity.x, texel->extent.x + 2 * margin, &t0, &t1);
-        clip_slab(p.y + margin, velocity.y, texel->extent.y + 2 * margin, &t0, &t1);
-        clip_slab(p.z + margin, velocity.z, texel->extent.z + 2 * margin, &t0, &t1);
-        if (t0 > t1) return limit;
-        if (t0 > 0) return t0;
+    bool fresh = on_way->cone != cone, placed = false;
+    double clear = VTS_INFINITY;
+    Vec3f p = {0, 0, 0}, direction = {0, 0, 0};
+    float speed = 0, box = 0;
+    on_way->cone = cone;
+    for (size_t k = 0; k < texel->matter_count; k++) {
+        double *until = &on_way->clear_until[size_min(k, LAYERS_APART - 1)];
+        if (fresh || *until <= t || k >= LAYERS_APART) {
+            if (!placed) { /* only now: most copies are known to be clear */
+                Vec3f velocity = rate_to_copy(copy, rate);
+                p = to_copy(copy, x);
+                speed = vec3f_length(velocity);
+                direction = speed > 0 ? vec3f_scale(velocity, 1 / speed) : velocity;
+                if (!cyclic) box = box_gap(copy, p, velocity, rest);
+                p = wrap(texel, p);
+                placed = true;
+            }
+            float gap = box > 0 ? box : speed > 0 ? voxel_layer_skip(texel->matter[k].voxels, fit->lod, p, direction, rest * speed) / speed : 0;
+            double found = t + (double)gap;
+            *until = k >= LAYERS_APART ? double_min(*until, found) : found;
+        }
+        clear = double_min(clear, *until);
     }
-    float gap = limit * speed;
-    Vec3f direction = vec3f_scale(velocity, 1 / speed), at = wrap(texel, p);
-    for (size_t i = 0; i < texel->matter_count && gap > 0; i++)
-        gap = float_min(gap, voxel_layer_skip(texel->matter[i].voxels, fit->lod, at, direction, gap));
-    return gap / speed;
+    return clear;
 }
 
 /* t until the path leaves the tile of x. */
@@ -291,21 +356,14 @@ static double empty_way(SkinMarch *m, double t) {
     const MarchSpan *span = &m->span;
     Vec3 x = span_at(span, t), rate = span_rate(span, t);
     int64_t iu = (int64_t)floor(x.x), iv = (int64_t)floor(x.y);
-    double rest = span->t1 - t, gap = rest;
-    for (size_t i = 0; i < m->skin->texel_count && gap > 0; i++) {
+    double rest = double_min(span->t1 - t, span->straight), gap = rest;
+    for (size_t i = 0; i < m->skin->texel_count; i++) {
         const PlacedTexel *placed = &m->skin->texels[i];
         if (!placed->alike) gap = double_min(gap, double_max(tile_exit(x, rate), 1e-3 * span->step));
         TileCopies *tile = copies_at(m, i, iu, iv);
-        for (int c = 0; c < tile->count && gap > 0; c++) {
-            CopyOnWay *on_way = &tile->copies[c];
-            if (on_way->cone != m->number || on_way->clear_until <= t) {
-                const TexelCopy *copy = &on_way->copy;
-                float free_way = copy_gap(copy, to_copy(copy, x), rate_to_copy(copy, rate), &span->fits[i], placed->cyclic, (float)rest);
-                on_way->clear_until = t + (double)free_way;
-                on_way->cone = m->number;
-            }
-            gap = double_min(gap, on_way->clear_until - t);
-        }
+        /* All copies are brought up to date even when one is near: sampling passes by those that are known to be clear. */
+        for (int c = 0; c < tile->count; c++)
+            gap = double_min(gap, clear_copy(&tile->copies[c], &span->fits[i], placed->cyclic, m->number, t, x, rate, (float)rest) - t);
     }
     return gap;
 }
@@ -333,21 +391,29 @@ typedef struct StepSample {
     float depth;
 } StepSample;
 
-static void sample_copy(SkinMarch *m, size_t i, const TexelCopy *copy, StepSample *step, SkinSegment *out) {
+static void sample_copy(SkinMarch *m, size_t i, const CopyOnWay *on_way, StepSample *step, SkinSegment *out) {
     const PlacedTexel *placed = &m->skin->texels[i];
+    const TexelCopy *copy = &on_way->copy;
     const BuiltTexel *texel = copy->texel;
+    bool known = on_way->cone == m->number, any = !known;
+    for (size_t k = 0; k < texel->matter_count && !any; k++) any = on_way->clear_until[size_min(k, LAYERS_APART - 1)] < step->t1;
+    if (!any) return;
     Vec3f at = wrap(texel, to_copy(copy, step->middle)), along = rate_to_copy(copy, step->difference);
-    /* Members of a family may be built to different resolutions. */
-    float lod = float_clamp(m->span.fits[i].lod - log2f(texel->voxel / placed->finest_voxel), 0, (float)(texel->levels - 1));
-    float finest = 1 / (float)texel->built, h = finest * exp2f(lod); /* along the longest side, as opacity.h wants it */
+    const VoxelFit *fit = &m->span.fits[i];
+    float lod = float_min(fit->lod, (float)(texel->levels - 1)), coarsening = fit->coarsening;
+    if (texel->voxel != placed->finest_voxel) { /* members of a family may be built to different resolutions */
+        lod = float_clamp(fit->lod - log2f(texel->voxel / placed->finest_voxel), 0, (float)(texel->levels - 1));
+        coarsening = exp2f(lod);
+    }
+    float finest = 1 / (float)texel->built, h = finest * coarsening; /* along the longest side, as opacity.h wants it */
     for (size_t k = 0; k < texel->matter_count; k++) {
         VoxelSample v;
+        if (known && on_way->clear_until[size_min(k, LAYERS_APART - 1)] >= step->t1) continue;
         m->counters->voxels_visited++;
         if (!voxel_layer_sample_lod(texel->matter[k].voxels, lod, at, &v)) continue;
-        float transmittance = m->settings->opacity == OPACITY_MEAN ? opacity_transmittance_mean(&v, finest, h, along)
-                                                                   : opacity_transmittance(m->settings->opacity, &v, h, along);
-        if (transmittance >= 1) continue;
-        float tau = -logf(float_max(transmittance, 1e-12f));
+        float tau = m->settings->opacity == OPACITY_MEAN ? opacity_depth_mean(&v, finest, h, along)
+                                                         : opacity_depth(m->settings->opacity, &v, h, along);
+        if (!(tau > 0)) continue;
         step->depth += tau;
         if (!m->shade || out->hit_count == MOST_MATTER_HITS) continue;
         MatterHit *hit = &out->hits[out->hit_count++];
@@ -368,13 +434,12 @@ static void sample(SkinMarch *m, double t0, double t1, SkinSegment *out) {
     out->hit_count = 0;
     for (size_t i = 0; i < m->skin->texel_count; i++) {
         TileCopies *tile = copies_at(m, i, iu, iv);
-        for (int c = 0; c < tile->count; c++)
-            if (tile->copies[c].cone != m->number || tile->copies[c].clear_until < t1) sample_copy(m, i, &tile->copies[c].copy, &step, out);
+        for (int c = 0; c < tile->count; c++) sample_copy(m, i, &tile->copies[c], &step, out);
     }
     for (int i = 0; i < out->hit_count; i++) out->hits[i].share /= step.depth;
     out->t0 = t0;
     out->t1 = t1;
-    out->transmittance = expf(-step.depth);
+    out->transmittance = step.depth > 0 ? expf(-step.depth) : 1;
     out->voxel_world = span->voxel_world;
     /* Blur spreads a blade over the voxels used, and it must not shadow itself; but where many blades share a voxel they do
      * shadow each other, so that the distance stays within a few of the finest voxels, which resolve single blades. */
@@ -390,9 +455,16 @@ bool skin_march_next(SkinMarch *m, SkinSegment *segment) {
             m->counters->steps++;
             if (!next_span(m)) continue;
         }
-        double gap = empty_way(m, m->t);
-        if (gap > 0) m->t += gap;
-        if (m->t >= m->span.t1) continue;
+        /* Over what is empty, and ask again: other tiles may begin there. Slivers are not worth the question. */
+        double gap = empty_way(m, m->t), sliver = 1e-3 * m->span.step;
+        if (m->span.t1 - m->t - gap < sliver) {
+            m->t = m->span.t1;
+            continue;
+        }
+        if (gap > sliver) {
+            m->t += gap;
+            continue;
+        }
         double t0 = m->t, t1 = double_min(t0 + m->span.step, m->span.t1);
         m->t = t1;
         m->counters->steps++;

@@ -36,11 +36,12 @@ typedef struct SkinSegment {
     int hit_count;
 } SkinSegment;
 
-/* A copy met on the way, and up to which t nothing of it can be met. */
+/* A copy met on the way, and up to which t nothing of each of its layers can be met; layers past the last share it. */
+enum { LAYERS_APART = 4 };
 typedef struct CopyOnWay {
     TexelCopy copy;
-    uint32_t cone;      /* the number of the cone that clear_until holds for */
-    double clear_until;
+    uint32_t cone; /* the number of the cone that clear_until holds for */
+    double clear_until[LAYERS_APART];
 } CopyOnWay;
 
 /* The copies around one tile. */
@@ -56,6 +57,7 @@ enum { TILES_KEPT = 16 }; /* by the low bits of iu and iv; they stay from cone t
 typedef struct VoxelFit {
     float lod;   /* not clamped above */
     float voxel; /* side of the voxels wanted, texel space */
+    float coarsening; /* 2^lod, of lod clamped to the levels there are */
 } VoxelFit;
 
 /* A piece of the way on which texture coordinates are a quadratic of t, through the exact ones at both ends and in the
@@ -66,6 +68,7 @@ typedef struct MarchSpan {
     TexturePlace place; /* in the middle: gradients for shading and opacity */
     SkinPoint middle;
     VoxelFit fits[MOST_PLACED_TEXELS];
+    double straight;   /* from any t of the span, the length over which the path stays near its tangent */
     double step;       /* length of a step in t */
     float voxel_world; /* side of the finest voxels wanted along the cone, scene units */
     float finest_world; /* of the finest voxels there are */
@@ -84,6 +87,7 @@ typedef struct SkinMarch {
     TexturePlace place;
     MarchSpan span;       /* holds for t in [span.t0, span.t1] */
     int entries;
+    bool fitted;          /* span.step is of this cone */
     uint32_t number;      /* of the cone, counted up by each begin */
     TileCopies *tiles;    /* [texel][TILES_KEPT] */
 } SkinMarch;

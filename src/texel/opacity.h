@@ -25,11 +25,14 @@ typedef enum OpacityModel {
  * Crossing: T = γ max(0, 1 − τ) + (1 − γ) exp(−τ), not below 1/512, for the mean crossing l = h/(|dx| + |dy| + |dz|) of a
  * voxel; a segment s transmits T^(s/l). */
 float opacity_transmittance(OpacityModel model, const VoxelSample *v, float h, Vec3f step);
+/* The same as optical depth, −ln T: what matter that stands in one place adds up to. >= 0. */
+float opacity_depth(OpacityModel model, const VoxelSample *v, float h, Vec3f step);
 
 /* OPACITY_MEAN at a level coarser than the finest, whose voxels have side `finest`: a voxel's opacity there is the mean
  * of those below it, crossed once (Neyret 1998 sec. IV-C), so that matter becomes the thinner the farther away it is.
  * opacity_transmittance() takes finest = h. */
 float opacity_transmittance_mean(const VoxelSample *v, float finest, float h, Vec3f step);
+float opacity_depth_mean(const VoxelSample *v, float finest, float h, Vec3f step);
 
 /* The factor by which OPACITY_CORRELATED enhances τ, for density in units of 1/h; and the gamma for a factor. */
 static inline float opacity_enhancement(float gamma, float density) {

@@ -17,6 +17,12 @@ typedef struct AxisPair {
 
 /* False where x is not a number or out of all bounds. */
 static inline bool pair_on_axis(float x, int size, bool cyclic, AxisPair *pair) {
+    if (!cyclic) {
+        /* Up to the side the outermost voxels hold their value, beyond it nothing is: so no matter is lost, however few and
+         * large the voxels are. */
+        if (!(x >= 0 && x <= (float)size)) return false;
+        x = float_clamp(x, 0.5f, (float)size - 0.5f);
+    }
     x -= 0.5f;
     if (!(fabsf(x) < 1e9f)) return false;
     int lower = (int)x, wrap = cyclic ? size - 1 : -1; /* sizes are powers of two */

@@ -93,10 +93,10 @@ static void chords_of_a_ball_are_whole(void **state) {
         printf("%s\n", cases[c].name);
         for (int k = 0; k < 4; k++) {
             print_errors(aims[k], &errors[k], "heights");
-            /* Nothing leaks. What is too long runs below the foot between the ends of a span: a known weakness. */
-            assert_true(errors[k].least > -1e-3);
-            assert_true(errors[k].bias / errors[k].rays < .1);
-            assert_true(errors[k].bad < errors[k].rays / 4);
+            /* Nothing leaks. Matter ends at the top and the foot, so that what runs along them is found to a hair only. */
+            assert_true(errors[k].least > -.15);
+            assert_true(fabs(errors[k].bias / errors[k].rays) < .02);
+            assert_true(errors[k].bad < errors[k].rays / 10);
         }
         skin_scene_end(&s);
     }

@@ -51,7 +51,8 @@ static void add_voxel(Sums *sums, const VoxelSample *v, double weight) {
     for (int i = 0; i < 6; i++) sums->s[i] += w * s[i];
 }
 
-/* The definition: each voxel near enough, by the product of tents. */
+/* The definition: each voxel near enough, by the product of tents; on axes that are not cyclic nothing outside, and from the
+ * outermost centres to the sides their values. */
 static void brute_force(const VoxelLevel *level, const VoxelSample *dense, const bool cyclic[3], Vec3f p,
                         double factor, Sums *sums) {
     const float at[3] = {p.x, p.y, p.z};
@@ -59,6 +60,10 @@ static void brute_force(const VoxelLevel *level, const VoxelSample *dense, const
     double x[3];
     for (int k = 0; k < 3; k++) {
         x[k] = (double)(at[k] * level->per_side[k]);
+        if (!cyclic[k]) {
+            if (!(x[k] >= 0 && x[k] <= level->size[k])) return;
+            x[k] = fmin(fmax(x[k], .5), level->size[k] - .5);
+        }
         first[k] = (int)floor(x[k]) - 2;
     }
     for (int c = 0; c < 125; c++) {

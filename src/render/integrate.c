@@ -251,9 +251,10 @@ static float surface_visibility(Tracer *tr, const Light *light, const LightRay *
     for (int i = 0; i < SHADOW_SAMPLES; i++) {
         double angle = turn + 2 * VTS_PI * i / SHADOW_SAMPLES;
         Vec3 across = vec3_madd(vec3_scale(s, 0.35 * width * cos(angle)), t, 0.35 * width * sin(angle));
-        /* Along the cone back onto the surface's plane; not far at grazing angles. */
-        double slide = fabs(facing) > 0.1 ? -vec3_dot(across, hit->normal) / facing : 0;
-        Vec3 from = vec3_madd(vec3_madd(vec3_add(point, across), cone->direction, slide), hit->normal, bias);
+        /* Along the cone back onto the surface's plane; at grazing angles straight down to it. */
+        double height = vec3_dot(across, hit->normal);
+        across = fabs(facing) > 0.1 ? vec3_madd(across, cone->direction, -height / facing) : vec3_madd(across, hit->normal, -height);
+        Vec3 from = vec3_madd(vec3_add(point, across), hit->normal, bias);
         Ray shadow = {from, ray->direction};
         free_samples += !hierarchy_occluded(tr->compiled->hierarchy, &shadow, fabs(bias), ray->distance);
     }

@@ -6,6 +6,8 @@ static const double LAYER_STEP = 0.3;
 /* A span crosses at most this many tiles, and bends at most this many voxels from its chord: the quadratic through its
  * middle takes the bend along, what it misses is of third order. */
 static const double SPAN_TILES = 1.0, SPAN_BEND_VOXELS = 1;
+/* Steps are shorter by this where the cone is thinner than the finest voxels. */
+static const float NEAR_STEP = 0.5f;
 /* Empty way is looked for along the tangent as far as the path stays this near to it, in voxels. */
 static const double TANGENT_VOXELS = 1;
 
@@ -47,7 +49,7 @@ static VoxelFit fit_voxels(const TexturePlace *place, Vec3f extent, float finest
 static void fit_span(const SkinMarch *m, const TexturePlace *place, double t, MarchSpan *span) {
     Vec3 d = m->cone->direction;
     double width = cone_diameter(m->cone, t) * (double)m->settings->voxel_width;
-    float side = INFINITY, finest = INFINITY;
+    float side = INFINITY, finest = INFINITY, stride = INFINITY;
     for (size_t i = 0; i < m->skin->texel_count; i++) {
         const PlacedTexel *placed = &m->skin->texels[i];
         float speed;
@@ -56,11 +58,13 @@ static void fit_span(const SkinMarch *m, const TexturePlace *place, double t, Ma
         if (!(speed > 0)) continue;
         side = float_min(side, span->fits[i].voxel / speed);
         finest = float_min(finest, placed->finest_voxel / speed);
+        /* Nearer than the finest voxels single walls are looked at: long steps would let their light through in rings. */
+        stride = float_min(stride, span->fits[i].voxel / speed * (span->fits[i].lod > 0 ? 1 : NEAR_STEP));
     }
     double layer_rate = fabs(vec3_dot(place->grad_layer, d));
     span->voxel_world = side;
     span->finest_world = finest;
-    span->step = double_min((double)(side * m->settings->step), layer_rate > 0 ? LAYER_STEP / layer_rate : VTS_INFINITY);
+    span->step = double_min((double)(stride * m->settings->step), layer_rate > 0 ? LAYER_STEP / layer_rate : VTS_INFINITY);
     if (!isfinite(span->step)) span->step = double_max(1e-6, width); /* no extent along the cone: a degenerate box */
 }
 

@@ -164,25 +164,26 @@ static float fit_alone(const AxisLight *light, float density) {
     return opacity_gamma_for(above / below, density);
 }
 
-/* A ray meets the walls of a solid twice. Each at full strength would fatten the solid by half a voxel all around; at this
- * one silhouettes have the right size, a wall lets 0.18 through and both 0.03. */
-#define WALL_STRENGTH 0.6f
+/* A ray meets the walls of a solid twice. Each at full strength fattens the solid by nearly half a voxel all around; at 0.6
+ * silhouettes have the right size, a wall lets 0.18 through and both 0.03. Where voxels are fine, half a voxel is little and
+ * what shines through a wall is seen; where they are coarse it is the other way round. */
+static float wall_strength(int level) { return level == 0 ? 0.9f : level == 1 ? 0.8f : level == 2 ? 0.65f : 0.6f; }
 
 /* Sheets and single walls go on into the next voxels; thin solids and clumps end in this one. */
-static float fit_gamma(const VoxelCell *cell, const AxisLight *light, float density, float thin) {
+static float fit_gamma(const VoxelCell *cell, const AxisLight *light, float density, float thin, int level) {
     float sheet = fit_sheet(light), alone = fit_alone(light, density);
     if (sheet <= 0) return float_min(alone, 0);
-    float solid = cell->solid / (cell->solid + cell->sheet), wall = sheet * WALL_STRENGTH;
+    float solid = cell->solid / (cell->solid + cell->sheet), wall = sheet * wall_strength(level);
     float gamma = wall + thin * (float_min(wall, alone) - wall);
     return sheet + solid * (gamma - sheet);
 }
 
-VoxelMatter voxel_cell_matter(const VoxelCell *cell, const float sides[3], float side, float thin) {
+VoxelMatter voxel_cell_matter(const VoxelCell *cell, const float sides[3], float side, float thin, int level) {
     VoxelMatter matter = {.root = unit_root(cell)};
     float area = cell->sheet + cell->solid * (1 - 0.5f * thin);
     /* Cauchy: an area is seen as half of itself, on the mean over directions. */
     matter.density = area / (2 * sides[0] * sides[1] * sides[2]) * side;
     AxisLight light = axis_light(cell, &matter.root, matter.density, sides, side);
-    matter.gamma = fit_gamma(cell, &light, matter.density, thin);
+    matter.gamma = fit_gamma(cell, &light, matter.density, thin, level);
     return matter;
 }

@@ -53,6 +53,6 @@ float voxel_cell_thinness(const VoxelCell *parent);
 
 /* sides: lengths of the cell; side: the length h that opacity.h is told; thin: the parent's thinness. The two walls of a
  * thin solid count once. */
-VoxelMatter voxel_cell_matter(const VoxelCell *cell, const float sides[3], float side, float thin);
+VoxelMatter voxel_cell_matter(const VoxelCell *cell, const float sides[3], float side, float thin, int level);
 
 #endif

@@ -123,7 +123,7 @@ void pyramid_code_brick(const VoxelLayer *layer, int level, const int at[3], con
         int corner[3];
         const VoxelCell *above = parent ? &parent[index_in_parent(halved, at, i, corner)] : &cells[i];
         VoxelMatter m =
-            voxel_cell_matter(&cells[i], l->sides, 1 / l->density_unit, voxel_cell_thinness(above));
+            voxel_cell_matter(&cells[i], l->sides, 1 / l->density_unit, voxel_cell_thinness(above), level);
         VoxelCode *code = grow_buffer_add(&out->codes, 1, sizeof *code);
         if (!code) return;
         *code = voxel_code_pack(m.density, m.gamma, &m.root);

@@ -74,10 +74,10 @@ static void choose_detail(double max_error, OpacityModel opacity, CompiledScene 
     double e = max_error / DEFAULT_MAX_ERROR, root = pow(e, 0.25);
     out->march = (MarchSettings){.opacity = opacity,
                                  .voxel_width = (float)double_clamp(0.5 * pow(e, 0.15), 0.5, 0.75),
-                                 .step = (float)double_clamp(1.5 * root, 0.75, 2.5)};
+                                 .step = (float)double_clamp(1.6 * root, 0.75, 2.5)};
     out->shadow_march = out->march;
     out->shadow_march.voxel_width *= 2; /* shadows are parts of pixels (Neyret 1998 sec. IV-B: "a rougher level") */
-    out->shadow_march.step = (float)double_clamp(1.5 * root, 1, 2);
+    out->shadow_march.step = (float)double_clamp(2 * root, 1, 2.5);
     out->split = (int)double_clamp(round(4 * pow(e, -0.35)), 2, 12);
 }
 

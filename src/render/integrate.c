@@ -22,10 +22,10 @@ struct LightRay {
     Vec3f color;     /* arriving, unshadowed */
 };
 
-/* A segment that lets less than this through ends the march: half a step of 8-bit pictures. */
-static const float OPAQUE_BELOW = 1.0f / 512;
+/* A segment that lets less than this through ends the march: a step of 8-bit pictures at most. */
+static const float OPAQUE_BELOW = 1.0f / 256;
 /* The same for light on its way to what is seen, which makes but a part of a pixel. */
-static const float DARK_BELOW = 1.0f / 128;
+static const float DARK_BELOW = 1.0f / 64;
 /* Light that shadows could take away is tested where it makes more than this of a pixel. */
 static const float SHADOW_WORTH = 1.0f / 1024;
 enum { MOST_SHADOW_POINTS = 2 };

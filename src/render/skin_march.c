@@ -302,16 +302,17 @@ static void clip_slab(float p, float v, float size, float *t0, float *t1) {
 /* How far in t the copy's box is away, at most `limit`; 0 inside. */
 static float box_gap(const TexelCopy *copy, Vec3f p, Vec3f velocity, float limit) {
     Vec3f e = copy->texel->extent;
+    unsigned cyclic = copy->texel->def->cyclic; /* along these axes the box has no end */
     float t0 = 0, t1 = limit, hair = HAIR * e.y;
-    clip_slab(p.x, velocity.x, e.x, &t0, &t1);
-    clip_slab(p.y + hair, velocity.y, e.y + 2 * hair, &t0, &t1);
-    clip_slab(p.z, velocity.z, e.z, &t0, &t1);
+    if (!(cyclic & TEXEL_CYCLIC_X)) clip_slab(p.x, velocity.x, e.x, &t0, &t1);
+    if (!(cyclic & TEXEL_CYCLIC_Y)) clip_slab(p.y + hair, velocity.y, e.y + 2 * hair, &t0, &t1);
+    if (!(cyclic & TEXEL_CYCLIC_Z)) clip_slab(p.z, velocity.z, e.z, &t0, &t1);
     return t0 > t1 ? limit : t0;
 }
 
 /* Brings clear_until of all layers of a copy up to date at t; returns the smallest. `x` and `rate` are texture coordinates
  * and their rate there, `rest` the length of way that is nearly straight. */
-static double clear_copy(CopyOnWay *on_way, const VoxelFit *fit, bool cyclic, uint32_t cone, double t, Vec3 x, Vec3 rate, float rest) {
+static double clear_copy(CopyOnWay *on_way, const VoxelFit *fit, uint32_t cone, double t, Vec3 x, Vec3 rate, float rest) {
     const TexelCopy *copy = &on_way->copy;
     const BuiltTexel *texel = copy->texel;
     bool fresh = on_way->cone != cone, placed = false;
@@ -327,7 +328,7 @@ static double clear_copy(CopyOnWay *on_way, const VoxelFit *fit, bool cyclic, ui
                 p = to_copy(copy, x);
                 speed = vec3f_length(velocity);
                 direction = speed > 0 ? vec3f_scale(velocity, 1 / speed) : velocity;
-                if (!cyclic) box = box_gap(copy, p, velocity, rest);
+                box = box_gap(copy, p, velocity, rest);
                 p = wrap(texel, p);
                 placed = true;
             }
@@ -367,7 +368,7 @@ static double empty_way(SkinMarch *m, double t) {
         TileCopies *tile = copies_at(m, i, iu, iv);
         /* All copies are brought up to date even when one is near: sampling passes by those that are known to be clear. */
         for (int c = 0; c < tile->count; c++)
-            gap = double_min(gap, clear_copy(&tile->copies[c], &span->fits[i], placed->cyclic, m->number, t, x, rate, (float)rest) - t);
+            gap = double_min(gap, clear_copy(&tile->copies[c], &span->fits[i], m->number, t, x, rate, (float)rest) - t);
     }
     return gap;
 }

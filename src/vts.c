@@ -263,7 +263,7 @@ static void pass_text(void *context, EvalStream stream, const char *text) {
 }
 
 typedef struct EvalMode {
-    bool writes_in_memory, print_tokens, print_ast;
+    bool writes_in_memory, is_program, print_tokens, print_ast;
 } EvalMode;
 
 static VtsStatus evaluate(VtsSession *session, const char *path, EvalMode mode) {
@@ -277,7 +277,7 @@ static VtsStatus evaluate(VtsSession *session, const char *path, EvalMode mode) 
                            .frame_number = o->frame, .initial_frame = o->first_frame, .final_frame = o->last_frame,
                            .image_width = o->width, .image_height = o->height, .limits = eval_limits_default(),
                            .allow_read = o->allow_read, .allow_read_count = o->allow_read_count, .allow_write = o->allow_write,
-                           .allow_write_count = o->allow_write_count, .keep_writes_in_memory = mode.writes_in_memory,
+                           .allow_write_count = o->allow_write_count, .keep_writes_in_memory = mode.writes_in_memory, .is_program = mode.is_program,
                            .on_text = pass_text, .context = session, .interrupted = &session->interrupted,
                            .print_tokens = mode.print_tokens, .print_ast = mode.print_ast};
     VtsStatus status = apply_limits(session, &options.limits);
@@ -400,7 +400,7 @@ static VtsStatus dump(VtsSession *session, const Call *call) {
 static VtsStatus perform(VtsSession *session, const Call *call) {
     switch (call->kind) {
     case CALL_CHECK: return evaluate(session, call->scene_path, (EvalMode){.writes_in_memory = true});
-    case CALL_RUN: return evaluate(session, call->scene_path, (EvalMode){0});
+    case CALL_RUN: return evaluate(session, call->scene_path, (EvalMode){.is_program = true});
     case CALL_RENDER: return render(session, call->scene_path, call->output_path);
     case CALL_DUMP: return dump(session, call);
     }

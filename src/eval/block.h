@@ -68,6 +68,7 @@ typedef struct BuildContext {
     Interner *names;
     DiagList *diags;
     double image_aspect; /* width / height */
+    bool is_program;     /* run for what it prints: an empty scene is no matter */
     const Texture *default_texture;
     void *eval;          /* for the evaluator itself */
 } BuildContext;

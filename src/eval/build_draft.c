@@ -327,7 +327,7 @@ bool scene_draft_default(SceneDraft *draft, BuildContext *context, const EvalBlo
 
 const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context, double clock) {
     Scene *scene = arena_new(context->arena, Scene);
-    if (!draft->objects.count && !draft->skins.count)
+    if (!draft->objects.count && !draft->skins.count && !context->is_program)
         diag_warning(context->diags, (Span){0},
                      "the scene holds nothing to draw: the picture is its background");
     double aspect = context->image_aspect > 0 ? context->image_aspect : 4.0 / 3;

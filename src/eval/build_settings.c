@@ -60,10 +60,10 @@ static void read_knob(Reader *reader, const Word *word, void *target) {
 static void read_samples(Reader *reader, const Word *word, void *target) {
     int samples;
     if (!word_arguments(reader, word, 1, 1) || !word_int(reader, word, 0, &samples)) return;
-    if (samples >= 1 && samples <= 65536)
+    if (samples >= 1 && samples <= 256)
         ((SettingsDraft *)target)->settings.samples = samples;
     else
-        reader_error(reader, word->arguments[0].span, "'samples' must lie between 1 and 65536, found %d",
+        reader_error(reader, word->arguments[0].span, "'samples' must lie between 1 and 256, found %d",
                      samples);
 }
 

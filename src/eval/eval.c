@@ -143,6 +143,7 @@ static void init(Eval *ev, const EvalOptions *options, SourceSet *sources, DiagL
     arena_init(&ev->blocks, parse->budget, 0);
     keyword_table_init(&ev->keywords, names, parse);
     ev->build = (BuildContext){.arena = scene, .names = names, .diags = diags, .eval = ev};
+    ev->build.is_program = options->is_program;
     ev->build.image_aspect = options->image_width > 0 && options->image_height > 0
                                  ? (double)options->image_width / options->image_height
                                  : 4.0 / 3;

@@ -40,6 +40,7 @@ typedef struct EvalOptions {
     size_t allow_read_count;
     const char *const *allow_write;
     size_t allow_write_count;
+    bool is_program;                  /* run for what it prints: no warning of an empty scene */
     bool keep_writes_in_memory;       /* check: #write goes to memory, where #read finds it */
     /* Geometry of objects, for the functions of the language that ask for it; NULL: those functions are errors. `in` is the context
      * below. trace: the first hit of the ray and the unit normal there; false for a miss. */

@@ -167,7 +167,7 @@ static float fit_alone(const AxisLight *light, float density) {
 /* A ray meets the walls of a solid twice. Each at full strength fattens the solid by nearly half a voxel all around; at 0.6
  * silhouettes have the right size, a wall lets 0.18 through and both 0.03. Where voxels are fine, half a voxel is little and
  * what shines through a wall is seen; where they are coarse it is the other way round. */
-static float wall_strength(int level) { return level == 0 ? 0.9f : level == 1 ? 0.8f : level == 2 ? 0.65f : 0.6f; }
+static float wall_strength(int level) { return level == 0 ? 0.9f : level == 1 ? 0.7f : 0.6f; }
 
 /* Sheets and single walls go on into the next voxels; thin solids and clumps end in this one. */
 static float fit_gamma(const VoxelCell *cell, const AxisLight *light, float density, float thin, int level) {

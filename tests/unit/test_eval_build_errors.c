@@ -112,7 +112,7 @@ static const Case errors[] = {
      "did you mean 'max_error'?"},
     {"global_settings { detail fine }", "1:26: 'fine' is no 'detail'",
      "it is one of auto, exact, voxels, slab"},
-    {"global_settings { samples 0 }", "1:27: 'samples' must lie between 1 and 65536, found 0", NULL},
+    {"global_settings { samples 0 }", "1:27: 'samples' must lie between 1 and 256, found 0", NULL},
     {"texture { pigment { rgb 1 } }", "1:1: a texture has no meaning at top level",
      "it belongs into an object, or give it a name with #declare"},
     {"texel { layer { sphere { 0, 1 } } }", "1:1: a texel has no meaning at top level",

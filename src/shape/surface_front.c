@@ -10,8 +10,11 @@ typedef struct FrontVote {
     double extent;   /* area times their lengths */
     double volume;   /* signed */
     double directed; /* area that agrees with given normals, minus the rest */
-    double up;       /* area times its normal's y */
+    Vec3 sum;        /* of the area vectors: zero for closed parts */
+    Vec3 center;     /* area times middle, from origin */
 } FrontVote;
+
+static const double NEARLY_CLOSED = 0.25;
 
 static Vec3 corner_of(const SurfaceDraft *draft, const DraftCell *cell, int i) {
     return draft->vertices.items[cell->vertex[i]].position;
@@ -48,7 +51,8 @@ static void count_vote(const SurfaceDraft *draft, const DraftCell *cell, bool tu
     vote->heights += vec3_dot(area, height);
     vote->extent += amount * vec3_length(height);
     vote->volume += vec3_dot(area, middle) / 3;
-    vote->up += area.y;
+    vote->sum = vec3_add(vote->sum, area);
+    vote->center = vec3_madd(vote->center, middle, amount);
     if (cell->directed) vote->directed += turned ? -amount : amount;
 }
 
@@ -57,7 +61,12 @@ static bool looks_back(const FrontVote *vote) {
     if (fabs(vote->heights) > nothing * vote->extent) return vote->heights < 0;
     if (!vote->open && fabs(vote->volume) > nothing * vote->area * vote->size) return vote->volume < 0;
     if (fabs(vote->directed) > nothing * vote->area) return vote->directed < 0;
-    return vote->up < -nothing * vote->area;
+    /* A ball with holes is nearly closed: its area vectors nearly cancel, and the volume seen from its middle tells the outside. */
+    if (vote->open && vec3_length(vote->sum) < NEARLY_CLOSED * vote->area) {
+        double volume = vote->volume - vec3_dot(vote->sum, vec3_scale(vote->center, 1 / vote->area)) / 3;
+        if (fabs(volume) > nothing * vote->area * vote->size) return volume < 0;
+    }
+    return vote->sum.y < -nothing * vote->area;
 }
 
 static void cut(const JoinedCells *joined, uint32_t cell, int edge) {

@@ -54,7 +54,7 @@ typedef struct SurfaceMeshOptions {
  *   patches   one cell for each patch, in the order i·nv + j; uv = (i/nu, j/nv). The front is that of ∂P/∂v × ∂P/∂u, or
  *             the opposite when that one looks down on average.
  *   objects   triangles. Winding is made consistent; the front of a closed part is its outside, that of an open one with
- *             given or natural normals (disc, open cylinder) theirs, of any other open one the side that looks up on average.
+ *             given or natural normals (disc, open cylinder) theirs, of one that is nearly closed its outside, of any other open one the side that looks up on average.
  *   heights   given height vectors win: the front of a part is the side to which they point.
  *   subdivide N cuts flat faces and mesh triangles N times along each edge, curved solids N times per quarter turn.
  *   uv        natural or given ones; planar: the two axes across uv_axis, cylindrical and spherical: turns about it and

@@ -5,7 +5,7 @@
  *       VtsOptions options = vts_options_default();
  *       options.width = 320;
  *       options.height = 240;
- *       VtsSession *session = vts_session_create(&options);
+ *       VtsSession *session = vts_session_create(&options, NULL);
  *       VtsStatus status = vts_render(session, "lawn.vts", "lawn.png");
  *       if (status != VTS_OK) fputs(vts_diagnostics(session), stderr);
  *       vts_session_destroy(session);

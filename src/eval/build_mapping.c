@@ -5,6 +5,9 @@
 
 /* ---- mapping ---- */
 
+/* Tiles along a side of a surface: beyond, coordinates have no digits left within a tile. */
+static const double MOST_TILES = 1e9;
+
 static void read_repeat(Reader *reader, const Word *word, void *target) {
     SkinMapping *mapping = target;
     Vec3 repeat;
@@ -14,10 +17,11 @@ static void read_repeat(Reader *reader, const Word *word, void *target) {
     } else if (!word_arguments(reader, word, 1, 1) || !word_vector(reader, word, 0, &repeat)) {
         return;
     }
-    if (!(repeat.x > 0 && repeat.y > 0)) {
+    if (!(repeat.x > 0 && repeat.y > 0 && repeat.x <= MOST_TILES && repeat.y <= MOST_TILES)) {
         reader_error(reader, word->arguments[0].span,
-                     "'repeat' must be greater than 0 in both directions, found <%g, %g>", repeat.x,
-                     repeat.y);
+                     repeat.x > 0 && repeat.y > 0 ? "'repeat' must be at most 1e9 in both directions, found <%g, %g>"
+                                                  : "'repeat' must be greater than 0 in both directions, found <%g, %g>",
+                     repeat.x, repeat.y);
         return;
     }
     mapping->repeat_u = repeat.x;

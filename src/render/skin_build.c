@@ -282,7 +282,7 @@ static double needed_resolution(const CompiledSkin *skin, const View *view, Vec3
 
 static int copy_reach(const InstanceJitter *jitter) {
     double largest = 1 + jitter->scale / 2, half = jitter->rotate != 0 ? 0.70711 : 0.5;
-    return int_clamp((int)ceil(jitter->displace / 2 + half * largest - 0.5 - 1e-9), 0, MOST_REACH);
+    return (int)double_clamp(ceil(jitter->displace / 2 + half * largest - 0.5 - 1e-9), 0, MOST_REACH);
 }
 
 static bool place_texel(const Skin *skin, size_t index, const CompileOptions *options, CompiledScene *compiled, DiagList *diags,

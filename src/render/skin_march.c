@@ -1,5 +1,7 @@
 #include "render/skin_march.h"
 
+/* A cone that takes more steps than this is lost in a mapping that no voxel fits; it ends there. */
+enum { MOST_STEPS = 1 << 14 };
 enum { MOST_ENTRIES = 64, MOST_HALVINGS = 7, SPAN_STEPS = 48, BORDER_BISECTIONS = 7 };
 /* A step crosses at most this share of the layer, so that what is homogeneous on the large is not stepped over. */
 static const double LAYER_STEP = 0.3;
@@ -26,6 +28,7 @@ static void begin(SkinMarch *m, const Cone *cone, double t_min, double t_max, co
     m->t = t_min;
     m->t_max = t_max;
     m->entries = 0;
+    m->steps_left = MOST_STEPS;
     m->number++;
     m->fitted = false;
     m->span.t1 = -VTS_INFINITY;
@@ -66,6 +69,7 @@ static void fit_span(const SkinMarch *m, const TexturePlace *place, double t, Ma
     span->finest_world = finest;
     span->step = double_min((double)(stride * m->settings->step), layer_rate > 0 ? LAYER_STEP / layer_rate : VTS_INFINITY);
     if (!isfinite(span->step)) span->step = double_max(1e-6, width); /* no extent along the cone: a degenerate box */
+    span->step = double_max(span->step, 1e-12 * (1 + fabs(t)));      /* t + step must be more than t */
 }
 
 static Vec3 coordinates(const TexturePlace *p) { return vec3(p->u, p->v, p->w); }
@@ -254,7 +258,9 @@ static Vec3f rate_to_copy(const TexelCopy *copy, Vec3 rate) {
 }
 
 static float wrapped(float x, float size) {
-    float turns = x / size, whole = (float)(int64_t)turns;
+    float turns = x / size;
+    if (!(fabsf(turns) < 1e9f)) return 0; /* past all precision, or not a number */
+    float whole = (float)(int64_t)turns;
     return (turns - whole + (turns < whole ? 1.0f : 0.0f)) * size;
 }
 
@@ -272,6 +278,9 @@ static Vec3f wrap(const BuiltTexel *texel, Vec3f p) {
     if (cyclic & TEXEL_CYCLIC_Z) p.z = wrapped(p.z, texel->extent.z);
     return p;
 }
+
+/* The number of a tile; where texture coordinates are absurd some number that casts. */
+static int64_t tile_number(double x) { return isfinite(x) ? (int64_t)double_clamp(floor(x), -9e15, 9e15) : 0; }
 
 static TileCopies *copies_at(SkinMarch *m, size_t i, int64_t iu, int64_t iv) {
     const PlacedTexel *placed = &m->skin->texels[i];
@@ -360,7 +369,7 @@ static Vec3 span_rate(const MarchSpan *span, double t) { return vec3_madd(span->
 static double empty_way(SkinMarch *m, double t) {
     const MarchSpan *span = &m->span;
     Vec3 x = span_at(span, t), rate = span_rate(span, t);
-    int64_t iu = (int64_t)floor(x.x), iv = (int64_t)floor(x.y);
+    int64_t iu = tile_number(x.x), iv = tile_number(x.y);
     double rest = double_min(span->t1 - t, span->straight), gap = rest;
     for (size_t i = 0; i < m->skin->texel_count; i++) {
         const PlacedTexel *placed = &m->skin->texels[i];
@@ -435,7 +444,7 @@ static void sample(SkinMarch *m, double t0, double t1, SkinSegment *out) {
     double tm = (t0 + t1) / 2;
     StepSample step = {.t0 = t0, .t1 = t1, .middle = span_at(span, tm)};
     step.difference = vec3_sub(span_at(span, t1), span_at(span, t0));
-    int64_t iu = (int64_t)floor(step.middle.x), iv = (int64_t)floor(step.middle.y);
+    int64_t iu = tile_number(step.middle.x), iv = tile_number(step.middle.y);
     out->hit_count = 0;
     for (size_t i = 0; i < m->skin->texel_count; i++) {
         TileCopies *tile = copies_at(m, i, iu, iv);
@@ -452,7 +461,7 @@ static void sample(SkinMarch *m, double t0, double t1, SkinSegment *out) {
 }
 
 bool skin_march_next(SkinMarch *m, SkinSegment *segment) {
-    for (;;) {
+    while (m->steps_left-- > 0) {
         if (m->t >= m->span.t1) {
             if (m->span.leaves) m->t = double_max(m->t, m->span.t1) + (isfinite(m->span.t1) ? 1e-6 * m->span.step : 0);
             if (!m->inside && !enter(m)) return false;
@@ -477,4 +486,5 @@ bool skin_march_next(SkinMarch *m, SkinSegment *segment) {
         if (segment->transmittance >= 1) continue;
         return true;
     }
+    return false;
 }

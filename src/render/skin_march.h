@@ -86,7 +86,7 @@ typedef struct SkinMarch {
     SkinPoint point;
     TexturePlace place;
     MarchSpan span;       /* holds for t in [span.t0, span.t1] */
-    int entries;
+    int entries, steps_left;
     bool fitted;          /* span.step is of this cone */
     uint32_t number;      /* of the cone, counted up by each begin */
     TileCopies *tiles;    /* [texel][TILES_KEPT] */

@@ -27,7 +27,7 @@ static const float OPAQUE_BELOW = 1.0f / 256;
 /* The same for light on its way to what is seen, which makes but a part of a pixel. */
 static const float DARK_BELOW = 1.0f / 64;
 /* Light that shadows could take away is tested where it makes more than this of a pixel. */
-static const float SHADOW_WORTH = 1.0f / 1024;
+static const float SHADOW_WORTH = 1.0f / 512;
 enum { MOST_SHADOW_POINTS = 2 };
 
 void tracer_init(Tracer *tracer, const CompiledScene *compiled, Arena *arena) {
@@ -265,7 +265,8 @@ static float surface_visibility(Tracer *tr, const Light *light, const LightRay *
     return (float)(free_samples / SHADOW_SAMPLES) * skin_transmittance(tr, &shadow_cone, ray->distance, -1, NULL, 0);
 }
 
-static Vec3f shade_surface(Tracer *tr, const Cone *cone, const SurfaceHit *hit) {
+/* `reaching` of its light comes to the eye. */
+static Vec3f shade_surface(Tracer *tr, const Cone *cone, const SurfaceHit *hit, float reaching) {
     const Scene *scene = tr->compiled->scene;
     Vec3 point = cone_point(cone, hit->t);
     double width = cone_diameter(cone, hit->t), facing = fmax(0.05, -vec3_dot(hit->normal, cone->direction));
@@ -280,11 +281,15 @@ static Vec3f shade_surface(Tracer *tr, const Cone *cone, const SurfaceHit *hit) 
         NdfShade shade = sheet_shade(vec3f_from(hit->normal), vec3f_from(vec3_negate(cone->direction)), vec3f_from(ray.direction),
                                      &hit->look->sheet);
         if (shade.diffuse <= 0 && shade.highlight <= 0) continue;
-        double outside = vec3_dot(ray.direction, hit->normal) > 0 ? bias : -bias;
-        float visible = surface_visibility(tr, &scene->lights[l], &ray, cone, hit, outside);
         Vec3f metal = vec3f_add(vec3f_scale(color, hit->look->metallic), vec3f_scale(vec3f(1, 1, 1), 1 - hit->look->metallic));
         Vec3f tone = vec3f_madd(vec3f_scale(color, shade.diffuse), metal, shade.highlight);
-        sum = vec3f_madd(sum, vec3f_mul(tone, ray.color), visible);
+        tone = vec3f_mul(tone, ray.color);
+        float visible = 1;
+        if (reaching * luminance(tone) > SHADOW_WORTH) {
+            double outside = vec3_dot(ray.direction, hit->normal) > 0 ? bias : -bias;
+            visible = surface_visibility(tr, &scene->lights[l], &ray, cone, hit, outside);
+        }
+        sum = vec3f_madd(sum, tone, visible);
     }
     return sum;
 }
@@ -322,7 +327,7 @@ Radiance trace_cone(Tracer *tr, const Cone *cone, const SurfaceHit *hit, float *
     Radiance out = {color, covered};
     if (transmittance <= 0) return out;
     if (hit) {
-        out.color = vec3f_madd(out.color, add_fog(scene, shade_surface(tr, cone, hit), 1, hit->t), transmittance);
+        out.color = vec3f_madd(out.color, add_fog(scene, shade_surface(tr, cone, hit, transmittance), 1, hit->t), transmittance);
         out.alpha = 1;
     } else {
         out.color = vec3f_madd(out.color, add_fog(scene, background(scene, cone), 1, VTS_INFINITY), transmittance);

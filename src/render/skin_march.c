@@ -7,7 +7,7 @@ enum { MOST_ENTRIES = 64, MOST_HALVINGS = 7, SPAN_STEPS = 48, BORDER_BISECTIONS 
 static const double LAYER_STEP = 0.3;
 /* A span crosses at most this many tiles, and bends at most this many voxels from its chord: the quadratic through its
  * middle takes the bend along, what it misses is of third order. */
-static const double SPAN_TILES = 1.0, SPAN_BEND_VOXELS = 0.5;
+static const double SPAN_TILES = 1.0, SPAN_BEND_VOXELS = 1;
 /* Steps are shorter by this where the cone is thinner than the finest voxels. */
 static const float NEAR_STEP = 0.5f;
 /* Empty way is looked for along the tangent as far as the path stays this near to it, in voxels. */

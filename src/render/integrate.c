@@ -198,7 +198,7 @@ static Vec3f add_shadowed(Tracer *tr, const Cone *cone, size_t count, size_t lig
     Vec3f sum = {0, 0, 0};
     if (total <= 0) return sum;
     bool worth = total > SHADOW_WORTH && !light->shadowless;
-    int points = worth ? int_clamp(1 + (int)(total * 16), 1, MOST_SHADOW_POINTS) : 0;
+    int points = worth ? int_clamp(1 + (int)(total * 8), 1, MOST_SHADOW_POINTS) : 0;
     if (worth && count == 1) points = 1;
     float seen[MOST_SHADOW_POINTS + 1], at[MOST_SHADOW_POINTS + 1];
     float passed = 0;

@@ -94,9 +94,9 @@ static void chords_of_a_ball_are_whole(void **state) {
         for (int k = 0; k < 4; k++) {
             print_errors(aims[k], &errors[k], "heights");
             /* Nothing leaks. Matter ends at the top and the foot, so that what runs along them is found to a hair. */
-            assert_true(errors[k].least > -.01);
-            assert_true(fabs(errors[k].bias / errors[k].rays) < .02);
-            assert_true(errors[k].bad < errors[k].rays / 10);
+            assert_true(errors[k].least > -.004);
+            assert_true(fabs(errors[k].bias / errors[k].rays) < .01);
+            assert_true(errors[k].bad < errors[k].rays / 20);
         }
         skin_scene_end(&s);
     }

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { DEFAULT_ERROR_LIMIT = 20, LONGEST_SHOWN_LINE = 160 };
+enum { DEFAULT_ERROR_LIMIT = 20, MOST_WARNINGS = 1000, LONGEST_SHOWN_LINE = 160 };
 
 void diag_init(DiagList *list, Arena *arena, SourceSet *sources) {
     *list = (DiagList){.arena = arena, .sources = sources};
@@ -31,24 +31,42 @@ static bool error_exists_at(const DiagList *list, Span span) {
     return false;
 }
 
+/* A loop warns once; and what warns at ever new places does not fill the memory. */
+static bool is_repeated_warning(const DiagList *list, Span span, const char *format) {
+    if (list->kept_warnings >= MOST_WARNINGS) return true;
+    for (const Diagnostic *d = list->first; d; d = d->next)
+        if (d->severity == SEVERITY_WARNING && d->format == format && d->span.file == span.file &&
+            d->span.begin == span.begin && d->span.end == span.end && span.file)
+            return true;
+    return false;
+}
+
 static Diagnostic *add(DiagList *list, Severity severity, Span span, const char *format, va_list args) {
     if (severity == SEVERITY_ERROR) {
+        list->failures++;
         if (error_exists_at(list, span)) return NULL;
         bool full = diag_full(list);
         list->error_count++;
         if (full) return NULL;
     } else {
         list->warning_count++;
+        if (is_repeated_warning(list, span, format)) return NULL;
+        list->kept_warnings++;
     }
     Diagnostic *d = arena_new(list->arena, Diagnostic);
     d->severity = severity;
     d->span = span;
     d->message = format_text(list->arena, format, args);
+    d->format = format;
     if (list->last) list->last->next = d;
     else list->first = d;
     list->last = d;
     if (list->add_context_notes) list->add_context_notes(list->context, list, d);
     return d;
+}
+
+Diagnostic *diag_error_va(DiagList *list, Span span, const char *format, va_list args) {
+    return add(list, SEVERITY_ERROR, span, format, args);
 }
 
 Diagnostic *diag_error(DiagList *list, Span span, const char *format, ...) {
@@ -74,6 +92,7 @@ void diag_note(DiagList *list, Diagnostic *to, Span span, const char *format, ..
     note->span = span;
     va_list args;
     va_start(args, format);
+    note->format = format;
     note->message = format_text(list->arena, format, args);
     va_end(args);
     Diagnostic **end = &to->notes;

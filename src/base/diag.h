@@ -13,6 +13,7 @@ struct Diagnostic {
     Severity severity;
     Span span;
     const char *message; /* one line, no full stop */
+    const char *format;  /* what the message was made from: what kind of diagnostic this is (doc/diagnostics.md) */
     const char *hint;    /* NULL, or what likely helps: "did you mean 'pigment'?" */
     Diagnostic *notes;   /* first note, linked through `next` */
     Diagnostic *next;
@@ -23,7 +24,9 @@ typedef struct DiagList {
     SourceSet *sources;
     Diagnostic *first, *last;
     size_t error_count, warning_count;
+    size_t failures; /* errors found, those dropped as cascades too: whether something failed since */
     size_t error_limit; /* 0 = 20; errors past it are counted, not kept */
+    size_t kept_warnings; /* at most 1000 */
     /* Added as notes to every new diagnostic: the include and macro stack; maintained by the evaluator. NULL: none. */
     void (*add_context_notes)(void *context, struct DiagList *list, Diagnostic *diagnostic);
     void *context;
@@ -31,9 +34,11 @@ typedef struct DiagList {
 
 void diag_init(DiagList *list, Arena *arena, SourceSet *sources);
 
-/* Add a diagnostic. An error at a span that already has one is dropped (a cascade). Returns it, so that a hint can be
- * set, or NULL when it was dropped. */
+/* Add a diagnostic. An error at a span that already has one is dropped (a cascade), and so is a warning of the same kind at
+ * the same span (the next pass of a loop). Returns it, so that a hint can be set, or NULL when it was dropped. Formats are
+ * literals at the call and are listed in doc/diagnostics.md, which a test checks. */
 Diagnostic *diag_error(DiagList *list, Span span, const char *format, ...) VTS_PRINTF(3, 4);
+Diagnostic *diag_error_va(DiagList *list, Span span, const char *format, va_list args) VTS_PRINTF(3, 0);
 Diagnostic *diag_warning(DiagList *list, Span span, const char *format, ...) VTS_PRINTF(3, 4);
 /* Adds a note to `to` (no effect if NULL). */
 void diag_note(DiagList *list, Diagnostic *to, Span span, const char *format, ...) VTS_PRINTF(4, 5);

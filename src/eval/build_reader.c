@@ -18,14 +18,11 @@ bool reader_end_nested(Reader *parent, Reader *nested) {
 }
 
 Diagnostic *reader_error(Reader *reader, Span span, const char *format, ...) {
-    StrBuf text = {0};
     va_list args;
     va_start(args, format);
-    strbuf_vaddf(&text, format, args);
+    Diagnostic *diagnostic = diag_error_va(reader->context->diags, span, format, args);
     va_end(args);
     reader->failed = true;
-    Diagnostic *diagnostic = diag_error(reader->context->diags, span, "%s", text.data);
-    strbuf_free(&text);
     return diagnostic;
 }
 

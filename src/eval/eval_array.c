@@ -102,9 +102,9 @@ Value eval_array(Eval *ev, const Node *node) {
     a->growing = rank == 0;
     if (node->as.array.body) {
         Sink sink = {.kind = SINK_ARRAY, .array = a};
-        size_t errors = ev->diags->error_count;
+        size_t errors = ev->diags->failures;
         run_body(ev, node->as.array.body, &sink);
-        if (errors == ev->diags->error_count && rank) check_filled(ev, a, sink.next, node->span);
+        if (errors == ev->diags->failures && rank) check_filled(ev, a, sink.next, node->span);
     }
     return (Value){.kind = VALUE_ARRAY, .as.array = a};
 }

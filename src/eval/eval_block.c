@@ -48,7 +48,7 @@ static Value unknown_block(Eval *ev, const EvalBlock *block) {
 
 Value eval_block(Eval *ev, const Node *node, Name declared_as) {
     ArenaMark mark = arena_mark(&ev->blocks);
-    size_t errors = ev->diags->error_count + ev->silent_errors;
+    size_t errors = ev->diags->failures + ev->silent_errors;
     bool known = true;
     BlockBuilder *builder = block_builder_find(&ev->build, node->as.block.word, &known);
     EvalBlock *block = (EvalBlock *)(uintptr_t)eval_block_items(
@@ -59,7 +59,7 @@ Value eval_block(Eval *ev, const Node *node, Name declared_as) {
         v = eval_spline(ev, block);
     } else if (!known) {
         v = unknown_block(ev, block);
-    } else if (ev->diags->error_count + ev->silent_errors != errors) {
+    } else if (ev->diags->failures + ev->silent_errors != errors) {
         v = value_error(); /* what is missing inside was said already */
     } else if (builder) {
         if (!builder(&ev->build, block, &v)) v = value_error();

@@ -20,11 +20,6 @@ bool builtin_argument_count(Eval *ev, const Node *node, size_t least, size_t mos
     return false;
 }
 
-static Value failure(Eval *ev, const Node *node, const char *text) {
-    diag_error(ev->diags, node->span, "%s", text);
-    return value_error();
-}
-
 static double out_of_domain(Eval *ev, const Node *node, const char *name, double value, double fallback) {
     diag_warning(ev->diags, node->span, "%s(%g) is outside the function's domain; %g is taken", name, value,
                  fallback);
@@ -96,13 +91,13 @@ static Value two_arguments(Eval *ev, const Node *node) {
     if (!two_floats(ev, node, &a, &b)) return value_error();
     switch (node->op) {
     case KW_atan2: return value_float(atan2(a, b));
-    case KW_div: return b == 0 ? failure(ev, node, "div() by zero") : value_float(trunc(a / b));
+    case KW_div: return b == 0 ? eval_fail(ev, node->span, "div() by zero") : value_float(trunc(a / b));
     case KW_mod: return value_float(fmod(a, b));
     default:
-        if (a == 0 && b == 0) return failure(ev, node, "pow(0, 0) has no value");
+        if (a == 0 && b == 0) return eval_fail(ev, node->span, "pow(0, 0) has no value");
         if (a < 0 && b != trunc(b))
-            return failure(ev, node, "pow() of a negative number with a fractional exponent");
-        if (a == 0 && b < 0) return failure(ev, node, "pow() of 0 with a negative exponent");
+            return eval_fail(ev, node->span, "pow() of a negative number with a fractional exponent");
+        if (a == 0 && b < 0) return eval_fail(ev, node->span, "pow() of 0 with a negative exponent");
         return value_float(pow(a, b));
     }
 }
@@ -126,7 +121,7 @@ static Value many_arguments(Eval *ev, const Node *node) {
         double a;
         if (!eval_float(ev, node->as.list.items[i], &a)) return value_error();
         if (bits && !(fabs(a) < 0x1p62))
-            return failure(ev, node->as.list.items[i], "this is no whole number of at most 62 bits");
+            return eval_fail(ev, node->as.list.items[i]->span, "this is no whole number of at most 62 bits");
         result = i == 0 ? (bits ? trunc(a) : a) : fold_two(node->op, result, a);
     }
     return value_float(result);
@@ -214,7 +209,7 @@ static Value rand_next(Eval *ev, const Node *node) {
     if (!builtin_argument_count(ev, node, 1, 1) || !eval_float(ev, node->as.list.items[0], &s))
         return value_error();
     if (!(s >= 0 && s < (double)ev->stream_count))
-        return failure(ev, node, "rand() needs a stream made by seed()");
+        return eval_fail(ev, node->span, "rand() needs a stream made by seed()");
     return value_float(random_pov_next(&ev->streams[(size_t)s]));
 }
 
@@ -232,9 +227,9 @@ static Value dimensions(Eval *ev, const Node *node) {
     double which = 1;
     if (sized && !eval_float(ev, node->as.list.items[1], &which)) return value_error();
     if (v.kind == VALUE_ERROR) return v;
-    if (v.kind != VALUE_ARRAY) return failure(ev, node->as.list.items[0], "expected an array");
+    if (v.kind != VALUE_ARRAY) return eval_fail(ev, node->as.list.items[0]->span, "expected an array, found %s", value_kind_text(v.kind));
     if (!sized) return value_float(array_rank(v.as.array));
-    if (!(which >= 1)) return failure(ev, node->as.list.items[1], "dimensions count from 1");
+    if (!(which >= 1)) return eval_fail(ev, node->as.list.items[1]->span, "dimensions count from 1, found %g", which);
     return value_float(which > 64 ? 0 : (double)array_extent(v.as.array, (int)which - 1));
 }
 

@@ -50,7 +50,7 @@ static Frame *push(Source *s, FrameKind kind, TokenList *list, uint32_t at, uint
     f->list = list;
     f->at = at;
     f->end = end;
-    f->errors = s->ev->diags->error_count;
+    f->errors = s->ev->diags->failures;
     s->top = f;
     return f;
 }

@@ -14,8 +14,11 @@ typedef struct Compiler {
 
 static TapeRef compile(Compiler *c, const Node *n);
 
-static TapeRef fail(Compiler *c, Span span, const char *text) {
-    diag_error(c->ev->diags, span, "%s", text);
+static TapeRef VTS_PRINTF(3, 4) compiler_fail(Compiler *c, Span span, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    diag_error_va(c->ev->diags, span, format, args);
+    va_end(args);
     c->failed = true;
     return tape_constant(c->tape, 0);
 }
@@ -56,7 +59,7 @@ static TapeRef compile_constant(Compiler *c, const Node *n) {
         if (find_parameter(c, c->ev->keywords.name_of[k], &parameter)) return parameter;
         Keyword same = k == KW_u ? KW_x : k == KW_v ? KW_y : k;
         if (find_parameter(c, c->ev->keywords.name_of[same], &parameter)) return parameter;
-        return fail(c, n->span, "this is no parameter of the function");
+        return compiler_fail(c, n->span, "this is no parameter of the function");
     }
     Value v = eval_constant(c->ev, n);
     return captured(c, &v, n->span);
@@ -85,13 +88,13 @@ static TapeRef compile_binary(Compiler *c, const Node *n) {
     TapeRef a = compile(c, n->as.operand.a), b = compile(c, n->as.operand.b);
     for (size_t i = 0; i < VTS_ARRAY_COUNT(ops); i++)
         if (ops[i].op == n->op) return tape_binary(c->tape, ops[i].tape, a, b, n->span);
-    return fail(c, n->span, "this operator is not for functions");
+    return compiler_fail(c, n->span, "this operator is not for functions");
 }
 
 static TapeRef compile_unary(Compiler *c, const Node *n) {
     TapeRef a = compile(c, n->as.operand.a);
     if (n->op == '-') return tape_unary(c->tape, TAPE_NEG, a, n->span);
-    if (n->op == '!') return fail(c, n->span, "'!' is not for functions: compare with 0 instead");
+    if (n->op == '!') return compiler_fail(c, n->span, "'!' is not for functions: compare with 0 instead");
     return a;
 }
 
@@ -208,7 +211,7 @@ static TapeRef compile_builtin(Compiler *c, const Node *n) {
 static TapeRef inline_function(Compiler *c, const EvalFunction *f, const NodeList *list, Span span,
                                int output) {
     TapeRef inputs[FUNCTION_INPUTS], outputs[8] = {0};
-    if (f->missing) return fail(c, span, f->missing);
+    if (f->missing) return compiler_fail(c, span, "%s not available in this version", f->missing);
     if ((size_t)f->base.parameter_count != list->count) {
         diag_error(c->ev->diags, span, "the function takes %d argument%s, %zu given", f->base.parameter_count,
                    f->base.parameter_count == 1 ? "" : "s", list->count);
@@ -217,7 +220,7 @@ static TapeRef inline_function(Compiler *c, const EvalFunction *f, const NodeLis
     }
     for (size_t i = 0; i < list->count; i++) inputs[i] = compile(c, list->items[i]);
     if (output >= tape_output_count(f->base.tape) || output < 0)
-        return fail(c, span, "the function's value has no such component");
+        return compiler_fail(c, span, "the function's value has no such component");
     tape_inline(c->tape, f->base.tape, inputs, outputs);
     return outputs[output];
 }
@@ -262,7 +265,7 @@ static TapeRef compile_call(Compiler *c, const Node *n, int output) {
         Value v = eval_node(c->ev, n);
         return captured(c, &v, n->span);
     }
-    if (callee.kind != VALUE_ERROR) return fail(c, base->span, "this is no function");
+    if (callee.kind != VALUE_ERROR) return compiler_fail(c, base->span, "this is no function");
     c->failed = true;
     return number(c, 0);
 }
@@ -288,9 +291,9 @@ static TapeRef compile(Compiler *c, const Node *n) {
         return n->as.operand.a->kind == NODE_CALL ? compile_call(c, n->as.operand.a, n->op)
                                                   : compile_value(c, n);
     case NODE_INDEX: return compile_value(c, n);
-    case NODE_STRING: return fail(c, n->span, "functions know no strings");
-    case NODE_VECTOR: return fail(c, n->span, "a vector can only be a function's whole body");
-    default: return fail(c, n->span, "this cannot be part of a function");
+    case NODE_STRING: return compiler_fail(c, n->span, "functions know no strings");
+    case NODE_VECTOR: return compiler_fail(c, n->span, "a vector can only be a function's whole body");
+    default: return compiler_fail(c, n->span, "this cannot be part of a function");
     }
 }
 
@@ -329,8 +332,8 @@ static Value block_function(Eval *ev, const Node *node, const Node *body) {
     if (v.kind == VALUE_TRANSFORM) return transform_function(ev, node, v.as.transform);
     EvalFunction *f = function_new(ev, node, 3);
     f->missing = word == KW_pigment || word == KW_pattern
-                     ? "pigments and patterns as functions are not available in this version"
-                     : "this kind of function is not available in this version";
+                     ? "pigments and patterns as functions are"
+                     : "this kind of function is";
     TapeBuilder *tape = tape_builder_create(ev->build.arena, 3);
     TapeRef zero = tape_constant(tape, 0);
     f->base.tape = tape_finish(tape, &zero, 1);
@@ -384,8 +387,7 @@ Value call_function(Eval *ev, const UserFunction *function, const NodeList *argu
     const EvalFunction *f = (const EvalFunction *)function;
     double in[FUNCTION_INPUTS], out[8];
     if (f->missing) {
-        diag_error(ev->diags, span, "%s", f->missing);
-        return value_error();
+        return eval_fail(ev, span, "%s not available in this version", f->missing);
     }
     bool vector = false, ok = true;
     for (size_t i = 0; i < arguments->count && i < FUNCTION_INPUTS; i++) {

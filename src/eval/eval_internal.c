@@ -119,7 +119,7 @@ Value internal_function(Eval *ev, const Node *node, int id) {
     TapeRef zero = tape_constant(tape, 0);
     Value v = as_function(ev, node, 3, tape, &zero, 1);
     ((EvalFunction *)(uintptr_t)v.as.function)->missing =
-        "this internal function is not available in this version";
+        "this internal function is";
     return v;
 }
 

@@ -244,9 +244,9 @@ Flow run_call(Eval *ev, const Node *node, Sink *sink) {
 static Value call_macro(Eval *ev, const Node *node) {
     Sink sink = {.kind = SINK_SINGLE};
     sink.value = value_error();
-    size_t errors = ev->diags->error_count;
+    size_t errors = ev->diags->failures;
     run_call(ev, node, &sink);
-    if (!sink.filled && errors == ev->diags->error_count && !ev->stopped)
+    if (!sink.filled && errors == ev->diags->failures && !ev->stopped)
         diag_error(ev->diags, node->span, "macro '%s' leaves no value", node->as.apply.base->as.name->text);
     return sink.value;
 }

@@ -143,7 +143,7 @@ static Flow run_if(Eval *ev, const Node *node, Sink *sink) {
 
 /* Called before each pass. A loop whose pass met an error ends: its condition may depend on what failed. */
 Flow run_loop_guard(Eval *ev, uint64_t *passes, size_t errors, Span span) {
-    if (ev->diags->error_count != errors) return FLOW_BREAK;
+    if (ev->diags->failures != errors) return FLOW_BREAK;
     if (++*passes > ev->options->limits.loops) {
         diag_error(ev->diags, span, "the loop has made %llu passes without ending",
                    (unsigned long long)ev->options->limits.loops);
@@ -158,7 +158,7 @@ Flow run_loop_guard(Eval *ev, uint64_t *passes, size_t errors, Span span) {
 
 static Flow run_while(Eval *ev, const Node *node, Sink *sink) {
     uint64_t passes = 0;
-    size_t errors = ev->diags->error_count;
+    size_t errors = ev->diags->failures;
     for (;;) {
         bool go_on;
         ArenaMark mark = arena_mark(&ev->temp);
@@ -184,7 +184,7 @@ static Flow run_for(Eval *ev, const Node *node, Sink *sink) {
     Slot *slot = scope_declare(ev, name, true);
     slot_set(ev, slot, &v);
     uint64_t passes = 0;
-    size_t errors = ev->diags->error_count;
+    size_t errors = ev->diags->failures;
     for (;;) {
         VarBinding *b = scope_find(ev, name);
         if (!b || b->slot->value.kind != VALUE_FLOAT) {
@@ -242,7 +242,7 @@ void run_assign(Eval *ev, const Node *node) {
         while (base->kind == NODE_INDEX) base = base->as.apply.base;
         eval_undeclared(ev, base->as.name, base->span);
     }
-    if (slot && v.kind != VALUE_ERROR) slot_set(ev, slot, &v);
+    if (slot) slot_set(ev, slot, &v);
 }
 
 static void run_undef(Eval *ev, const Node *node) {
@@ -293,10 +293,10 @@ static void run_version(Eval *ev, const Node *node) {
 
 static void run_default(Eval *ev, const Node *node) {
     ArenaMark mark = arena_mark(&ev->blocks);
-    size_t errors = ev->diags->error_count;
+    size_t errors = ev->diags->failures;
     const EvalBlock *block =
         eval_block_items(ev, node->as.block.word, node->as.block.word_span, node->span, node->as.block.body);
-    if (errors == ev->diags->error_count) scene_draft_default(ev->draft, &ev->build, block);
+    if (errors == ev->diags->failures) scene_draft_default(ev->draft, &ev->build, block);
     arena_reset_to(&ev->blocks, mark);
 }
 

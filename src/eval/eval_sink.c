@@ -62,7 +62,8 @@ void sink_value(Eval *ev, Sink *sink, Value v, Span span) {
     if (v.kind == VALUE_ERROR) {
         sink->filled = sink->kind == SINK_SINGLE || sink->filled;
         ev->silent_errors++;
-        if (sink->kind == SINK_ARRAY) sink->next++;
+        if (sink->kind == SINK_ARRAY && sink->next < sink->array->count)
+            slot_set(ev, &sink->array->items[sink->next++], &v); /* so that its uses stay silent */
         return;
     }
     switch (sink->kind) {
@@ -104,8 +105,8 @@ static void add_particles(Eval *ev, Sink *sink, const Node *node, BlockItem item
     Scope scope;
     scope_enter(ev, &scope);
     Slot *index = scope_bind(ev, ev->index_name, NULL);
-    size_t errors = ev->diags->error_count;
-    for (double i = 0; i < count && !ev->stopped && errors == ev->diags->error_count; i++) {
+    size_t errors = ev->diags->failures;
+    for (double i = 0; i < count && !ev->stopped && errors == ev->diags->failures; i++) {
         Value v = value_float(i), n = value_float(count);
         slot_set(ev, index, &v);
         Argument *arguments = arena_new_array(&ev->blocks, Argument, 2);
@@ -189,9 +190,9 @@ void sink_list(Eval *ev, Sink *sink, const Node *node) {
         return;
     }
     Sink inner = {.kind = SINK_ARRAY, .array = row->value.as.array};
-    size_t errors = ev->diags->error_count;
+    size_t errors = ev->diags->failures;
     run_body(ev, node->as.block.body, &inner);
-    if (errors == ev->diags->error_count && inner.next < inner.array->count)
+    if (errors == ev->diags->failures && inner.next < inner.array->count)
         diag_error(ev->diags, node->span, "a row of %zu elements gets only %zu", inner.array->count,
                    inner.next);
 }

@@ -169,6 +169,8 @@ struct Eval {
 };
 
 /* ---- eval_value.c ---- */
+/* Reports an error and gives the value that says so. */
+Value eval_fail(Eval *ev, Span span, const char *format, ...) VTS_PRINTF(3, 4);
 static inline Value value_error(void) { return (Value){.kind = VALUE_ERROR}; }
 static inline Value value_float(double number) {
     return (Value){.kind = VALUE_FLOAT, .size = 1, .as.number = number};

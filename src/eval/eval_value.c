@@ -62,6 +62,14 @@ static const double TOLERANCE = 1e-10;
 
 bool value_is_true(double number) { return !(fabs(number) < TOLERANCE); }
 
+Value eval_fail(Eval *ev, Span span, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    diag_error_va(ev->diags, span, format, args);
+    va_end(args);
+    return value_error();
+}
+
 static Value mismatch(Eval *ev, Span span, const char *wanted, const Value *found) {
     if (found->kind != VALUE_ERROR)
         diag_error(ev->diags, span, "expected %s, found %s", wanted, value_kind_text(found->kind));

@@ -109,7 +109,7 @@ static Node *if_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *
     while (list->items[g.end].keyword != KW_end) {
         const Token *t = &list->items[g.end];
         if (else_seen || (t->keyword != KW_elseif && t->keyword != KW_else))
-            return parser_fail(p, t->span, "this #%s does not belong to an #if", t->as.name->text);
+            return parser_fail(p, t->span, "this #%s belongs to no #if", t->as.name->text);
         else_seen = t->keyword == KW_else;
         g.at = g.end + 1;
         Node *other = NULL;
@@ -189,7 +189,7 @@ static Node *switch_directive(Parser *p, TokenList *list, uint32_t index, uint32
     } cases = {0};
     while (list->items[g.end].keyword != KW_end) {
         const Token *t = &list->items[g.end];
-        if (t->keyword == KW_elseif) return parser_fail(p, t->span, "this #elseif does not belong to an #if");
+        if (t->keyword == KW_elseif) return parser_fail(p, t->span, "this #%s belongs to no #if", t->as.name->text);
         if (t->match == 0) return never_ends(p, list, index);
         SwitchCase one = {0};
         Parser inner = *p;
@@ -217,7 +217,7 @@ static Node *macro_directive(Parser *p, TokenList *list, uint32_t index, uint32_
     Node *n = parser_node(p, NODE_MACRO, list->items[index].span);
     p->raw = true;
     const Token *word = parser_peek(p);
-    if (word->kind != TOKEN_WORD) return parser_fail(p, word->span, "expected the macro's name");
+    if (word->kind != TOKEN_WORD) return parser_fail(p, word->span, "expected the macro's name, found %s", token_describe(word, p->arena));
     if (word->keyword)
         return parser_fail(p, word->span, "'%s' is a word of the language: it cannot be a name",
                            word->as.name->text);
@@ -233,7 +233,7 @@ static Node *macro_directive(Parser *p, TokenList *list, uint32_t index, uint32_
         if (parser_peek(p)->kind != TOKEN_WORD) break;
         Token name = parser_take(p);
         if (name.keyword)
-            return parser_fail(p, name.span, "'%s' is a word of the language: it cannot be a parameter",
+            return parser_fail(p, name.span, "'%s' is a word of the language: it cannot be a name",
                                name.as.name->text);
         *list_push(p->arena, &names) = name.as.name;
         parser_accept(p, ','); /* POV-Ray does not miss it, and its own includes leave it out */
@@ -425,7 +425,7 @@ static Node *default_directive(Parser *p, Token head) {
 }
 
 static Node *unknown_directive(Parser *p, Token head) {
-    if (!p->slow) return parser_fail(p, head.span, "unknown");
+    if (!p->slow) return parser_give_up(p);
     const char *candidates[64];
     size_t count = 0;
     for (int k = 1; k < KW_COUNT; k++)

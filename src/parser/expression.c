@@ -163,7 +163,7 @@ static Node *name_or_call(Parser *p) {
         if (!p->slow && !p->in_function) {
             const void *macro;
             if (parser_classify(p, word.as.name, &macro) == NAME_MACRO)
-                return parser_fail(p, word.span, "macro without (");
+                return parser_give_up(p);
             p->assumptions.count--; /* its being a value or not makes no difference here */
         }
         return n;
@@ -171,7 +171,7 @@ static Node *name_or_call(Parser *p) {
     const void *macro;
     NameClass class = parser_classify(p, word.as.name, &macro);
     if (class == NAME_PLAIN) return n;
-    if (class == NAME_MACRO && p->in_function && !p->slow) return parser_fail(p, word.span, "a macro's text");
+    if (class == NAME_MACRO && p->in_function && !p->slow) return parser_give_up(p);
     Node *call = parser_node(p, NODE_CALL, word.span);
     call->as.apply.base = n;
     size_t at = p->assumptions.count - 1;

@@ -87,7 +87,7 @@ static Node *call_item(Parser *p, const void *macro) {
     call->span = span_join(name.span, p->last.span);
     if (!continues_expression(parser_peek(p))) return call;
     if (p->host->macro_binding(p->host->context, macro) == BIND_NONE)
-        return parser_fail(p, call->span, "half a macro");
+        return parser_give_up(p);
     *p = before;
     return parser_expression(p);
 }

@@ -67,12 +67,14 @@ Node *parser_fail(Parser *p, Span span, const char *format, ...) {
     if (p->slow && !p->failed) {
         va_list args;
         va_start(args, format);
-        StrBuf text = {0};
-        strbuf_vaddf(&text, format, args);
+        diag_error_va(p->diags, span, format, args);
         va_end(args);
-        diag_error(p->diags, span, "%s", text.data);
-        strbuf_free(&text);
     }
+    p->failed = true;
+    return NULL;
+}
+
+Node *parser_give_up(Parser *p) {
     p->failed = true;
     return NULL;
 }
@@ -109,7 +111,7 @@ Body *parser_body(Parser *p, Name block) {
     Token open = parser_take(p);
     Body *body = arena_new(p->arena, Body);
     if (!p->slow) {
-        if (open.match == 0 || open.match >= p->end) return parser_fail(p, open.span, "unbalanced"), NULL;
+        if (open.match == 0 || open.match >= p->end) return parser_give_up(p), NULL;
         *body = (Body){.tokens = p->list, .begin = p->at, .end = open.match};
         p->at = open.match;
         parser_take(p);

@@ -101,6 +101,8 @@ Token parser_take(Parser *parser);
 bool parser_accept(Parser *parser, int kind);
 bool parser_accept_keyword(Parser *parser, Keyword keyword);
 bool parser_expect(Parser *parser, int kind, const char *what);
+/* Makes the parse fail without a word: on the fast road, for what the slow road will read. Returns NULL. */
+Node *parser_give_up(Parser *parser);
 /* Reports on the slow road, fails on both. Returns NULL. */
 Node *parser_fail(Parser *parser, Span span, const char *format, ...) VTS_PRINTF(3, 4);
 Node *parser_node(Parser *parser, NodeKind kind, Span begin);

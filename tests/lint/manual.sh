@@ -1,28 +1,69 @@
 #!/usr/bin/env bash
-# manual.sh VTS ROOT: every ```vts block of README.md and doc/*.md passes `vts check`, and doc/manual.md names every option of
-# the program. Prints what does not; status 1 then.
+# manual.sh VTS ROOT: every ```vts block of README.md, doc and doc/reference passes `vts check` without a word. When the next
+# block of the page is ```output, `vts run` of it says exactly that (errors and warnings too) instead. doc/manual.md names
+# every option of the program. Prints what does not hold; status 1 then. BLESS=1 writes what is said into the pages.
 set -u -o pipefail
-vts=$1 root=$2
+vts=$(realpath "$1") root=$(realpath "$2")
 folder=$(mktemp -d) || exit 2
 trap 'rm -rf "$folder"' EXIT
 
+# NUMBER.vts and, where the page states it, NUMBER.expected for each example; NUMBER is the line that it begins after.
+split_page() {
+  awk -v folder="$folder" '
+    /^```vts$/ { last = NR; out = folder "/" NR ".vts"; printf "" > out; next }
+    /^```output$/ { if (!last) { print FILENAME ":" NR ": output of no example" > "/dev/stderr"; exit 1 }
+                    out = folder "/" last ".expected"; last = 0; printf "" > out; next }
+    /^```/ { if (out) close(out); else last = 0; out = ""; next }
+    out { print > out }' "$1"
+}
+
+# The page again, each output replaced by NUMBER.got.
+blessed_page() {
+  awk -v folder="$folder" '
+    /^```vts$/ { last = NR }
+    /^```output$/ { print; file = folder "/" last ".got"; while ((getline line < file) > 0) print line; close(file); skip = 1; next }
+    /^```/ { skip = 0 }
+    !skip' "$1"
+}
+
+# Runs the example in a folder of its own, where it may write.
+say() {
+  rm -rf "$folder/run" && mkdir "$folder/run" && cp "$1" "$folder/run/example.vts" || exit 2
+  (cd "$folder/run" && "$vts" "$2" --allow-write . example.vts </dev/null 2>&1)
+}
+
+try_example() {
+  local place=$1 example=$2 expected=${2%.vts}.expected got=${2%.vts}.got status
+  if [ ! -e "$expected" ]; then
+    say "$example" check > "$got" && [ ! -s "$got" ] && return
+    echo "$place: the example does not pass:"; cat "$got"
+    return 1
+  fi
+  say "$example" run > "$got"
+  status=$?
+  [ -z "$(tail -c 1 "$got")" ] || echo >> "$got"
+  [ $status -gt 1 ] && { echo "$place: status $status"; return 1; }
+  [ -n "${BLESS:-}" ] && return
+  [ $status = 1 ] && ! grep -q ': error: ' "$expected" && { echo "$place: an error that the page does not show:"; cat "$got"; return 1; }
+  diff --label stated --label said -u "$expected" "$got" > "$folder/diff" && return
+  echo "$place: the example says otherwise:"; cat "$folder/diff"
+  return 1
+}
+
 failed=0 count=0
-for page in "$root"/README.md "$root"/doc/*.md; do
-  name=$(basename "$page" .md)
-  # One file for each block, named after the line it begins at.
-  awk -v prefix="$folder/$name-line-" '
-    /^```vts$/ { out = prefix NR ".vts"; printf "" > out; next }
-    /^```/ { if (out) close(out); out = "" }
-    out { print > out }' "$page"
-  for scene in "$folder/$name"-line-*.vts; do
-    [ -e "$scene" ] || continue
+for page in "$root"/README.md "$root"/doc/*.md "$root"/doc/reference/*.md; do
+  [ -e "$page" ] || continue
+  rm -f "$folder"/*.vts "$folder"/*.expected "$folder"/*.got
+  split_page "$page" || failed=1
+  for example in "$folder"/*.vts; do
+    [ -e "$example" ] || continue
     count=$((count + 1))
-    "$vts" check "$scene" || { echo "$(basename "$scene" .vts) does not pass"; failed=1; }
-    rm -f "$scene"
+    try_example "${page#"$root"/}:$(basename "$example" .vts)" "$example" || failed=1
   done
+  [ -z "${BLESS:-}" ] || { blessed_page "$page" > "$folder/page" && { cmp -s "$folder/page" "$page" || cp "$folder/page" "$page"; }; }
 done
-[ $count -gt 0 ] || { echo "no scenes found"; exit 1; }
-echo "$count scenes"
+[ $count -gt 0 ] || { echo "no examples found"; exit 1; }
+echo "$count examples"
 
 # The table of options says what --help says exists.
 for command in render check run; do

@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# words.sh ROOT: no word of the language is missing in the reference. Tables and headings of doc/scene.md and doc/reference name
+# every reserved word, every word of vts's own blocks and their items, in code (`word`). doc/reference/functions.md has each
+# function and constant, doc/reference/directives.md each directive, in a table and in an example. Prints what is missing;
+# status 1 then.
+set -u -o pipefail
+export LC_ALL=C
+cd "$1" || exit 2
+folder=$(mktemp -d) || exit 2
+trap 'rm -rf "$folder"' EXIT
+
+keywords() { grep -oE "KEYWORD\(($1), [a-z0-9_]+" src/lexer/keywords.def | sed 's/.* //'; }
+context_words() { sed -n 's/^CONTEXT_BLOCK(\([a-z0-9_]*\), "\(.*\)")$/\1 \2/p' src/parser/context.def | tr ' ' '\n' | grep .; }
+known_functions() {
+  sed -n '/known_functions\[\] = {/,/^};/s/^ *{"\([a-z0-9_]*\)".*/\1/p' src/eval/eval_internal.c
+}
+
+# Words in the code spans of tables and headings of some pages.
+table_words() { grep -hE '^(\||#+ )' "$@" | grep -oE '`[^`]*`' | grep -oE '#?[A-Za-z_][A-Za-z0-9_]*'; }
+example_words() { awk '/^```vts$/ { on = 1; next } /^```/ { on = 0 } on' "$@" | sed 's,//.*,,' | grep -oE '#?[A-Za-z_][A-Za-z0-9_]*'; }
+
+failed=0
+# require WHAT FILE-OF-WORDS PAGES: each word of stdin is in the file.
+require() {
+  sort -u > "$folder/wanted"
+  [ -s "$folder/wanted" ] || { echo "no $1 were found in the sources"; failed=1; }
+  sort -u "$2" | comm -23 "$folder/wanted" - > "$folder/missing"
+  [ -s "$folder/missing" ] || return
+  sed "s|.*|$3: no $1 names '&'|" "$folder/missing"
+  failed=1
+}
+
+pages=(doc/scene.md doc/reference/*.md)
+table_words "${pages[@]}" > "$folder/all"
+table_words doc/reference/functions.md > "$folder/functions"
+table_words doc/reference/directives.md > "$folder/directives"
+example_words doc/reference/functions.md > "$folder/function_examples"
+example_words doc/reference/directives.md > "$folder/directive_examples"
+
+{ keywords 'CONSTANT|COLOR|WORD'; context_words; } | require "table or heading" "$folder/all" "doc/scene.md, doc/reference"
+{ keywords 'FUNCTION|CONSTANT'; known_functions; } | require "table" "$folder/functions" doc/reference/functions.md
+{ keywords 'FUNCTION|CONSTANT'; known_functions; } | grep -vxE 'internal|inside|trace' | require "example" "$folder/function_examples" doc/reference/functions.md
+{ keywords DIRECTIVE; echo version; } | sed 's/^/#/' | require "table" "$folder/directives" doc/reference/directives.md
+{ keywords DIRECTIVE; echo version; } | sed 's/^/#/' | require "example" "$folder/directive_examples" doc/reference/directives.md
+exit $failed

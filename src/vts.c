@@ -2,6 +2,7 @@
 
 #include "base/stopwatch.h"
 #include "eval/eval.h"
+#include "hooks.h"
 #include "render/report.h"
 
 #include <errno.h>
@@ -278,6 +279,7 @@ static VtsStatus evaluate(VtsSession *session, const char *path, EvalMode mode) 
                            .image_width = o->width, .image_height = o->height, .limits = eval_limits_default(),
                            .allow_read = o->allow_read, .allow_read_count = o->allow_read_count, .allow_write = o->allow_write,
                            .allow_write_count = o->allow_write_count, .keep_writes_in_memory = mode.writes_in_memory, .is_program = mode.is_program,
+                           .geometry = hooks_geometry(),
                            .on_text = pass_text, .context = session, .interrupted = &session->interrupted,
                            .print_tokens = mode.print_tokens, .print_ast = mode.print_ast};
     VtsStatus status = apply_limits(session, &options.limits);

@@ -14,7 +14,7 @@ bool transform_is_identity(const Transform *t);
 BlockBuilder build_transform;
 
 /* ---- build_pigment.c, build_map.c ---- */
-BlockBuilder build_pigment, build_color_map;
+BlockBuilder build_pigment, build_pattern, build_color_map;
 /* Reads a pigment's items from the reader's position on, beginning with the default pigment. */
 const Pigment *pigment_read(Reader *reader);
 

@@ -242,9 +242,9 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
     }
 }
 
-const Pigment *pigment_read(Reader *reader) {
+static const Pigment *read_from(Reader *reader, const Pigment *start) {
     PigmentDraft *draft = arena_new(reader->context->arena, PigmentDraft);
-    draft->pigment = *texture_default(reader->context)->pigment;
+    draft->pigment = *start;
     draft->pigment.span = reader->block->span;
     reader_add_table(reader, rules, VTS_ARRAY_COUNT(rules), draft);
     reader_add_table(reader, unmodelled_rules, VTS_ARRAY_COUNT(unmodelled_rules), draft);
@@ -258,6 +258,19 @@ const Pigment *pigment_read(Reader *reader) {
     }
     pigment_rehash(&draft->pigment);
     return &draft->pigment;
+}
+
+const Pigment *pigment_read(Reader *reader) {
+    return read_from(reader, texture_default(reader->context)->pigment);
+}
+
+/* Of function { pattern { … } }: a pigment whose colours nobody asks for. */
+bool build_pattern(BuildContext *context, const EvalBlock *block, Value *out) {
+    Reader reader = reader_begin(context, block);
+    Pigment start = pigment_default();
+    const Pigment *pigment = read_from(&reader, &start);
+    if (pigment) *out = (Value){.kind = VALUE_PIGMENT, .as.pigment = pigment};
+    return pigment != NULL;
 }
 
 bool build_pigment(BuildContext *context, const EvalBlock *block, Value *out) {

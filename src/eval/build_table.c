@@ -54,6 +54,7 @@ static const struct BlockWord {
     /* looks */
     {"texture", build_texture},
     {"pigment", build_pigment},
+    {"pattern", build_pattern},
     {"finish", build_finish},
     {"normal", build_inert_value},
     {"interior", build_inert_value},

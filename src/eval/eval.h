@@ -22,6 +22,8 @@ typedef struct EvalGeometry {
     bool (*inside)(void *context, const Object *object, Vec3 point);
     /* A pigment as a function of place: 3 inputs, 5 outputs. `out` and its data live in `arena`; false: it cannot be one. */
     bool (*pigment_function)(void *context, Arena *arena, const Pigment *pigment, TapeExternal *out);
+    /* A pattern as a function of place: 3 inputs, 1 output; otherwise the same. */
+    bool (*pattern_function)(void *context, Arena *arena, const Pigment *pattern, TapeExternal *out);
 } EvalGeometry;
 
 typedef struct EvalOptions {

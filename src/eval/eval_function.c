@@ -208,6 +208,16 @@ static TapeRef compile_builtin(Compiler *c, const Node *n) {
     return number(c, 0);
 }
 
+/* POV-Ray's weights. */
+static TapeRef gray_of(Compiler *c, const TapeRef *color, Span span) {
+    static const double weights[3] = {0.297, 0.589, 0.114};
+    TapeRef sum = number(c, 0);
+    for (int k = 0; k < 3; k++)
+        sum = tape_binary(c->tape, TAPE_ADD, sum,
+                          tape_binary(c->tape, TAPE_MUL, number(c, weights[k]), color[k], span), span);
+    return sum;
+}
+
 static TapeRef inline_function(Compiler *c, const EvalFunction *f, const NodeList *list, Span span,
                                int output) {
     TapeRef inputs[FUNCTION_INPUTS], outputs[8] = {0};
@@ -219,10 +229,11 @@ static TapeRef inline_function(Compiler *c, const EvalFunction *f, const NodeLis
         return number(c, 0);
     }
     for (size_t i = 0; i < list->count; i++) inputs[i] = compile(c, list->items[i]);
-    if (output >= tape_output_count(f->base.tape) || output < 0)
+    bool gray = output == DOT_GRAY && tape_output_count(f->base.tape) >= 3;
+    if (!gray && (output >= tape_output_count(f->base.tape) || output < 0))
         return compiler_fail(c, span, "the function's value has no such component");
     tape_inline(c->tape, f->base.tape, inputs, outputs);
-    return outputs[output];
+    return gray ? gray_of(c, outputs, span) : outputs[output];
 }
 
 static TapeRef compile_known(Compiler *c, const Node *n, const KnownFunction *known) {
@@ -304,6 +315,17 @@ static EvalFunction *function_new(Eval *ev, const Node *node, int count) {
     return f;
 }
 
+static Value pigment_function(Eval *ev, const Node *node, const Pigment *pigment, bool pattern) {
+    const EvalGeometry *g = ev->options->geometry;
+    bool (*make)(void *, Arena *, const Pigment *, TapeExternal *) =
+        !g ? NULL : pattern ? g->pattern_function : g->pigment_function;
+    TapeExternal *external = arena_new(ev->build.arena, TapeExternal);
+    if (make && make(g->context, ev->build.arena, pigment, external))
+        return external_function(ev, node, external);
+    diag_error(ev->diags, node->span, "pigments and patterns as functions are not available here");
+    return value_error();
+}
+
 /* function { pigment { … } } and the like. */
 static Value block_function(Eval *ev, const Node *node, const Node *body) {
     if (body->kind == NODE_BUILTIN) {
@@ -312,32 +334,17 @@ static Value block_function(Eval *ev, const Node *node, const Node *body) {
             return value_error();
         return internal_function(ev, node, (int)double_clamp(id, -1, 1000));
     }
-    Keyword word = keyword_of(&ev->keywords, body->as.block.word);
-    Value v = {.kind = VALUE_BLOCK};
-    if (word == KW_pattern) {
-        ArenaMark mark = arena_mark(&ev->blocks);
-        eval_block_items(ev, body->as.block.word, body->as.block.word_span, body->span, body->as.block.body);
-        arena_reset_to(&ev->blocks, mark);
-    } else {
-        v = eval_node(ev, body);
-    }
+    Value v = eval_node(ev, body);
     if (v.kind == VALUE_ERROR) return v;
     if (v.kind == VALUE_SPLINE) return spline_function(ev, node, v.as.spline);
-    if (v.kind == VALUE_PIGMENT && ev->options->geometry && ev->options->geometry->pigment_function) {
-        const EvalGeometry *g = ev->options->geometry;
-        TapeExternal *external = arena_new(ev->build.arena, TapeExternal);
-        if (g->pigment_function(g->context, ev->build.arena, v.as.pigment, external))
-            return external_function(ev, node, external);
-    }
     if (v.kind == VALUE_TRANSFORM) return transform_function(ev, node, v.as.transform);
-    EvalFunction *f = function_new(ev, node, 3);
-    f->missing = word == KW_pigment || word == KW_pattern
-                     ? "pigments and patterns as functions are"
-                     : "this kind of function is";
-    TapeBuilder *tape = tape_builder_create(ev->build.arena, 3);
-    TapeRef zero = tape_constant(tape, 0);
-    f->base.tape = tape_finish(tape, &zero, 1);
-    return (Value){.kind = VALUE_FUNCTION, .as.function = &f->base};
+    if (v.kind == VALUE_PIGMENT) {
+        Keyword word = keyword_of(&ev->keywords, body->as.block.word);
+        return pigment_function(ev, node, v.as.pigment, word == KW_pattern);
+    }
+    diag_error(ev->diags, body->as.block.word_span,
+               "a function is an expression or one of pigment, pattern, spline and transform");
+    return value_error();
 }
 
 static const Name *default_parameters(Eval *ev) {

@@ -7,6 +7,7 @@
  *   language_runner [--show] FILE…            --show prints instead of comparing
  *   language_runner --shared FOLDER           all .pov files there, or 77 where there is no such folder */
 #include "eval/eval.h"
+#include "hooks.h"
 
 #include <dirent.h>
 #include <stdio.h>
@@ -97,6 +98,7 @@ static void run_program(Run *run, const char *path, const char *text, bool show,
                      .image_height = 4,
                      .limits = eval_limits_default(),
                      .keep_writes_in_memory = true,
+                     .geometry = hooks_geometry(),
                      .on_text = on_text,
                      .context = run,
                      .expand_always = expand};
@@ -183,8 +185,8 @@ static int is_program(const struct dirent *entry) {
 /* Programs that need more than the evaluator: several frames, the geometry of objects, pigments as functions, fonts, or noises that no
  * description gives. */
 static bool needs_more(const char *name) {
-    static const char *const numbers[] = {"157", "160", "161", "202", "225", "226", "227",
-                                          "235", "237", "240", "241", "250", "251"};
+    static const char *const numbers[] = {"202", "225", "226", "227",
+                                          "235", "237", "250", "251"};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(numbers); i++)
         if (strncmp(name, numbers[i], 3) == 0) return true;
     return false;

@@ -218,21 +218,20 @@ static TapeRef gray_of(Compiler *c, const TapeRef *color, Span span) {
     return sum;
 }
 
-static TapeRef inline_function(Compiler *c, const EvalFunction *f, const NodeList *list, Span span,
+static TapeRef inline_function(Compiler *c, const UserFunction *f, const NodeList *list, Span span,
                                int output) {
-    TapeRef inputs[FUNCTION_INPUTS], outputs[8] = {0};
-    if (f->missing) return compiler_fail(c, span, "%s not available in this version", f->missing);
-    if ((size_t)f->base.parameter_count != list->count) {
-        diag_error(c->ev->diags, span, "the function takes %d argument%s, %zu given", f->base.parameter_count,
-                   f->base.parameter_count == 1 ? "" : "s", list->count);
+    TapeRef inputs[FUNCTION_INPUTS], outputs[TAPE_CALL_MAX] = {0};
+    if ((size_t)f->parameter_count != list->count) {
+        diag_error(c->ev->diags, span, "the function takes %d argument%s, %zu given", f->parameter_count,
+                   f->parameter_count == 1 ? "" : "s", list->count);
         c->failed = true;
         return number(c, 0);
     }
     for (size_t i = 0; i < list->count; i++) inputs[i] = compile(c, list->items[i]);
-    bool gray = output == DOT_GRAY && tape_output_count(f->base.tape) >= 3;
-    if (!gray && (output >= tape_output_count(f->base.tape) || output < 0))
+    bool gray = output == DOT_GRAY && tape_output_count(f->tape) >= 3;
+    if (!gray && (output >= tape_output_count(f->tape) || output < 0))
         return compiler_fail(c, span, "the function's value has no such component");
-    tape_inline(c->tape, f->base.tape, inputs, outputs);
+    tape_inline(c->tape, f->tape, inputs, outputs);
     return gray ? gray_of(c, outputs, span) : outputs[output];
 }
 
@@ -270,8 +269,7 @@ static TapeRef compile_call(Compiler *c, const Node *n, int output) {
         callee = eval_node(c->ev, base);
     }
     if (callee.kind == VALUE_FUNCTION)
-        return inline_function(c, (const EvalFunction *)callee.as.function, &n->as.apply.list, n->span,
-                               output);
+        return inline_function(c, callee.as.function, &n->as.apply.list, n->span, output);
     if (callee.kind == VALUE_MACRO) {
         Value v = eval_node(c->ev, n);
         return captured(c, &v, n->span);
@@ -308,17 +306,18 @@ static TapeRef compile(Compiler *c, const Node *n) {
     }
 }
 
-static EvalFunction *function_new(Eval *ev, const Node *node, int count) {
-    EvalFunction *f = arena_new(ev->build.arena, EvalFunction);
-    f->base.span = node->span;
-    f->base.parameter_count = count;
+static UserFunction *function_new(Eval *ev, const Node *node, int count) {
+    UserFunction *f = arena_new(ev->build.arena, UserFunction);
+    f->span = node->span;
+    f->parameter_count = count;
     return f;
 }
 
 static Value pigment_function(Eval *ev, const Node *node, const Pigment *pigment, bool pattern) {
     const EvalGeometry *g = ev->options->geometry;
-    bool (*make)(void *, Arena *, const Pigment *, TapeExternal *) =
-        !g ? NULL : pattern ? g->pattern_function : g->pigment_function;
+    bool (*make)(void *, Arena *, const Pigment *, TapeExternal *) = !g        ? NULL
+                                                                     : pattern ? g->pattern_function
+                                                                               : g->pigment_function;
     TapeExternal *external = arena_new(ev->build.arena, TapeExternal);
     if (make && make(g->context, ev->build.arena, pigment, external))
         return external_function(ev, node, external);
@@ -373,29 +372,25 @@ Value eval_function(Eval *ev, const Node *node) {
                    FUNCTION_INPUTS);
         return value_error();
     }
-    EvalFunction *f = function_new(ev, node, (int)count);
-    f->base.parameters = node->as.function.count
-                             ? arena_copy(ev->build.arena, node->as.function.parameters, count * sizeof(Name))
-                             : default_parameters(ev);
+    UserFunction *f = function_new(ev, node, (int)count);
+    f->parameters = node->as.function.count
+                        ? arena_copy(ev->build.arena, node->as.function.parameters, count * sizeof(Name))
+                        : default_parameters(ev);
     TapeRef inputs[FUNCTION_INPUTS], results[5];
     Compiler c = {.ev = ev,
                   .tape = tape_builder_create(ev->build.arena, (int)count),
-                  .names = f->base.parameters,
+                  .names = f->parameters,
                   .values = inputs,
                   .count = count};
     for (size_t i = 0; i < count; i++) inputs[i] = tape_input(c.tape, (int)i);
     for (size_t i = 0; i < outputs->count; i++) results[i] = compile(&c, outputs->items[i]);
     if (c.failed) return value_error();
-    f->base.tape = tape_finish(c.tape, results, (int)outputs->count);
-    return (Value){.kind = VALUE_FUNCTION, .as.function = &f->base};
+    f->tape = tape_finish(c.tape, results, (int)outputs->count);
+    return (Value){.kind = VALUE_FUNCTION, .as.function = f};
 }
 
 Value call_function(Eval *ev, const UserFunction *function, const NodeList *arguments, Span span) {
-    const EvalFunction *f = (const EvalFunction *)function;
-    double in[FUNCTION_INPUTS], out[8];
-    if (f->missing) {
-        return eval_fail(ev, span, "%s not available in this version", f->missing);
-    }
+    double in[FUNCTION_INPUTS], out[TAPE_CALL_MAX];
     bool vector = false, ok = true;
     for (size_t i = 0; i < arguments->count && i < FUNCTION_INPUTS; i++) {
         Value v = eval_node(ev, arguments->items[i]);

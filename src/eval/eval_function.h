@@ -6,11 +6,6 @@
 
 enum { FUNCTION_INPUTS = 56 };
 
-typedef struct EvalFunction {
-    UserFunction base;
-    const char *missing; /* subject and verb of why it cannot be evaluated ("this kind of function is"); NULL: it can */
-} EvalFunction;
-
 /* Functions that vts adds, by name: perlin, fbm … They are hidden by whatever a scene declares under their names. */
 typedef struct KnownFunction {
     const char *name;

@@ -1,91 +1,21 @@
 /* Functions that are not written in the language: POV-Ray's internal ones, as functions.inc numbers them, and those that vts adds. */
 #include "eval/eval_function.h"
 
-#include "tape/noise.h"
+#include "tape/internal.h"
 
-#include <math.h>
 #include <string.h>
 
-/* Arguments p[0 … 2] are x, y, z; the rest are the function's own parameters. */
-typedef double InternalEval(const double *p);
-
-static double f_ph(const double *p) {
-    double r = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
-    return r == 0 ? 0 : acos(p[1] / r);
-}
-static double f_r(const double *p) { return sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]); }
-static double f_th(const double *p) { return atan2(p[0], p[2]); }
-static double f_sphere(const double *p) { return f_r(p) - p[3]; }
-static double f_ellipsoid(const double *p) {
-    return sqrt(p[0] * p[0] * p[3] * p[3] + p[1] * p[1] * p[4] * p[4] + p[2] * p[2] * p[5] * p[5]);
-}
-static double f_torus(const double *p) {
-    double ring = sqrt(p[0] * p[0] + p[2] * p[2]) - p[3];
-    return sqrt(ring * ring + p[1] * p[1]) - p[4];
-}
-static double f_superellipsoid(const double *p) {
-    double e = p[3], n = p[4];
-    double side = pow(pow(fabs(p[0]), 2 / e) + pow(fabs(p[1]), 2 / e), e / n);
-    return 1 - pow(side + pow(fabs(p[2]), 2 / n), n / 2);
-}
-static double f_rounded_box(const double *p) {
-    double radius = p[3], sum = 0;
-    if (p[4] < radius || p[5] < radius || p[6] < radius) return 0;
-    for (int i = 0; i < 3; i++) {
-        double inner = p[4 + i] - radius, over = double_max(fabs(p[i]) - inner, 0);
-        sum += over * over;
-    }
-    return sqrt(sum) - radius - 1e-6; /* POV-Ray's, to the last digit */
-}
-static double f_heart(const double *p) {
-    double x = p[0], y = p[1], z = p[2], x2 = x * x, y2 = y * y, z2 = z * z, a = 2 * x2 + y2 + z2 - 1;
-    return -p[3] * (a * a * a - 0.1 * x2 * z2 * z - y2 * z2 * z);
-}
-static double f_paraboloid(const double *p) { return p[3] * (p[0] * p[0] - p[1] + p[2] * p[2]); }
-/* Algebraic surfaces of POV-Ray are limited to ±10. */
-static double f_quartic_cylinder(const double *p) {
-    double around = p[0] * p[0] + p[2] * p[2], across = p[5] * p[5];
-    return double_clamp(-p[3] * (around * p[1] * p[1] + across * around - p[4] * p[4] * across), -10, 10);
-}
-/* Kinds 1 and 2 are POV-Ray's own noises, 3 is Perlin's. */
-static double f_noise_generator(const double *p) {
-    Vec3 at = vec3(p[0], p[1], p[2]);
-    return p[3] == 1   ? noise_pov_original(at)
-           : p[3] == 3 ? double_clamp(0.5 * (1 + noise_perlin(at)), 0, 1)
-                       : noise_pov(at);
-}
-static double f_noise3d(const double *p) { return noise_pov(vec3(p[0], p[1], p[2])); }
-
-static const struct {
-    int id, inputs;
-    InternalEval *eval;
-} internals[] = {
-    {18, 6, f_ellipsoid},
-    {23, 4, f_heart},
-    {45, 4, f_paraboloid},
-    {47, 3, f_ph},
-    {57, 3, f_r},
-    {60, 7, f_rounded_box},
-    {61, 4, f_sphere},
-    {68, 5, f_superellipsoid},
-    {69, 3, f_th},
-    {70, 5, f_torus},
-    {56, 6, f_quartic_cylinder},
-    {76, 3, f_noise3d},
-    {78, 4, f_noise_generator},
-};
-
 static void eval_internal(const void *data, const double *in, double *out) {
-    out[0] = (*(InternalEval *const *)data)(in);
+    out[0] = ((const InternalFunction *)data)->eval(in);
 }
 
 static Value as_function(Eval *ev, const Node *node, int inputs, TapeBuilder *tape, TapeRef *out,
                          int outputs) {
-    EvalFunction *f = arena_new(ev->build.arena, EvalFunction);
-    f->base.span = node->span;
-    f->base.parameter_count = inputs;
-    f->base.tape = tape_finish(tape, out, outputs);
-    return (Value){.kind = VALUE_FUNCTION, .as.function = &f->base};
+    UserFunction *f = arena_new(ev->build.arena, UserFunction);
+    f->span = node->span;
+    f->parameter_count = inputs;
+    f->tape = tape_finish(tape, out, outputs);
+    return (Value){.kind = VALUE_FUNCTION, .as.function = f};
 }
 
 static const TapeExternal *external_new(Eval *ev, const char *name, int inputs, int outputs, const void *data,
@@ -100,27 +30,37 @@ static const TapeExternal *external_new(Eval *ev, const char *name, int inputs, 
 
 Value external_function(Eval *ev, const Node *node, const TapeExternal *external) {
     TapeBuilder *tape = tape_builder_create(ev->build.arena, external->input_count);
-    TapeRef in[8], out[8];
+    TapeRef in[TAPE_CALL_MAX], out[TAPE_CALL_MAX];
     for (int i = 0; i < external->input_count; i++) in[i] = tape_input(tape, i);
     tape_call(tape, external, in, out, node->span);
     return as_function(ev, node, external->input_count, tape, out, external->output_count);
 }
 
-Value internal_function(Eval *ev, const Node *node, int id) {
-    for (size_t i = 0; i < VTS_ARRAY_COUNT(internals); i++) {
-        if (internals[i].id != id) continue;
-        TapeExternal *e = (TapeExternal *)(uintptr_t)external_new(ev, "internal", internals[i].inputs, 1,
-                                                                  &internals[i].eval,
-                                                                  sizeof internals[i].eval, eval_internal);
-        hash_add_u64(&e->hash, (uint64_t)id);
-        return external_function(ev, node, e);
-    }
+/* The noises are operations of tapes, which know more of them than that they are functions. */
+static Value noise_function(Eval *ev, const Node *node) {
     TapeBuilder *tape = tape_builder_create(ev->build.arena, 3);
-    TapeRef zero = tape_constant(tape, 0);
-    Value v = as_function(ev, node, 3, tape, &zero, 1);
-    ((EvalFunction *)(uintptr_t)v.as.function)->missing =
-        "this internal function is";
-    return v;
+    TapeRef in[3];
+    for (int i = 0; i < 3; i++) in[i] = tape_input(tape, i);
+    TapeRef out = tape_ternary(tape, TAPE_POV_NOISE, in[0], in[1], in[2], node->span);
+    return as_function(ev, node, 3, tape, &out, 1);
+}
+
+Value internal_function(Eval *ev, const Node *node, int id) {
+    const InternalFunction *f = internal_find(id);
+    if (!f) {
+        diag_error(ev->diags, node->span, "there is no internal function %d", id);
+        return value_error();
+    }
+    if (f->eval == internal_noise3d) return noise_function(ev, node);
+    TapeExternal *e = arena_new(ev->build.arena, TapeExternal);
+    *e = (TapeExternal){.name = f->name,
+                        .input_count = f->inputs,
+                        .output_count = 1,
+                        .eval = eval_internal,
+                        .data = f,
+                        .hash = hash_begin(0x696E7465)};
+    hash_add_u64(&e->hash, (uint64_t)f->number);
+    return external_function(ev, node, e);
 }
 
 /* ---- splines and transforms as functions ---- */

@@ -17,6 +17,12 @@ double noise_fbm(Vec3 p, int octaves, double lacunarity, double gain);
 /* POV-Ray's own noises, number for number (its noise_generator 2, the default of 3.7, and 1). In [0, 1], period 4096. */
 double noise_pov(Vec3 p);
 double noise_pov_original(Vec3 p);
+/* Its noise_generator 3, period 2048; and the gradient noise that it is made of, about [-0.7, 0.7]. */
+double noise_pov_gradient(Vec3 p);
+double noise_gradient(Vec3 p);
+/* The three by POV-Ray's numbers; others are the first, as there. */
+typedef enum NoiseGenerator { NOISE_ORIGINAL = 1, NOISE_CORRECTED = 2, NOISE_GRADIENT = 3 } NoiseGenerator;
+double noise_generated(int generator, Vec3 p);
 /* Its vector noise, which turbulence is made of: about [-1, 1] each. */
 Vec3 noise_pov_vector(Vec3 p);
 /* Of the unit cell that p is in, POV-Ray's random numbers: one in [0, 1) for `cells`, and the place of a point in the

@@ -17,7 +17,7 @@ typedef enum TapeOp {
     TAPE_OP_COUNT
 } TapeOp;
 
-#define TAPE_CALL_MAX   8         /* inputs and outputs of an external */
+#define TAPE_CALL_MAX   16        /* inputs and outputs of an external */
 #define TAPE_LOOP_LIMIT 16777216. /* passes of one sum() or prod(); a longer loop gives NaN */
 
 typedef uint32_t TapeRef; /* a value of the tape under construction */

@@ -12,10 +12,12 @@
 #if defined(__GNUC__)
 #define VTS_PRINTF(fmt_index, first_arg) __attribute__((format(printf, fmt_index, first_arg)))
 #define VTS_NORETURN                     __attribute__((noreturn))
+#define VTS_NOINLINE                     __attribute__((noinline))
 #define VTS_EXPORT                       __attribute__((visibility("default")))
 #else
 #define VTS_PRINTF(fmt_index, first_arg)
 #define VTS_NORETURN
+#define VTS_NOINLINE
 #define VTS_EXPORT
 #endif
 

@@ -209,10 +209,8 @@ bool macro_enter(Eval *ev, const Macro *m, const NodeList *arguments, Span span,
     for (size_t i = 0; i < arguments->count; i++)
         if (!pass(ev, arguments->items[i], &passed[i])) return false;
     scope_enter(ev, scope);
-    for (size_t i = 0; i < arguments->count; i++) {
-        Slot *slot = scope_bind(ev, m->parameters[i], passed[i].reference);
-        if (!passed[i].reference) slot_set(ev, slot, &passed[i].value);
-    }
+    for (size_t i = 0; i < arguments->count; i++)
+        scope_bind(ev, m->parameters[i], passed[i].reference, &passed[i].value);
     ((Macro *)(uintptr_t)m)->last_call = span;
     *record = (CallRecord){.outer = ev->calls, .macro = m->name, .span = span};
     ev->calls = record;

@@ -46,14 +46,18 @@ static bool calls_hold(Eval *ev, const Assumption *a, size_t count) {
 }
 
 static bool still_holds(Eval *ev, Statement *s) {
+    if (s->name_stamp == ev->name_stamp) return true;
     for (uint32_t i = 0; i < s->assumption_count; i++) {
         const Assumption *a = &s->assumptions[i];
         const Macro *macro;
         if (scope_classify(ev, a->name, &macro) != a->class || macro != a->macro) return false;
     }
-    if (s->stamp == ev->macro_stamp) return true;
-    s->stamp = ev->macro_stamp;
-    return s->node == NULL || calls_hold(ev, s->assumptions, s->assumption_count);
+    if (s->stamp != ev->macro_stamp) {
+        s->stamp = ev->macro_stamp;
+        if (s->node && !calls_hold(ev, s->assumptions, s->assumption_count)) return false;
+    }
+    s->name_stamp = ev->name_stamp;
+    return true;
 }
 
 /* Names are looked at several times while a statement is read. */
@@ -88,7 +92,8 @@ const Statement *statement_at(Eval *ev, Program *program, uint32_t at, uint32_t 
                      .block = block,
                      .assumptions = p.assumptions.items,
                      .assumption_count = drop_repetitions(p.assumptions.items, p.assumptions.count),
-                     .stamp = ev->macro_stamp};
+                     .stamp = ev->macro_stamp,
+                     .name_stamp = ev->name_stamp};
     return s;
 }
 
@@ -227,14 +232,22 @@ static Flow run_switch(Eval *ev, const Node *node, Sink *sink) {
 
 void run_assign(Eval *ev, const Node *node) {
     const Node *target = node->as.declare.target, *source = node->as.declare.value;
-    Value v = source->kind == NODE_BLOCK && target->kind == NODE_NAME
-                  ? eval_block(ev, source, target->as.name)
-                  : eval_node(ev, source);
+    Value v;
+    double number;
+    bool is_float = false;
+    if (source->kind == NODE_BLOCK && target->kind == NODE_NAME)
+        v = eval_block(ev, source, target->as.name);
+    else
+        is_float = eval_operand(ev, source, &number, &v);
     if (target->kind == NODE_NAME) {
         Slot *slot = scope_declare(ev, target->as.name, node->as.declare.local);
-        slot_set(ev, slot, &v);
+        if (is_float)
+            slot_set_float(ev, slot, number);
+        else
+            slot_set(ev, slot, &v);
         return;
     }
+    if (is_float) v = value_float(number);
     bool failed = false;
     Slot *slot = eval_target(ev, target, &failed);
     if (!slot && !failed) {
@@ -253,12 +266,12 @@ static void run_undef(Eval *ev, const Node *node) {
         if (!b || !b->slot->set)
             diag_warning(ev->diags, target->span, "'%s' is not declared", target->as.name->text);
         else if (b->slot != &b->own)
-            slot_clear(b->slot);
+            slot_clear(ev, b->slot);
         scope_undef(ev, target->as.name);
         return;
     }
     Slot *slot = eval_target(ev, target, &failed);
-    if (slot) slot_clear(slot);
+    if (slot) slot_clear(ev, slot);
 }
 
 static void run_message(Eval *ev, const Node *node) {

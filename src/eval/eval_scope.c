@@ -7,9 +7,29 @@ void scope_enter(Eval *ev, Scope *scope) {
     ev->scope = scope;
 }
 
+NameClass slot_class(const Slot *slot) {
+    if (!slot->set) return NAME_UNKNOWN;
+    switch (slot->value.kind) {
+    case VALUE_MACRO: return NAME_MACRO;
+    case VALUE_FUNCTION:
+    case VALUE_SPLINE:
+    case VALUE_ERROR: /* might have been one */ return NAME_CALLABLE;
+    default: return NAME_PLAIN;
+    }
+}
+
+static NameClass binding_class(const VarBinding *b) { return b ? slot_class(b->slot) : NAME_UNKNOWN; }
+
+/* Most bindings come and go without a difference to the parser: a parameter that holds a value like the one outside. */
+static void note_change(Eval *ev, NameClass before, NameClass after) {
+    ev->name_stamp += before != after || after == NAME_MACRO;
+}
+
 static void drop(Eval *ev, VarBinding *b) {
+    note_change(ev, binding_class(b), binding_class(b->outer));
     ev->bindings[b->name_id] = b->outer;
-    slot_clear(&b->own);
+    b->own.set = false;
+    b->own.value = value_error();
     b->scope_next = ev->free_bindings;
     ev->free_bindings = b;
 }
@@ -59,12 +79,20 @@ static Scope *global_scope(Eval *ev) {
 Slot *scope_declare(Eval *ev, Name name, bool local) {
     VarBinding *b = scope_find(ev, name);
     if (b && (!local || b->scope == ev->scope->number)) return b->slot;
+    note_change(ev, binding_class(b), NAME_UNKNOWN);
     return push(ev, name, local ? ev->scope : global_scope(ev))->slot;
 }
 
-Slot *scope_bind(Eval *ev, Name name, Slot *reference) {
+Slot *scope_bind(Eval *ev, Name name, Slot *reference, const Value *value) {
+    NameClass before = binding_class(scope_find(ev, name));
     VarBinding *b = push(ev, name, ev->scope);
-    if (reference) b->slot = reference;
+    uint64_t stamp = ev->name_stamp;
+    if (reference)
+        b->slot = reference;
+    else
+        slot_set(ev, b->slot, value);
+    ev->name_stamp = stamp;
+    note_change(ev, before, binding_class(b));
     return b->slot;
 }
 
@@ -85,12 +113,7 @@ void scope_undef(Eval *ev, Name name) {
 NameClass scope_classify(const Eval *ev, Name name, const Macro **macro) {
     *macro = NULL;
     const VarBinding *b = scope_find(ev, name);
-    if (!b || !b->slot->set) return NAME_UNKNOWN;
-    switch (b->slot->value.kind) {
-    case VALUE_MACRO: *macro = b->slot->value.as.macro; return NAME_MACRO;
-    case VALUE_FUNCTION:
-    case VALUE_SPLINE:
-    case VALUE_ERROR: /* might have been one */ return NAME_CALLABLE;
-    default: return NAME_PLAIN;
-    }
+    NameClass class = binding_class(b);
+    if (class == NAME_MACRO) *macro = b->slot->value.as.macro;
+    return class;
 }

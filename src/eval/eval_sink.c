@@ -104,10 +104,11 @@ static void add_particles(Eval *ev, Sink *sink, const Node *node, BlockItem item
     }
     Scope scope;
     scope_enter(ev, &scope);
-    Slot *index = scope_bind(ev, ev->index_name, NULL);
+    Value v = value_float(0), n = value_float(count);
+    Slot *index = scope_bind(ev, ev->index_name, NULL, &v);
     size_t errors = ev->diags->failures;
     for (double i = 0; i < count && !ev->stopped && errors == ev->diags->failures; i++) {
-        Value v = value_float(i), n = value_float(count);
+        v = value_float(i);
         slot_set(ev, index, &v);
         Argument *arguments = arena_new_array(&ev->blocks, Argument, 2);
         arguments[0] = (Argument){v, item.word_span};

@@ -6,6 +6,8 @@
 #include "eval/eval.h"
 #include "parser/parser.h"
 
+#include <math.h>
+
 typedef struct Eval Eval;
 
 /* ---- names ---- */
@@ -119,7 +121,8 @@ typedef struct Statement {
     Name block;
     const Assumption *assumptions;
     uint32_t assumption_count;
-    uint32_t stamp; /* Eval.macro_stamp when it was checked */
+    uint32_t stamp;      /* Eval.macro_stamp when it was checked */
+    uint64_t name_stamp; /* Eval.name_stamp when all assumptions were last seen to hold */
 } Statement;
 
 typedef struct Program {
@@ -146,6 +149,7 @@ struct Eval {
     VarBinding *free_bindings;
     Scope *scope;
     uint32_t macro_stamp; /* counts definitions of macros */
+    uint64_t name_stamp;  /* counts changes of what a name means to the parser (its NameClass, or which macro it is) */
     CallRecord *calls;
     Macro *macros;
     uint32_t call_depth, include_depth;
@@ -180,9 +184,13 @@ Value value_string(Eval *ev, const char *text, size_t length);
 bool value_is_numeric(const Value *v);
 /* Component i; a float has it everywhere, a shorter vector 0. */
 double value_component(const Value *v, int i);
-bool value_is_true(double number);
+/* POV-Ray's tolerance: nearer than this to 0 is false, nearer than this to each other is equal. */
+#define VALUE_TOLERANCE 1e-10
+static inline bool value_is_true(double number) { return !(fabs(number) < VALUE_TOLERANCE); }
+static inline bool value_are_equal(double a, double b) { return fabs(a - b) < VALUE_TOLERANCE; }
 Value value_unary(Eval *ev, int op, Value a, Span span);
 Value value_binary(Eval *ev, int op, Value a, Value b, Span span);
+double value_float_binary(Eval *ev, int op, double a, double b, Span span);
 /* As a float, reporting anything else; false after an error. */
 bool value_to_float(Eval *ev, const Value *v, Span span, double *out);
 /* Vectors of `size` components; floats are spread, more or fewer components cut or filled with 0. */
@@ -190,7 +198,14 @@ bool value_to_vector(Eval *ev, const Value *v, Span span, double *out, int size)
 bool value_to_string(Eval *ev, const Value *v, Span span, const char **text, size_t *length);
 /* Puts a value into a slot, copying vectors, strings and arrays. */
 void slot_set(Eval *ev, Slot *slot, const Value *value);
-void slot_clear(Slot *slot);
+static inline void slot_set_float(Eval *ev, Slot *slot, double number) {
+    Value v = value_float(number);
+    if (slot->value.kind == VALUE_FLOAT)
+        slot->value.as.number = number;
+    else
+        slot_set(ev, slot, &v);
+}
+void slot_clear(Eval *ev, Slot *slot);
 /* A copy that the evaluation of the statement may keep, whatever happens to the slot. */
 Value slot_get(Eval *ev, const Slot *slot);
 
@@ -202,14 +217,26 @@ void scope_enter(Eval *ev, Scope *scope);
 void scope_leave(Eval *ev, Scope *scope);
 /* The slot that #declare (local: #local) of a name assigns, made if need be. */
 Slot *scope_declare(Eval *ev, Name name, bool local);
-/* A parameter of the innermost scope: bound to the caller's slot, or (NULL) to one of its own. */
-Slot *scope_bind(Eval *ev, Name name, Slot *reference);
+/* A parameter of the innermost scope: bound to the caller's slot, or (NULL) to one of its own with this value. */
+Slot *scope_bind(Eval *ev, Name name, Slot *reference, const Value *value);
 void scope_undef(Eval *ev, Name name);
 NameClass scope_classify(const Eval *ev, Name name, const Macro **macro);
+/* What a name that holds this slot means to the parser. */
+NameClass slot_class(const Slot *slot);
+
+/* ---- eval_compute.c ---- */
+typedef struct Compute Compute;
+/* The code of a binary expression, made when it is met for the second time; NULL: not yet, or it cannot be compiled. */
+const Compute *compute_prepare(Eval *ev, const Node *node);
+/* False where the code is not made for the values that it meets: nothing has happened then. */
+bool compute_run(const Eval *ev, const Compute *compute, double *out);
 
 /* ---- eval_node.c, eval_expression.c ---- */
 Value eval_node(Eval *ev, const Node *node);
 Value eval_compound(Eval *ev, const Node *node);
+/* What an expression gives: true and a float in *number, or false and anything else in *other. Floats so travel in a register and
+ * a word of the caller's, which is much cheaper than a whole Value at each of an expression's nodes. */
+bool eval_operand(Eval *ev, const Node *node, double *number, Value *other);
 bool eval_float(Eval *ev, const Node *node, double *out);
 bool eval_condition(Eval *ev, const Node *node, bool *out);
 bool eval_string(Eval *ev, const Node *node, const char **text, size_t *length);

@@ -57,11 +57,6 @@ double value_component(const Value *v, int i) {
     return i < v->size ? v->as.components[i] : 0;
 }
 
-/* POV-Ray's tolerance: nearer than this to 0 is false, nearer than this to each other is equal. */
-static const double TOLERANCE = 1e-10;
-
-bool value_is_true(double number) { return !(fabs(number) < TOLERANCE); }
-
 Value eval_fail(Eval *ev, Span span, const char *format, ...) {
     va_list args;
     va_start(args, format);
@@ -98,7 +93,7 @@ Value value_unary(Eval *ev, int op, Value a, Span span) {
     return op == '(' || a.kind == VALUE_ERROR ? a : vector_unary(ev, op, a, span);
 }
 
-static double binary(Eval *ev, int op, double a, double b, Span span) {
+double value_float_binary(Eval *ev, int op, double a, double b, Span span) {
     switch (op) {
     case '+': return a + b;
     case '-': return a - b;
@@ -107,12 +102,12 @@ static double binary(Eval *ev, int op, double a, double b, Span span) {
         if (b != 0) return a / b;
         diag_warning(ev->diags, span, "division by zero");
         return HUGE_VAL;
-    case '=': return fabs(a - b) < TOLERANCE;
-    case TOKEN_NOT_EQUAL: return !(fabs(a - b) < TOLERANCE);
+    case '=': return value_are_equal(a, b);
+    case TOKEN_NOT_EQUAL: return !value_are_equal(a, b);
     case '<': return a < b;
     case '>': return a > b;
-    case TOKEN_LESS_EQUAL: return a <= b || fabs(a - b) < TOLERANCE;
-    case TOKEN_GREATER_EQUAL: return a >= b || fabs(a - b) < TOLERANCE;
+    case TOKEN_LESS_EQUAL: return a <= b || value_are_equal(a, b);
+    case TOKEN_GREATER_EQUAL: return a >= b || value_are_equal(a, b);
     case '&': return value_is_true(a) && value_is_true(b);
     case '|': return value_is_true(a) || value_is_true(b);
     default: return 0;
@@ -126,7 +121,7 @@ static Value compare_strings(Eval *ev, int op, const Value *a, const Value *b, S
         if (op == '+') diag_hint(ev->diags, d, "concat(A, B) joins strings");
         return value_error();
     }
-    return value_float(binary(ev, op, order, 0, span));
+    return value_float(value_float_binary(ev, op, order, 0, span));
 }
 
 static Value vector_binary(Eval *ev, int op, Value a, Value b, Span span) {
@@ -137,7 +132,7 @@ static Value vector_binary(Eval *ev, int op, Value a, Value b, Span span) {
     int size = a.kind == VALUE_FLOAT ? b.size : b.kind == VALUE_FLOAT ? a.size : int_max(a.size, b.size);
     double out[UINT8_MAX];
     for (int i = 0; i < size; i++)
-        out[i] = binary(ev, op, value_component(&a, i), value_component(&b, i), span);
+        out[i] = value_float_binary(ev, op, value_component(&a, i), value_component(&b, i), span);
     Value v = value_vector(ev, out, size);
     if (a.kind == VALUE_COLOR || b.kind == VALUE_COLOR) v.kind = VALUE_COLOR;
     return v;
@@ -145,7 +140,7 @@ static Value vector_binary(Eval *ev, int op, Value a, Value b, Span span) {
 
 Value value_binary(Eval *ev, int op, Value a, Value b, Span span) {
     if (a.kind == VALUE_FLOAT && b.kind == VALUE_FLOAT)
-        return value_float(binary(ev, op, a.as.number, b.as.number, span));
+        return value_float(value_float_binary(ev, op, a.as.number, b.as.number, span));
     return vector_binary(ev, op, a, b, span);
 }
 
@@ -187,11 +182,7 @@ static void *slot_buffer(Eval *ev, Slot *slot, size_t size) {
 }
 
 void slot_set(Eval *ev, Slot *slot, const Value *value) {
-    if (value->kind == VALUE_FLOAT) {
-        slot->value = *value;
-        slot->set = true;
-        return;
-    }
+    NameClass before = slot_class(slot);
     Value v = *value;
     if (v.kind == VALUE_VECTOR || v.kind == VALUE_COLOR) {
         size_t bytes = v.size * sizeof(double);
@@ -210,9 +201,11 @@ void slot_set(Eval *ev, Slot *slot, const Value *value) {
     }
     slot->value = v;
     slot->set = true;
+    if (before == NAME_MACRO || slot_class(slot) != before) ev->name_stamp++;
 }
 
-void slot_clear(Slot *slot) {
+void slot_clear(Eval *ev, Slot *slot) {
+    ev->name_stamp += slot_class(slot) != NAME_UNKNOWN;
     slot->set = false;
     slot->value = value_error();
 }

@@ -93,7 +93,11 @@ struct Node {
         Name name;
         NodeList list; /* VECTOR, BUILTIN, READ and WRITE (first the handle), UNDEF, FOPEN (handle, path) */
         struct {
-            Node *a, *b, *c;
+            Node *a, *b;
+            union {
+                Node *c;
+                const struct Compute *compute; /* of BINARY: the evaluator's short way, see eval_compute.c */
+            };
         } operand; /* UNARY a; BINARY a, b; CONDITION a, b, c; DOT a; INCLUDE, VERSION, MESSAGE a */
         struct {
             Node *base;

@@ -1,0 +1,252 @@
+/* Arithmetic that loops are made of, compiled. An expression of numbers, names and functions of floats has no effect but its value,
+ * so it may be tried in a short way first: as postfix code over doubles. Whatever the code is not made for (a name that holds no
+ * float, a division by zero, an argument outside of a function's domain) makes it give up, and the tree is evaluated from the start
+ * with all its rules and messages. */
+#include "eval/eval_state.h"
+
+#include <math.h>
+
+typedef enum ComputeOp {
+    COMPUTE_PUSH,
+    COMPUTE_NEGATE, /* from here to COMPUTE_SQR: of the top alone */
+    COMPUTE_NOT,
+    COMPUTE_ABS,
+    COMPUTE_CEIL,
+    COMPUTE_COS,
+    COMPUTE_FLOOR,
+    COMPUTE_INT,
+    COMPUTE_RADIANS,
+    COMPUTE_SIN,
+    COMPUTE_SQRT,
+    COMPUTE_SQR,
+    COMPUTE_ADD, /* from here on: of the top and the step's operand */
+    COMPUTE_SUBTRACT,
+    COMPUTE_MULTIPLY,
+    COMPUTE_DIVIDE,
+    COMPUTE_LESS,
+    COMPUTE_GREATER,
+    COMPUTE_EQUAL,
+    COMPUTE_NOT_EQUAL,
+    COMPUTE_LESS_EQUAL,
+    COMPUTE_GREATER_EQUAL,
+    COMPUTE_AND,
+    COMPUTE_OR,
+    COMPUTE_MOD,
+    COMPUTE_DIV,
+    COMPUTE_MIN,
+    COMPUTE_MAX,
+} ComputeOp;
+
+typedef enum OperandFrom { FROM_NUMBER, FROM_NAME, FROM_STACK } OperandFrom;
+
+typedef struct ComputeStep {
+    uint8_t op;
+    uint8_t from;
+    uint32_t name_id; /* FROM_NAME */
+    double number;    /* FROM_NUMBER */
+} ComputeStep;
+
+enum { LONGEST_COMPUTE = 64, DEEPEST_COMPUTE = 16 };
+
+struct Compute {
+    uint32_t count;
+    ComputeStep steps[];
+};
+
+/* What stands in a node that was met once, and in one that is not arithmetic. */
+static const Compute MET_ONCE = {0}, NOT_COMPUTED = {0};
+
+typedef struct Draft {
+    ComputeStep steps[LONGEST_COMPUTE];
+    uint32_t count, depth;
+    Eval *ev;
+} Draft;
+
+static bool emit(Draft *d, ComputeStep step) {
+    if (d->count == LONGEST_COMPUTE) return false;
+    d->steps[d->count++] = step;
+    return true;
+}
+
+static int binary_op(int op) {
+    switch (op) {
+    case '+': return COMPUTE_ADD;
+    case '-': return COMPUTE_SUBTRACT;
+    case '*': return COMPUTE_MULTIPLY;
+    case '/': return COMPUTE_DIVIDE;
+    case '<': return COMPUTE_LESS;
+    case '>': return COMPUTE_GREATER;
+    case '=': return COMPUTE_EQUAL;
+    case TOKEN_NOT_EQUAL: return COMPUTE_NOT_EQUAL;
+    case TOKEN_LESS_EQUAL: return COMPUTE_LESS_EQUAL;
+    case TOKEN_GREATER_EQUAL: return COMPUTE_GREATER_EQUAL;
+    case '&': return COMPUTE_AND;
+    case '|': return COMPUTE_OR;
+    default: return -1;
+    }
+}
+
+static int two_argument_op(int keyword) {
+    switch (keyword) {
+    case KW_mod: return COMPUTE_MOD;
+    case KW_div: return COMPUTE_DIV;
+    case KW_min: return COMPUTE_MIN;
+    case KW_max: return COMPUTE_MAX;
+    default: return -1;
+    }
+}
+
+static int one_argument_op(int keyword) {
+    switch (keyword) {
+    case KW_abs: return COMPUTE_ABS;
+    case KW_ceil: return COMPUTE_CEIL;
+    case KW_cos: return COMPUTE_COS;
+    case KW_floor: return COMPUTE_FLOOR;
+    case KW_int: return COMPUTE_INT;
+    case KW_radians: return COMPUTE_RADIANS;
+    case KW_sin: return COMPUTE_SIN;
+    case KW_sqrt: return COMPUTE_SQRT;
+    case KW_sqr: return COMPUTE_SQR;
+    default: return -1;
+    }
+}
+
+/* A number or a name as the operand of a step, without a push of its own. */
+static bool direct_operand(Draft *d, const Node *node, ComputeStep *step) {
+    if (node->kind == NODE_NUMBER) {
+        step->from = FROM_NUMBER;
+        step->number = node->as.number;
+        return true;
+    }
+    if (node->kind == NODE_NAME) {
+        step->from = FROM_NAME;
+        step->name_id = node->as.name->id;
+        return node->as.name->id < d->ev->binding_count;
+    }
+    return false;
+}
+
+static bool compile(Draft *d, const Node *node);
+
+static bool compile_binary(Draft *d, int op, const Node *a, const Node *b) {
+    ComputeStep step = {.op = (uint8_t)op, .from = FROM_STACK};
+    if (op < 0 || !compile(d, a)) return false;
+    if (!direct_operand(d, b, &step)) {
+        if (!compile(d, b)) return false;
+        d->depth--;
+    }
+    return emit(d, step);
+}
+
+static bool compile_unary(Draft *d, int op, const Node *a) {
+    return op >= 0 && compile(d, a) && emit(d, (ComputeStep){.op = (uint8_t)op});
+}
+
+static bool compile_constant(Draft *d, const Node *node) {
+    if (node->op == KW_now || node->op == KW_version) return false;
+    if (node->op == KW_x || node->op == KW_y || node->op == KW_z || node->op == KW_t || node->op == KW_u ||
+        node->op == KW_v)
+        return false;
+    Value v = eval_constant(d->ev, node);
+    return v.kind == VALUE_FLOAT && ++d->depth <= DEEPEST_COMPUTE &&
+           emit(d, (ComputeStep){.op = COMPUTE_PUSH, .from = FROM_NUMBER, .number = v.as.number});
+}
+
+static bool compile(Draft *d, const Node *node) {
+    ComputeStep push = {.op = COMPUTE_PUSH};
+    if (direct_operand(d, node, &push)) return ++d->depth <= DEEPEST_COMPUTE && emit(d, push);
+    switch (node->kind) {
+    case NODE_UNARY:
+        if (node->op == '(' || node->op == '+') return compile(d, node->as.operand.a);
+        return compile_unary(d, node->op == '-' ? COMPUTE_NEGATE : node->op == '!' ? COMPUTE_NOT : -1,
+                             node->as.operand.a);
+    case NODE_BINARY: return compile_binary(d, binary_op(node->op), node->as.operand.a, node->as.operand.b);
+    case NODE_CONSTANT: return compile_constant(d, node);
+    case NODE_BUILTIN:
+        if (node->as.list.count == 1) return compile_unary(d, one_argument_op(node->op), node->as.list.items[0]);
+        return node->as.list.count == 2 && compile_binary(d, two_argument_op(node->op), node->as.list.items[0],
+                                                          node->as.list.items[1]);
+    default: return false;
+    }
+}
+
+/* Text that runs only once is not worth compiling. */
+const Compute *compute_prepare(Eval *ev, const Node *node) {
+    Node *n = (Node *)(uintptr_t)node; /* the code is kept in the tree */
+    const Compute *known = node->as.operand.compute;
+    if (known) {
+        if (known != &MET_ONCE) return known == &NOT_COMPUTED ? NULL : known;
+        Draft d = {.ev = ev};
+        n->as.operand.compute = &NOT_COMPUTED;
+        if (!compile(&d, node)) return NULL;
+        Compute *c = arena_push(ev->parse, sizeof *c + d.count * sizeof(ComputeStep));
+        c->count = d.count;
+        for (uint32_t i = 0; i < d.count; i++) c->steps[i] = d.steps[i];
+        return n->as.operand.compute = c;
+    }
+    n->as.operand.compute = &MET_ONCE;
+    return NULL;
+}
+
+bool compute_run(const Eval *ev, const Compute *compute, double *out) {
+    double stack[DEEPEST_COMPUTE + 1], *below = stack, a = 0; /* a: the top */
+    VarBinding *const *bindings = ev->bindings;
+    for (const ComputeStep *s = compute->steps, *end = s + compute->count; s < end; s++) {
+        double b = s->number;
+        if (s->from == FROM_NAME) {
+            const VarBinding *binding = bindings[s->name_id];
+            if (!binding || binding->slot->value.kind != VALUE_FLOAT) return false;
+            b = binding->slot->value.as.number;
+        } else if (s->from == FROM_STACK) {
+            b = a;
+            a = *--below;
+        }
+        switch ((ComputeOp)s->op) {
+        case COMPUTE_PUSH:
+            *below++ = a;
+            a = b;
+            break;
+        case COMPUTE_NEGATE: a = -a; break;
+        case COMPUTE_NOT: a = !value_is_true(a); break;
+        case COMPUTE_ABS: a = fabs(a); break;
+        case COMPUTE_CEIL: a = ceil(a); break;
+        case COMPUTE_COS: a = cos(a); break;
+        case COMPUTE_FLOOR: a = floor(a); break;
+        case COMPUTE_INT: a = trunc(a); break;
+        case COMPUTE_RADIANS: a *= VTS_RADIANS; break;
+        case COMPUTE_SIN: a = sin(a); break;
+        case COMPUTE_SQRT:
+            if (!(a >= 0)) return false;
+            a = sqrt(a);
+            break;
+        case COMPUTE_SQR: a *= a; break;
+        case COMPUTE_ADD: a += b; break;
+        case COMPUTE_SUBTRACT: a -= b; break;
+        case COMPUTE_MULTIPLY: a *= b; break;
+        case COMPUTE_DIVIDE:
+            if (b == 0) return false;
+            a /= b;
+            break;
+        case COMPUTE_LESS: a = a < b; break;
+        case COMPUTE_GREATER: a = a > b; break;
+        case COMPUTE_EQUAL: a = value_are_equal(a, b); break;
+        case COMPUTE_NOT_EQUAL: a = !value_are_equal(a, b); break;
+        case COMPUTE_LESS_EQUAL: a = a <= b || value_are_equal(a, b); break;
+        case COMPUTE_GREATER_EQUAL: a = a >= b || value_are_equal(a, b); break;
+        case COMPUTE_AND: a = value_is_true(a) && value_is_true(b); break;
+        case COMPUTE_OR: a = value_is_true(a) || value_is_true(b); break;
+        case COMPUTE_MOD:
+            if (b == 0) return false;
+            a = fmod(a, b);
+            break;
+        case COMPUTE_DIV:
+            if (b == 0) return false;
+            a = trunc(a / b);
+            break;
+        case COMPUTE_MIN: a = b < a ? b : a; break;
+        case COMPUTE_MAX: a = b > a ? b : a; break;
+        }
+    }
+    *out = a;
+    return true;
+}

@@ -5,7 +5,7 @@
 
 #include "eval/eval.h"
 
-/* For EvalOptions.geometry; the table is constant. */
-const EvalGeometry *hooks_geometry(void);
+/* For EvalOptions.geometry. What is prepared for objects lives in `arena`, which must outlive the evaluation. */
+EvalGeometry hooks_geometry(Arena *arena);
 
 #endif

@@ -271,7 +271,8 @@ static VtsStatus evaluate(VtsSession *session, const char *path, EvalMode mode) 
     const VtsOptions *o = &session->options;
     struct EvalDeclare *declares = arena_new_array(&session->parse, struct EvalDeclare, o->declare_count);
     for (size_t i = 0; i < o->declare_count; i++) declares[i] = (struct EvalDeclare){o->declares[i].name, o->declares[i].value};
-    EvalOptions options = {.include_dirs = o->include_dirs, .include_dir_count = o->include_dir_count,
+    EvalGeometry geometry = hooks_geometry(&session->scene_arena);
+    EvalOptions options = {.geometry = &geometry, .include_dirs = o->include_dirs, .include_dir_count = o->include_dir_count,
                            .stdlib_dir = session->stdlib.size ? session->stdlib.data : NULL,
                            .declares = declares, .declare_count = o->declare_count, .clock = o->clock, .clock_on = o->clock_set,
                            .clock_delta = o->clock_delta, .initial_clock = o->first_clock, .final_clock = o->last_clock,
@@ -279,7 +280,6 @@ static VtsStatus evaluate(VtsSession *session, const char *path, EvalMode mode) 
                            .image_width = o->width, .image_height = o->height, .limits = eval_limits_default(),
                            .allow_read = o->allow_read, .allow_read_count = o->allow_read_count, .allow_write = o->allow_write,
                            .allow_write_count = o->allow_write_count, .keep_writes_in_memory = mode.writes_in_memory, .is_program = mode.is_program,
-                           .geometry = hooks_geometry(),
                            .on_text = pass_text, .context = session, .interrupted = &session->interrupted,
                            .print_tokens = mode.print_tokens, .print_ast = mode.print_ast};
     VtsStatus status = apply_limits(session, &options.limits);

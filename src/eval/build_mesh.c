@@ -77,6 +77,7 @@ typedef struct MeshDraft {
         size_t count, capacity;
     } parts;
     bool textured, smooth, mapped;
+    Vec3 inside_vector;
 } MeshDraft;
 
 static bool on_mesh_value(Reader *reader, const Argument *value, void *target) {
@@ -135,7 +136,8 @@ static const MeshData *join_triangles(const BuildContext *context, const MeshDra
                        .normal_count = normals ? 3 * count : 0,
                        .uv_count = uvs ? 3 * count : 0,
                        .triangles = (const uint32_t(*)[3])triangles,
-                       .triangle_count = count};
+                       .triangle_count = count,
+                       .inside_vector = draft->inside_vector};
     if (draft->textured) {
         uint32_t *indices = arena_new_array(context->arena, uint32_t, count);
         mesh->textures = gather_textures(context->arena, draft, mesh, indices);
@@ -144,6 +146,8 @@ static const MeshData *join_triangles(const BuildContext *context, const MeshDra
     mesh_rehash(mesh);
     return mesh;
 }
+
+static const WordRule mesh_rules[] = {{"inside_vector", WORD_VECTOR, offsetof(MeshDraft, inside_vector), NULL, false}};
 
 bool build_mesh(BuildContext *context, const EvalBlock *block, Value *out) {
     if (block->count == 0) {
@@ -158,6 +162,7 @@ bool build_mesh(BuildContext *context, const EvalBlock *block, Value *out) {
                 first->value.as.object->kind == OBJECT_TRIANGLES &&
                 strcmp(first->value.as.object->word, "mesh") == 0;
     if (copy) return build_object(context, block, out);
+    reader_add_table(&reader, mesh_rules, VTS_ARRAY_COUNT(mesh_rules), &draft);
     reader.on_value = on_mesh_value;
     reader.value_target = &draft;
     if (!object_finish(&reader, &draft.object, out)) return false;

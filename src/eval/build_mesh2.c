@@ -120,6 +120,7 @@ static const WordRule rules[] = {
     {"uv_indices", WORD_CUSTOM, 0, keep_uv_faces, true},
     {"height_vectors", WORD_CUSTOM, 0, read_heights, true},
     {"w_vectors", WORD_CUSTOM, 0, read_ws, true},
+    {"inside_vector", WORD_VECTOR, offsetof(Mesh2Draft, mesh.inside_vector), NULL, false},
 };
 
 /* ---- indices ---- */

@@ -12,12 +12,55 @@ Object object_begin(const EvalBlock *block, ObjectKind kind) {
     { word, WORD_IGNORED, 0, NULL, false }
 #define INERT(word)                                                                                          \
     { word, WORD_INERT, FIELD(inert), NULL, false }
+/* Later transforms move what bounds and clips too: it is kept in the object's own space. */
+static const Object *in_object_space(const BuildContext *context, const Object *part, const Object *object) {
+    if (transform_is_identity(&object->transform)) return part;
+    Object *moved = arena_copy(context->arena, part, sizeof *part);
+    Transform back = transform_inverse(&object->transform);
+    moved->transform = transform_then(&part->transform, &back);
+    object_rehash(moved);
+    return moved;
+}
+
+static void read_objects(Reader *reader, const Word *word, const Object *object, ObjectList *list) {
+    const EvalBlock *body = word->body;
+    if (!body || (body->count == 1 && body->items[0].kind == ITEM_WORD)) return;
+    const Object **items = arena_new_array(reader->context->arena, const Object *, list->count + body->count);
+    for (size_t i = 0; i < list->count; i++) items[i] = list->items[i];
+    for (size_t i = 0; i < body->count; i++) {
+        const Argument value = {body->items[i].value, body->items[i].span};
+        const Object *part = body->items[i].kind == ITEM_VALUE ? object_from_value(reader->context, &value) : NULL;
+        if (part) items[list->count++] = in_object_space(reader->context, part, object);
+    }
+    list->items = items;
+}
+
+/* `bounded_by { clipped_by }` and the other way round: the one is the other. */
+static bool says(const Word *word, const char *text) {
+    const EvalBlock *body = word->body;
+    return body && body->count == 1 && body->items[0].kind == ITEM_WORD && strcmp(body->items[0].word->text, text) == 0;
+}
+
+static void read_bounded_by(Reader *reader, const Word *word, void *target) {
+    Object *object = target;
+    if (says(word, "clipped_by")) object->bounded_by = object->clipped_by;
+    read_objects(reader, word, object, &object->bounded_by);
+}
+
+static void read_clipped_by(Reader *reader, const Word *word, void *target) {
+    Object *object = target;
+    inert_add(reader->context, &object->inert, "clipped_by", word->span);
+    if (says(word, "bounded_by")) object->clipped_by = object->bounded_by;
+    read_objects(reader, word, object, &object->clipped_by);
+}
+
 static const WordRule rules[] = {
     {"no_shadow", WORD_FLAG, FIELD(no_shadow), NULL, false},
     {"no_image", WORD_FLAG, FIELD(no_image), NULL, false},
     {"inverse", WORD_FLAG, FIELD(inverse), NULL, false},
     {"hollow", WORD_FLAG, FIELD(hollow), NULL, false},
-    IGNORED("bounded_by"),
+    {"bounded_by", WORD_CUSTOM, 0, read_bounded_by, false},
+    {"clipped_by", WORD_CUSTOM, 0, read_clipped_by, false},
     IGNORED("no_reflection"),
     IGNORED("double_illuminate"),
     IGNORED("hierarchy"),
@@ -29,7 +72,6 @@ static const WordRule rules[] = {
     IGNORED("cutaway_textures"),
     IGNORED("no_bump_scale"),
     IGNORED("inside_vector"),
-    INERT("clipped_by"),
     INERT("uv_mapping"),
     INERT("interior_texture"),
 };

@@ -115,6 +115,7 @@ typedef struct MeshData {
     const struct Texture *const *textures;  /* texture_list */
     size_t texture_count;
     const uint32_t *triangle_textures;      /* index into textures for each triangle; NULL: the object's texture */
+    Vec3 inside_vector;                     /* counts triangles along it to tell the inside; zero: none */
     const Vec3 *height_vectors;             /* per vertex; NULL: unit normals */
     const Vec3 *w_vectors;                  /* per vertex <w0, w1, 0>; NULL: the mapping's */
 } MeshData;
@@ -135,6 +136,11 @@ typedef struct Surface Surface;
 typedef struct TexelDef TexelDef;
 typedef struct Light Light;
 
+typedef struct ObjectList {
+    const Object *const *items;
+    size_t count;
+} ObjectList;
+
 struct Object {
     Span span;
     Hash128 hash;             /* shape, transform and textures of it and its children */
@@ -144,6 +150,7 @@ struct Object {
     Transform transform;      /* object space → parent's space */
     const Texture *texture;   /* NULL: the parent's, at last the default */
     bool no_shadow, no_image, inverse, hollow;
+    ObjectList clipped_by, bounded_by; /* in object space */
     const InertNote *inert;
     union {
         struct { Vec3 center; double radius; } sphere;

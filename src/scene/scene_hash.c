@@ -109,6 +109,7 @@ void mesh_rehash(MeshData *m) {
     add_indices(&h, m->triangles, m->triangle_count);
     add_indices(&h, m->normal_triangles, m->triangle_count);
     add_indices(&h, m->uv_triangles, m->triangle_count);
+    hash_add_vec3(&h, m->inside_vector);
     add_vectors(&h, m->height_vectors, m->vertex_count);
     add_vectors(&h, m->w_vectors, m->vertex_count);
     m->hash = h;
@@ -125,10 +126,17 @@ static void add_particles(Hash128 *h, const Particle *items, size_t count) {
     }
 }
 
+static void add_objects(Hash128 *h, const ObjectList *list) {
+    hash_add_u64(h, list->count);
+    for (size_t i = 0; i < list->count; i++) hash_add_hash(h, object_geometry_hash(list->items[i]));
+}
+
 static Hash128 shape_hash(const Object *o) {
     Hash128 h = hash_begin(KIND_SHAPE);
     hash_add_u64(&h, o->kind);
     hash_add_u64(&h, o->inverse);
+    add_objects(&h, &o->clipped_by);
+    add_objects(&h, &o->bounded_by);
     switch (o->kind) {
     case OBJECT_SPHERE:
         hash_add_vec3(&h, o->as.sphere.center);

@@ -92,13 +92,14 @@ static void run_program(Run *run, const char *path, const char *text, bool show,
     source_set_init(&sources, &session);
     diag_init(&diags, &session, &sources);
     interner_init(&names, &session);
-    EvalOptions o = {.include_dirs = include_dirs,
+    EvalGeometry geometry = hooks_geometry(&session);
+    EvalOptions o = {.geometry = &geometry,
+                     .include_dirs = include_dirs,
                      .include_dir_count = 2,
                      .image_width = 4,
                      .image_height = 4,
                      .limits = eval_limits_default(),
                      .keep_writes_in_memory = true,
-                     .geometry = hooks_geometry(),
                      .on_text = on_text,
                      .context = run,
                      .expand_always = expand};

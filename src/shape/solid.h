@@ -1,0 +1,47 @@
+/* What every kind of solid or sheet can do for rays and points, in its own space. One table of functions for each kind;
+ * sets, copies, clips and transforms are trace.c's. */
+#ifndef VTS_SHAPE_SOLID_H
+#define VTS_SHAPE_SOLID_H
+
+#include "base/arena.h"
+#include "scene/scene.h"
+
+/* Where on the surface: what the kind needs to tell the normal of a crossing. */
+typedef struct SolidTag {
+    uint32_t part;
+    double u, v;
+} SolidTag;
+
+/* Takes crossings, in any order; only those with t_min < t < t_max are wanted. t_max may shrink with each one taken. */
+typedef struct SolidSink SolidSink;
+struct SolidSink {
+    double t_min, t_max;
+    void (*take)(SolidSink *sink, double t, const SolidTag *tag);
+};
+
+static inline void solid_offer(SolidSink *sink, double t, SolidTag tag) {
+    if (t > sink->t_min && t < sink->t_max) sink->take(sink, t, &tag);
+}
+
+typedef struct SolidOps {
+    /* What the functions below get as `data`, made once, in `arena`; NULL member: the object itself. NULL: nothing to meet. */
+    const void *(*prepare)(const Object *object, Arena *arena);
+    /* Offers all crossings of the ray with the surface (at least those within the sink's bounds). t in lengths of the
+     * ray's direction, which may have any length but 0. */
+    void (*cross)(const void *data, const Ray *ray, SolidSink *sink);
+    /* The unit normal at a crossing, as POV-Ray directs it: for solids to the outside. Zero where there is none. */
+    Vec3 (*normal)(const void *data, Vec3 point, const SolidTag *tag);
+    /* NULL: nothing is inside. The boundary may count either way. */
+    bool (*inside)(const void *data, Vec3 point);
+    /* Holds all of the surface; infinite where there is no end. */
+    Box3 (*bounds)(const void *data);
+    bool keeps_normal; /* `inverse` does not turn its normals (POV-Ray's quadrics) */
+} SolidOps;
+
+/* Never NULL; sets and what has no surface have a table without functions. */
+const SolidOps *solid_ops(const Object *object);
+
+extern const SolidOps solid_plain_ops; /* solid_plain.c: sphere box cylinder cone plane disc torus */
+extern const SolidOps solid_mesh_ops;  /* solid_mesh.c: triangles of all kinds */
+
+#endif

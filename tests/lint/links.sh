@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# links.sh ROOT: links of README.md, CHANGELOG.md, doc and doc/reference to files and headings lead somewhere; every example has its
+# links.sh ROOT: links of README.md, CHANGELOG.md, editors, doc and doc/reference to files and headings lead somewhere; every example has its
 # picture in the gallery. Prints what does not; status 1 then.
 set -u -o pipefail
 cd "$1" || exit 2
@@ -20,7 +20,7 @@ check_link() {
 }
 
 failed=0
-for page in README.md CHANGELOG.md doc/*.md doc/reference/*.md; do
+for page in README.md CHANGELOG.md editors/README.md doc/*.md doc/reference/*.md; do
   while read -r link; do
     check_link "$page" "$link" || failed=1
   done < <(grep -o '\](\([^) ]*\))' "$page" | sed 's/^](//; s/)$//')

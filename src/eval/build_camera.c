@@ -3,10 +3,14 @@
  * orthographic (scales right and up to what a perspective camera sees at look_at), transforms. */
 #include "eval/build_parts.h"
 
+#include <string.h>
+
 typedef struct CameraDraft {
     Camera camera;
     Vec3 sky, look_at;
     double angle; /* 0: not given */
+    Span angle_span;
+    bool wide; /* a kind of camera whose angle may be 180 degrees or more */
     bool has_right, has_up, has_look_at;
     Span look_at_span;
     Transform transform;
@@ -37,13 +41,30 @@ static void read_look_at(Reader *reader, const Word *word, void *target) {
 
 static void read_angle(Reader *reader, const Word *word, void *target) {
     CameraDraft *draft = target;
-    double angle;
-    if (!word_arguments(reader, word, 1, 2) || !word_float(reader, word, 0, &angle)) return;
-    if (angle > 0 && angle < 180)
-        draft->angle = angle;
-    else
-        reader_error(reader, word->arguments[0].span,
-                     "the camera's angle must lie between 0 and 180 degrees, found %g", angle);
+    if (!word_arguments(reader, word, 1, 2) || !word_float(reader, word, 0, &draft->angle)) return;
+    draft->angle_span = word->arguments[0].span;
+    if (draft->angle < 0)
+        reader_error(reader, draft->angle_span, "the camera's angle cannot be negative, found %g", draft->angle);
+}
+
+static void read_kind(Reader *reader, const Word *word, void *target) {
+    CameraDraft *draft = target;
+    double type = 1;
+    draft->wide = true;
+    grammar_word(reader, word);
+    if (strcmp(word->text, "cylinder") == 0 && word->count && word_float(reader, word, 0, &type) &&
+        !(type >= 1 && type < 5))
+        reader_error(reader, word->arguments[0].span, "the types of cylindrical cameras are 1 to 4, found %g", type);
+    inert_add(reader->context, &draft->camera.inert, word->text, word->span);
+}
+
+static void read_blur_samples(Reader *reader, const Word *word, void *target) {
+    (void)target;
+    double samples = 1;
+    grammar_word(reader, word);
+    if (word->count && word_float(reader, word, word->count - 1, &samples) && samples < 1)
+        reader_error(reader, word->arguments[word->count - 1].span, "'blur_samples' must be at least 1, found %g",
+                     samples);
 }
 
 #define FIELD(name) offsetof(CameraDraft, name)
@@ -51,6 +72,8 @@ static void read_angle(Reader *reader, const Word *word, void *target) {
     { word, WORD_INERT, FIELD(camera.inert), NULL, false }
 #define IGNORED(word)                                                                                        \
     { word, WORD_IGNORED, 0, NULL, false }
+#define KIND(word)                                                                                           \
+    { word, WORD_CUSTOM, 0, read_kind, false }
 static const WordRule rules[] = {
     IGNORED("perspective"),
     {"orthographic", WORD_CUSTOM, 0, read_orthographic, false},
@@ -61,18 +84,18 @@ static const WordRule rules[] = {
     {"sky", WORD_VECTOR, FIELD(sky), NULL, false},
     {"look_at", WORD_CUSTOM, 0, read_look_at, false},
     {"angle", WORD_CUSTOM, 0, read_angle, false},
-    INERT("fisheye"),
-    INERT("ultra_wide_angle"),
-    INERT("omnimax"),
-    INERT("panoramic"),
-    INERT("spherical"),
-    INERT("cylinder"),
-    INERT("mesh_camera"),
+    KIND("fisheye"),
+    KIND("ultra_wide_angle"),
+    KIND("omnimax"),
+    KIND("panoramic"),
+    KIND("spherical"),
+    KIND("cylinder"),
+    KIND("mesh_camera"),
     INERT("aperture"),
     INERT("bokeh"),
     INERT("user_defined"),
     IGNORED("focal_point"),
-    IGNORED("blur_samples"),
+    {"blur_samples", WORD_CUSTOM, 0, read_blur_samples, false},
     IGNORED("confidence"),
     IGNORED("variance"),
     IGNORED("smooth"),
@@ -138,9 +161,20 @@ static bool check_frame(Reader *reader, const Camera *c) {
     return true;
 }
 
-static bool on_transform(Reader *reader, const Argument *value, void *target) {
-    (void)reader;
-    return take_transform(value, target);
+static bool on_value(Reader *reader, const Argument *value, void *target) {
+    CameraDraft *draft = target;
+    if (value->value.kind != VALUE_NORMAL) return take_transform(value, &draft->transform);
+    inert_add(reader->context, &draft->camera.inert, "normal", value->span);
+    return true;
+}
+
+/* POV-Ray's limit: a flat picture cannot see behind itself. Other kinds, drawn as a flat one, have that one's angle at most. */
+static bool check_angle(Reader *reader, CameraDraft *draft) {
+    if (draft->wide && draft->angle >= 180) draft->angle = 90;
+    if (draft->angle < 180) return true;
+    reader_error(reader, draft->angle_span, "the angle of this camera must be less than 180 degrees, found %g",
+                 draft->angle);
+    return false;
 }
 
 static bool store(BuildContext *context, const EvalBlock *block, Camera camera, Value *out) {
@@ -164,9 +198,9 @@ bool build_camera(BuildContext *context, const EvalBlock *block, Value *out) {
     else
         reader_add_table(&reader, rules, VTS_ARRAY_COUNT(rules), &draft);
     reader_add_table(&reader, transform_rules, transform_rule_count, &draft.transform);
-    reader.on_value = on_transform;
-    reader.value_target = &draft.transform;
-    if (!reader_run(&reader)) return false;
+    reader.on_value = on_value;
+    reader.value_target = &draft;
+    if (!reader_run(&reader) || !check_angle(&reader, &draft)) return false;
     if (draft.angle > 0) apply_angle(&draft);
     if (draft.has_look_at && !apply_look_at(&reader, &draft)) return false;
     if (!copy) apply_orthographic(&draft);

@@ -250,8 +250,7 @@ static bool add_block(SceneDraft *draft, BuildContext *context, const EvalBlock 
     const char *word = block->word->text;
     if (strcmp(word, "background") == 0) return background_read(context, block, &draft->background);
     if (strcmp(word, "global_settings") == 0) return settings_read(context, block, &draft->settings);
-    if (strcmp(word, "animation") == 0 || strcmp(word, "rainbow") == 0 || strcmp(word, "radiosity") == 0 ||
-        strcmp(word, "photons") == 0) {
+    if (strcmp(word, "animation") == 0 || strcmp(word, "rainbow") == 0 || strcmp(word, "media") == 0) {
         InertNote note = {word, block->word_span, NULL};
         warn_inert(draft, context, &note);
         return true;
@@ -287,6 +286,7 @@ bool scene_draft_add(SceneDraft *draft, BuildContext *context, const Value *valu
     case VALUE_SKIN: add_skin(draft, context, value->as.skin); return true;
     case VALUE_SKY_SPHERE: add_sky(draft, context, value->as.sky_sphere); return true;
     case VALUE_FOG:
+        if (value->as.fog->distance <= 0) return true;
         warn_inert(draft, context, value->as.fog->inert);
         draft->fog = value->as.fog;
         return true;
@@ -307,7 +307,8 @@ static bool on_default_value(Reader *reader, const Argument *value, void *target
         *texture = value->value.as.texture;
         return true;
     }
-    return take_looks(reader->context, value, texture, &ignored, &here);
+    return value->value.kind != VALUE_INTERIOR && value->value.kind != VALUE_MATERIAL &&
+           take_looks(reader->context, value, texture, &ignored, &here);
 }
 
 bool scene_draft_default(SceneDraft *draft, BuildContext *context, const EvalBlock *block) {

@@ -2,7 +2,7 @@
 
 typedef struct LightDraft {
     Light light;
-    bool parallel, colored;
+    bool parallel;
     Transform transform;
 } LightDraft;
 
@@ -48,12 +48,8 @@ static const WordRule rules[] = {
 };
 
 static bool on_value(Reader *reader, const Argument *value, void *target) {
-    LightDraft *draft = target;
-    if (take_transform(value, &draft->transform)) return true;
-    if (draft->colored) return false;
-    draft->colored = true;
-    argument_color(reader, value, "the light's colour", &draft->light.color);
-    return true;
+    (void)reader;
+    return take_transform(value, &((LightDraft *)target)->transform);
 }
 
 const Light *light_placed(const BuildContext *context, const Light *light, const Transform *t) {
@@ -87,6 +83,11 @@ bool build_light(BuildContext *context, const EvalBlock *block, Value *out) {
     else if (!reader_vector(&reader, "the location", &draft.light.location, NULL))
         return false;
     draft.light.span = block->span;
+    const BlockItem *item = reader_peek(&reader);
+    if (item && item->kind == ITEM_VALUE && item->value.kind <= VALUE_COLOR) {
+        reader.next++;
+        argument_color(&reader, &(Argument){item->value, item->span}, "the light's colour", &draft.light.color);
+    }
     reader_add_table(&reader, rules, VTS_ARRAY_COUNT(rules), &draft);
     reader_add_table(&reader, transform_rules, transform_rule_count, &draft.transform);
     reader.on_value = on_value;

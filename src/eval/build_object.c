@@ -194,10 +194,13 @@ static ObjectKind csg_kind(const char *word) {
 bool build_csg(BuildContext *context, const EvalBlock *block, Value *out) {
     CsgDraft draft = {.object = object_begin(block, csg_kind(block->word->text))};
     Reader reader = reader_begin(context, block);
+    static const WordRule group_rules[] = {IGNORED("global_lights")};
+    bool group = strcmp(block->word->text, "light_group") == 0;
+    if (group) reader_add_table(&reader, group_rules, VTS_ARRAY_COUNT(group_rules), &draft);
     reader.on_value = on_csg_value;
     reader.value_target = &draft;
     if (!object_finish(&reader, &draft.object, out)) return false;
-    if (draft.children.count + draft.lights.count < 2 && strcmp(block->word->text, "light_group") != 0)
+    if (draft.children.count + draft.lights.count < 2 && !group)
         diag_warning(context->diags, block->word_span, "'%s' should hold at least 2 objects, found %zu",
                      block->word->text, draft.children.count + draft.lights.count);
     Object *made = arena_copy(context->arena, out->as.object, sizeof *made);

@@ -13,6 +13,15 @@ bool take_transform(const Argument *value, Transform *onto);
 bool transform_is_identity(const Transform *t);
 BlockBuilder build_transform;
 
+/* ---- build_grammar.c: what is read and not modelled (grammar.def) ---- */
+/* Holds the reader's items against the grammar called `block`; false after a report. A name without a grammar takes all. */
+bool grammar_read(Reader *reader, const char *block);
+/* Holds one word of the reader's block against that block's grammar, or against the one of all objects' modifiers. False when
+ * neither knows the word; mistakes are reported. */
+bool grammar_word(Reader *reader, const Word *word);
+/* A block that stays VALUE_BLOCK once its grammar holds. */
+BlockBuilder build_checked;
+
 /* ---- build_pigment.c, build_map.c ---- */
 BlockBuilder build_pigment, build_pattern, build_color_map;
 /* Reads a pigment's items from the reader's position on, beginning with the default pigment. */

@@ -1,4 +1,4 @@
-#include "eval/build_reader.h"
+#include "eval/build_parts.h"
 
 #include <string.h>
 
@@ -308,9 +308,11 @@ static void apply_rule(Reader *reader, const Word *word, const WordRule *rule, v
     case WORD_INT: word_int(reader, word, 0, field); break;
     case WORD_VECTOR: word_vector(reader, word, 0, field); break;
     case WORD_COLOR: word_color(reader, word, 0, field); break;
-    case WORD_IGNORED: skip_arguments(reader, word); break;
+    case WORD_IGNORED:
+        if (!grammar_word(reader, word)) skip_arguments(reader, word);
+        break;
     case WORD_INERT:
-        skip_arguments(reader, word);
+        if (!grammar_word(reader, word)) skip_arguments(reader, word);
         inert_add(reader->context, field, rule->text, word->span);
         break;
     case WORD_CUSTOM: rule->handler(reader, word, target); break;

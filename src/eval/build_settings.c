@@ -75,6 +75,16 @@ static void read_gamma(Reader *reader, const Word *word, void *target) {
         draft->settings.assumed_gamma = 2.2;
     else if (word_arguments(reader, word, 1, 1))
         word_float(reader, word, 0, &draft->settings.assumed_gamma);
+    if (!reader->failed && !(draft->settings.assumed_gamma > 0))
+        reader_error(reader, word->whole, "'assumed_gamma' must be greater than 0");
+}
+
+static void read_charset(Reader *reader, const Word *word, void *target) {
+    (void)target;
+    Word name;
+    if (!reader_take_word(reader, "utf8", &name) && !reader_take_word(reader, "ascii", &name) &&
+        !reader_take_word(reader, "sys", &name))
+        reader_error(reader, word->span, "'charset' needs ascii, utf8 or sys");
 }
 
 #define FIELD(name) offsetof(SettingsDraft, settings.name)
@@ -103,7 +113,7 @@ static const WordRule rules[] = {
     IGNORED("adc_bailout"),
     IGNORED("hf_gray_16"),
     IGNORED("irid_wavelength"),
-    IGNORED("charset"),
+    {"charset", WORD_CUSTOM, 0, read_charset, false},
     IGNORED("max_intersections"),
     IGNORED("noise_generator"),
     IGNORED("number_of_waves"),

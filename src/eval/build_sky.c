@@ -39,6 +39,10 @@ bool build_sky_sphere(BuildContext *context, const EvalBlock *block, Value *out)
     reader.on_value = on_sky_value;
     reader.value_target = &draft;
     if (!reader_run(&reader)) return false;
+    if (draft.layers.count == 0) {
+        reader_error(&reader, block->word_span, "'sky_sphere' without a pigment");
+        return false;
+    }
     for (size_t i = 0; i < draft.layers.count; i++)
         draft.layers.items[i] = pigment_placed(context, draft.layers.items[i], &draft.transform);
     SkySphere *sky = arena_new(context->arena, SkySphere);
@@ -48,16 +52,23 @@ bool build_sky_sphere(BuildContext *context, const EvalBlock *block, Value *out)
 }
 
 static bool on_color(Reader *reader, const Argument *value, void *target) {
-    if (value->value.kind != VALUE_COLOR && value->value.kind != VALUE_VECTOR) return false;
+    if (value->value.kind != VALUE_COLOR && value->value.kind != VALUE_VECTOR && value->value.kind != VALUE_FLOAT)
+        return false;
     argument_color(reader, value, arena_printf(reader->context->arena, "'%s'", reader->block->word->text),
                    target);
     return true;
 }
 
+/* background { [background { … }] [colour] } */
 bool background_read(BuildContext *context, const EvalBlock *block, Color *out) {
     Reader reader = reader_begin(context, block);
-    reader.on_value = on_color;
-    reader.value_target = out;
+    Word declared;
+    if (reader_take_word(&reader, "background", &declared) && !background_read(context, declared.body, out))
+        return false;
+    const BlockItem *item = reader_peek(&reader);
+    if (item && item->kind == ITEM_VALUE &&
+        on_color(&reader, &(Argument){item->value, item->span}, out))
+        reader.next++;
     return reader_run(&reader);
 }
 
@@ -73,7 +84,7 @@ static bool on_fog_value(Reader *reader, const Argument *value, void *target) {
 
 bool build_fog(BuildContext *context, const EvalBlock *block, Value *out) {
     static const WordRule fog_rules[] = {
-        {"distance", WORD_POSITIVE, offsetof(Fog, distance), NULL, false},
+        {"distance", WORD_FLOAT, offsetof(Fog, distance), NULL, false},
         {"fog_type", WORD_IGNORED, 0, NULL, false},
         {"fog_offset", WORD_INERT, offsetof(Fog, inert), NULL, false},
         {"fog_alt", WORD_INERT, offsetof(Fog, inert), NULL, false},
@@ -93,10 +104,8 @@ bool build_fog(BuildContext *context, const EvalBlock *block, Value *out) {
     reader.value_target = fog;
     if (!reader_run(&reader)) return false;
     fog->span = block->span;
-    if (fog->distance == 0) {
-        reader_error(&reader, block->word_span, "'fog' needs a distance");
-        return false;
-    }
+    if (fog->distance <= 0)
+        diag_warning(context->diags, block->word_span, "this fog has no distance greater than 0: it has no effect");
     *out = (Value){.kind = VALUE_FOG, .as.fog = fog};
     return true;
 }

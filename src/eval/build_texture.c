@@ -164,6 +164,8 @@ bool build_inert_value(BuildContext *context, const EvalBlock *block, Value *out
         ValueKind kind;
     } kinds[] = {{"normal", VALUE_NORMAL}, {"interior", VALUE_INTERIOR}, {"wind_field", VALUE_WIND_FIELD}};
     const InertNote *note = NULL;
+    Reader reader = reader_begin(context, block);
+    if (!grammar_read(&reader, block->word->text)) return false;
     if (block->count) inert_add(context, &note, block->word->text, block->word_span);
     for (size_t i = 0; i < VTS_ARRAY_COUNT(kinds); i++)
         if (strcmp(kinds[i].word, block->word->text) == 0)

@@ -63,6 +63,7 @@ Value eval_block(Eval *ev, const Node *node, Name declared_as) {
         v = value_error(); /* what is missing inside was said already */
     } else if (builder) {
         if (!builder(&ev->build, block, &v)) v = value_error();
+        if (v.kind == VALUE_BLOCK) v.as.block = keep_block(ev->build.arena, block);
     } else {
         v = (Value){.kind = VALUE_BLOCK, .as.block = keep_block(ev->build.arena, block)};
     }

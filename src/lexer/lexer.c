@@ -172,10 +172,24 @@ static void lex_word(Lexer *lx) {
     t->keyword = (uint16_t)keyword_of(lx->keywords, name);
 }
 
+/* POV-Ray passes over a '#' before a brace, or before a keyword that is no directive. */
+static bool is_idle(Lexer *lx) {
+    uint32_t begin = lx->at;
+    if (lx->text[begin] == '}') return true;
+    if (!is_word_start(lx->text[begin])) return false;
+    Keyword keyword = keyword_of(lx->keywords, take_word(lx));
+    lx->at = begin;
+    return keyword && !keyword_is_directive(keyword);
+}
+
 /* directive = "#" word: blanks and line ends may stand between. */
 static void lex_directive(Lexer *lx) {
     uint32_t begin = lx->at++;
     skip_blanks(lx);
+    if (is_idle(lx)) {
+        lx->at = begin + 1;
+        return;
+    }
     if (!is_word_start(lx->text[lx->at])) {
         diag_error(lx->diags, (Span){lx->file->id, begin, begin + 1}, "a directive's word must follow '#'");
         return;

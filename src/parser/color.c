@@ -1,10 +1,21 @@
 /* Colour expressions. */
 #include "parser/parser.h"
 
+/* `assumed_gamma srgb`, `gamma srgb`: the name of a curve, no operand follows. */
+static bool is_gamma_name(Parser *p, const Token *after) {
+    if (parser_peek(p)->keyword != KW_srgb) return false;
+    if (after->kind == '}' || after->kind == TOKEN_END) return true;
+    if (after->kind != TOKEN_WORD) return false;
+    if (!after->keyword) return context_is_item(p->block, after->as.name);
+    KeywordClass class = keyword_class((Keyword)after->keyword);
+    return class != KEYWORD_CONSTANT && class != KEYWORD_FUNCTION;
+}
+
 bool parser_begins_color(Parser *p) {
     const Token *t = parser_peek(p);
-    return t->kind == TOKEN_WORD && t->keyword && keyword_class((Keyword)t->keyword) == KEYWORD_COLOR &&
-           parser_peek_after(p)->kind != '{';
+    if (t->kind != TOKEN_WORD || !t->keyword || keyword_class((Keyword)t->keyword) != KEYWORD_COLOR) return false;
+    const Token *after = parser_peek_after(p);
+    return after->kind != '{' && !is_gamma_name(p, after);
 }
 
 static bool is_color_component(int keyword) {

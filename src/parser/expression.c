@@ -477,8 +477,8 @@ bool parser_begins_expression(Parser *p, bool after_comma) {
     if (t->keyword) {
         if (is_parameter(p, t->as.name)) return true;
         switch (keyword_class((Keyword)t->keyword)) {
-        case KEYWORD_CONSTANT:
-        case KEYWORD_COLOR: return !brace;
+        case KEYWORD_CONSTANT: return !brace;
+        case KEYWORD_COLOR: return parser_begins_color(p);
         case KEYWORD_FUNCTION: return after == '(';
         default: return t->keyword == KW_function || t->keyword == KW_array;
         }

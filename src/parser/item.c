@@ -137,8 +137,10 @@ static Node *keyword_item(Parser *p) {
     int after = parser_peek_after(p)->kind;
     bool brace = after == '{';
     switch (keyword_class((Keyword)t->keyword)) {
-    case KEYWORD_CONSTANT:
-    case KEYWORD_COLOR: return brace ? parser_block(p) : parser_expression(p);
+    case KEYWORD_CONSTANT: return brace ? parser_block(p) : parser_expression(p);
+    case KEYWORD_COLOR:
+        if (!brace && parser_begins_color(p)) return parser_expression(p);
+        break;
     case KEYWORD_FUNCTION: /* `seed 5` of a jitter is a word, seed(5) a function */
         if (after == '(') return parser_expression(p);
         break;

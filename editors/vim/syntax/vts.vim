@@ -22,37 +22,37 @@ syn keyword vtsWord append arc_angle area_illumination area_light array ascii as
 syn keyword vtsWord background bezier_spline bicubic_patch black_hole blob blue blur_samples bokeh bounded_by box boxed
 syn keyword vtsWord bozo brick brick_size brightness brilliance bump_map bump_size bumps camera caustics cells charset
 syn keyword vtsWord checker circular clipped_by collect color_map colour_map component composite cone confidence
-syn keyword vtsWord conic_sweep conserve_energy contained_by coords crackle crand cubic cubic_spline cubic_wave
-syn keyword vtsWord cutaway_textures cylinder cylindrical density_file density_map dents deprecated df3 difference
-syn keyword vtsWord diffuse direction disc dispersion dispersion_samples dist_exp distance double_illuminate
-syn keyword vtsWord eccentricity emission error_bound evaluate exponent exterior extinction face_indices facets
-syn keyword vtsWord fade_color fade_colour fade_distance fade_power falloff falloff_angle filter finish fisheye
-syn keyword vtsWord flatness flip focal_point fog fog_alt fog_offset fog_type form frequency fresnel function gather
-syn keyword vtsWord gif global_lights gradient granite gray gray_threshold green height_field hexagon hf_gray_16
-syn keyword vtsWord hierarchy hollow hypercomplex iff image_map image_pattern importance inside_vector interior
-syn keyword vtsWord interior_texture interpolate intersection intervals inverse ior irid irid_wavelength jpeg julia
-syn keyword vtsWord julia_fractal lambda lathe leopard light_group linear_spline linear_sweep load_file location
-syn keyword vtsWord look_at looks_like low_error_factor lowerleft magnet major_radius mandel map_type marble material
-syn keyword vtsWord material_map matrix max_gradient max_intersections max_iteration max_sample max_trace
-syn keyword vtsWord max_trace_level maximum_reuse media media_attenuation media_interaction merge mesh mesh2
-syn keyword vtsWord mesh_camera metallic method metric minimum_reuse mm_per_unit mortar natural_spline nearest_count
-syn keyword vtsWord no_bump_scale no_image no_radiosity no_reflection no_shadow noise_generator normal normal_indices
-syn keyword vtsWord normal_map normal_vectors number_of_sides number_of_tiles number_of_waves object octaves offset
-syn keyword vtsWord omega omnimax once onion open orient orientation orthographic ovus panoramic parallel parametric
-syn keyword vtsWord pass_through pattern perspective pgm phong phong_size photons pigment pigment_map pigment_pattern
-syn keyword vtsWord planar plane png point_at poly poly_wave polygon polynomial pot ppm precision precompute
-syn keyword vtsWord premultiplied pretrace_end pretrace_start prism projected_through pwr quadratic_spline quadric
-syn keyword vtsWord quartic quaternion quick_color quick_colour quilted radial radiosity radius rainbow ramp_wave ratio
-syn keyword vtsWord reciprocal recursion_limit red reflection reflection_exponent refraction repeat right ripples
-syn keyword vtsWord rotate roughness samples save_file scale scallop_wave scattering shadowless sine_wave sint16be
-syn keyword vtsWord sint16le sint32be sint32le sint8 sky sky_sphere slice slope slope_map smooth smooth_triangle solid
-syn keyword vtsWord sor spacing specular sphere sphere_sweep spherical spiral1 spiral2 spline split_union spotlight
-syn keyword vtsWord spotted square strength sturm subsurface superellipsoid sys target text texture texture_list
-syn keyword vtsWord texture_map tga thickness threshold tiff tightness tile2 tiles tiling tolerance toroidal torus
-syn keyword vtsWord transform translate translucency transmit triangle triangle_wave triangular ttf turb_depth type
-syn keyword vtsWord u_steps uint16be uint16le uint8 ultra_wide_angle union up use_alpha use_color use_colour use_index
-syn keyword vtsWord utf8 uv_indices uv_mapping uv_vectors v_steps variance vertex_vectors warp water_level waves width
-syn keyword vtsWord wood wrinkles
+syn keyword vtsWord conic_sweep conserve_energy contained_by control0 control1 coords crackle crand cubic cubic_spline
+syn keyword vtsWord cubic_wave cutaway_textures cylinder cylindrical density_file density_map dents deprecated df3
+syn keyword vtsWord difference diffuse direction disc dispersion dispersion_samples dist_exp distance double_illuminate
+syn keyword vtsWord eccentricity emission error_bound evaluate expand_thresholds exponent exterior extinction
+syn keyword vtsWord face_indices facets fade_color fade_colour fade_distance fade_power falloff falloff_angle filter
+syn keyword vtsWord finish fisheye flatness flip focal_point fog fog_alt fog_offset fog_type form frequency fresnel
+syn keyword vtsWord function gamma gather gif global_lights gradient granite gray gray_threshold green height_field
+syn keyword vtsWord hexagon hf_gray_16 hierarchy hollow hypercomplex iff image_map image_pattern importance
+syn keyword vtsWord inside_vector interior interior_texture interpolate intersection intervals inverse ior irid
+syn keyword vtsWord irid_wavelength jpeg julia julia_fractal lambda lathe leopard light_group linear_spline
+syn keyword vtsWord linear_sweep load_file location look_at looks_like low_error_factor magnet major_radius mandel
+syn keyword vtsWord map_type marble material material_map matrix max_gradient max_intersections max_iteration
+syn keyword vtsWord max_sample max_trace max_trace_level maximum_reuse media media_attenuation media_interaction merge
+syn keyword vtsWord mesh mesh2 mesh_camera metallic method metric minimum_reuse mm_per_unit mortar natural_spline
+syn keyword vtsWord nearest_count no_bump_scale no_image no_radiosity no_reflection no_shadow noise_generator normal
+syn keyword vtsWord normal_indices normal_map normal_vectors number_of_sides number_of_tiles number_of_waves object
+syn keyword vtsWord octaves offset omega omnimax once onion open orient orientation orthographic ovus panoramic
+syn keyword vtsWord parallel parametric pass_through pattern pavement perspective pgm phong phong_size photons pigment
+syn keyword vtsWord pigment_map pigment_pattern planar plane png point_at poly poly_wave polygon polynomial pot ppm
+syn keyword vtsWord precision precompute premultiplied pretrace_end pretrace_start prism projected_through pwr
+syn keyword vtsWord quadratic_spline quadric quartic quaternion quick_color quick_colour quilted radial radiosity
+syn keyword vtsWord radius rainbow ramp_wave ratio reciprocal recursion_limit red reflection reflection_exponent
+syn keyword vtsWord refraction repeat right ripples rotate roughness samples save_file scale scallop_wave scattering
+syn keyword vtsWord shadowless sine_wave sint16be sint16le sint32be sint32le sint8 size sky sky_sphere slice slope
+syn keyword vtsWord slope_map smooth smooth_triangle solid sor spacing specular sphere sphere_sweep spherical spiral1
+syn keyword vtsWord spiral2 spline split_union spotlight spotted square strength sturm subsurface superellipsoid sys
+syn keyword vtsWord target text texture texture_list texture_map tga thickness threshold tiff tightness tile2 tiles
+syn keyword vtsWord tiling tolerance toroidal torus transform translate translucency transmit triangle triangle_wave
+syn keyword vtsWord triangular ttf turb_depth type u_steps uint16be uint16le uint8 ultra_wide_angle union up use_alpha
+syn keyword vtsWord use_color use_colour use_index utf8 uv_indices uv_mapping uv_vectors v_steps variance
+syn keyword vtsWord vertex_vectors warp water_level waves width wood wrinkles
 syn match vtsWord "\<\%(count\|density\|global_settings\|isosurface\|jitter\|light_source\|phase\|turbulence\)\>" display
 
 syn match vtsNumber "\%(\h\w*\)\@<!\%(\d\+\.\=\d*\|\.\d\+\)\%([eE][-+]\=\d\+\)\=" display

@@ -69,7 +69,7 @@ static bool is_block(void *context, const void *macro) {
 
 static TokenList *load(Eval *ev, const SourceFile *file) {
     if (file->id < ev->program_count && ev->programs[file->id]) return ev->programs[file->id]->tokens;
-    TokenList *tokens = lexer_run(file, &ev->keywords, ev->parse, ev->diags);
+    TokenList *tokens = lexer_run(file, &ev->keywords, ev->parse);
     eval_program(ev, tokens);
     return tokens;
 }
@@ -102,20 +102,21 @@ TokenList *eval_load_include(Eval *ev, const Node *node, Span *path_span) {
     return NULL;
 }
 
-void run_include(Eval *ev, const Node *node, Sink *sink) {
+Flow run_include(Eval *ev, const Node *node, Sink *sink) {
     Span span;
     TokenList *tokens = eval_load_include(ev, node, &span);
-    if (!tokens) return;
+    if (!tokens) return FLOW_NEXT;
     Scope scope;
     CallRecord record = {.outer = ev->calls, .span = span};
     ev->calls = &record;
     scope_enter(ev, &scope);
     ev->include_depth++;
     Body body = {.tokens = tokens, .begin = 0, .end = tokens->count - 1};
-    run_body(ev, &body, sink);
+    Flow flow = run_body(ev, &body, sink);
     ev->include_depth--;
     scope_leave(ev, &scope);
     ev->calls = record.outer;
+    return flow;
 }
 
 /* ---- the whole ---- */
@@ -236,8 +237,7 @@ static EvalStatus evaluate(Eval *ev, const SourceFile *file, const Scene **scene
     Body body = {.tokens = tokens, .begin = 0, .end = tokens->count - 1};
     if (ev->diags->error_count == 0 || !diag_full(ev->diags)) {
         Flow flow = run_body(ev, &body, &sink);
-        if (flow == FLOW_BREAK)
-            diag_error(ev->diags, tokens->items[0].span, "#break outside of a loop or #switch");
+        if (flow == FLOW_BREAK) diag_error(ev->diags, ev->last_break, "#break outside of a loop or #switch");
     }
     if (ev->interrupted) return EVAL_INTERRUPTED;
     if (ev->diags->error_count) return EVAL_FAILED;

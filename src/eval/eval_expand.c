@@ -21,7 +21,9 @@ struct Frame {
     FrameKind kind;
     TokenList *list;
     uint32_t at, end;
-    const Node *node; /* WHILE, FOR, SWITCH */
+    const Node *node; /* BRANCH, WHILE, FOR, SWITCH */
+    Body last;        /* the branch, pass or case that is being read */
+    bool to_end;      /* the group must end with it */
     size_t next_case; /* SWITCH */
     double to, step;  /* FOR */
     uint64_t passes;
@@ -37,6 +39,7 @@ typedef struct Source {
     Frame *top;
     Parser *parser;
     bool at_start;       /* the statement's own directive is not for the source to run */
+    bool in_head;        /* conditions may not hold directives, except in the macros that they call */
     Frame *window_frame; /* where the last token came from */
     uint32_t window_at;
     size_t groups_ended;
@@ -71,6 +74,8 @@ static void pop(Source *s) {
 static void fail(Source *s) { s->parser->failed = true; }
 
 static void to_body(Frame *f, const Body *body) {
+    f->last = *body;
+    f->to_end = true;
     f->list = body->tokens;
     f->at = body->begin;
     f->end = body->end;
@@ -83,6 +88,10 @@ static bool next_pass(Source *s, Frame *f) {
 }
 
 static const Node *head_at(Source *s, Frame *f, uint32_t at, uint32_t *next);
+
+static void check_end(Source *s, const Frame *f, bool reached) {
+    if (f->node && run_group_end(s->ev, f->node, &f->last, reached) == FLOW_STOP) fail(s);
+}
 
 /* At the end of a loop's body: on to the next pass, or false. */
 static bool repeat_while(Source *s, Frame *f) {
@@ -113,20 +122,28 @@ static bool next_case(Source *s, Frame *f) {
     return true;
 }
 
+static bool is_loop(const Frame *f) { return f->kind == FRAME_WHILE || f->kind == FRAME_FOR; }
+
 static void end_frame(Source *s) {
     Frame *f = s->top;
+    if (is_loop(f) || f->kind == FRAME_BRANCH) check_end(s, f, f->to_end);
+    if (s->parser->failed) return;
     bool again = f->kind == FRAME_WHILE    ? repeat_while(s, f)
                  : f->kind == FRAME_FOR    ? repeat_for(s, f, false)
                  : f->kind == FRAME_SWITCH ? next_case(s, f)
                                            : false;
-    if (!again) pop(s);
+    if (again) return;
+    if (f->kind == FRAME_SWITCH) check_end(s, f, true);
+    pop(s);
 }
 
 static void break_out(Source *s) {
     while (s->top != &s->base) {
-        FrameKind kind = s->top->kind;
+        Frame *f = s->top;
         pop(s);
-        if (kind == FRAME_WHILE || kind == FRAME_FOR || kind == FRAME_SWITCH) return;
+        if (!is_loop(f) && f->kind != FRAME_SWITCH) continue;
+        check_end(s, f, false);
+        return;
     }
     s->flow = FLOW_BREAK;
     s->base.at = s->base.end;
@@ -134,15 +151,24 @@ static void break_out(Source *s) {
 
 /* ---- what is met while pulling ---- */
 
+static void begin_branch(Source *s, const Node *n, const Body *body, bool to_end) {
+    Frame *f = push(s, FRAME_BRANCH, body->tokens, body->begin, body->end);
+    to_body(f, body);
+    f->node = n;
+    f->to_end = to_end;
+}
+
 static void begin_if(Source *s, const Node *n) {
-    for (size_t i = 0; i < n->as.branches.count; i++) {
+    size_t count = n->as.branches.count;
+    for (size_t i = 0; i < count; i++) {
         const Branch *b = &n->as.branches.branches[i];
         bool taken = true;
         if (b->condition && !eval_condition(s->ev, b->condition, &taken)) return;
         if (!taken) continue;
-        push(s, FRAME_BRANCH, b->body.tokens, b->body.begin, b->body.end);
+        begin_branch(s, n, &b->body, !run_branch_goes_on(b));
         return;
     }
+    if (run_group_end(s->ev, n, &n->as.branches.branches[count - 1].body, true) == FLOW_STOP) fail(s);
 }
 
 static void begin_for(Source *s, const Node *n) {
@@ -160,7 +186,10 @@ static void begin_for(Source *s, const Node *n) {
     f->node = n;
     f->to = to;
     f->step = step;
-    if (!repeat_for(s, f, true)) pop(s);
+    if (repeat_for(s, f, true)) return;
+    f->last = n->as.for_loop.body;
+    check_end(s, f, false);
+    pop(s);
 }
 
 static void begin_while(Source *s, const Node *n, uint32_t head) {
@@ -169,23 +198,27 @@ static void begin_while(Source *s, const Node *n, uint32_t head) {
     f->head = head;
     bool go_on;
     if (!eval_condition(s->ev, n->as.loop.condition, &go_on) || !go_on || !next_pass(s, f)) {
+        f->last = n->as.loop.body;
+        check_end(s, f, false);
         pop(s);
         return;
     }
     to_body(f, &n->as.loop.body);
 }
 
+/* The text before the first case is read as a branch within the switch. */
 static void begin_switch(Source *s, const Node *n) {
     double subject;
     if (!eval_float(s->ev, n->as.switch_.subject, &subject)) return;
-    for (size_t i = 0; i < n->as.switch_.count; i++) {
-        if (!run_case_matches(s->ev, &n->as.switch_.cases[i], subject)) continue;
-        Frame *f = push(s, FRAME_SWITCH, n->as.switch_.cases[i].body.tokens, 0, 0);
-        f->node = n;
-        f->next_case = i;
-        next_case(s, f);
-        return;
-    }
+    const Body *prelude = &n->as.switch_.prelude;
+    Frame *f = push(s, FRAME_SWITCH, prelude->tokens, 0, 0);
+    f->node = n;
+    f->last = *prelude;
+    size_t i = 0, count = n->as.switch_.count;
+    while (i < count && !run_case_matches(s->ev, &n->as.switch_.cases[i], subject)) i++;
+    f->next_case = i;
+    if (i == count && count) f->last = n->as.switch_.cases[count - 1].body;
+    if (prelude->begin < prelude->end) begin_branch(s, NULL, prelude, false);
 }
 
 static void begin_include(Source *s, const Node *n) {
@@ -215,6 +248,7 @@ static const Node *slow_head(Source *outer, Frame *f, uint32_t at, uint32_t *nex
     ParserHost host;
     source_init(&inner, outer->ev, &p, &host, f, at);
     p.block = outer->parser->block;
+    inner.in_head = f->list->items[at].match != 0;
     parser_take(&p);
     Node *n = parser_directive(&p, f->list, at, next);
     while (inner.top != &inner.base) pop(&inner);
@@ -260,7 +294,10 @@ static void begin_directive(Source *s) {
     case NODE_WHILE: begin_while(s, n, at); break;
     case NODE_FOR: begin_for(s, n); break;
     case NODE_SWITCH: begin_switch(s, n); break;
-    case NODE_BREAK: break_out(s); break;
+    case NODE_BREAK:
+        s->ev->last_break = s->ev->break_end = n->span;
+        break_out(s);
+        break;
     case NODE_INCLUDE: begin_include(s, n); break;
     default: {
         Sink none = {.kind = SINK_NONE};
@@ -329,7 +366,7 @@ static Token pull(void *context, Parser *p) {
         s->at_start = false;
         s->window_frame = f;
         s->window_at = f->at;
-        if (t->kind == TOKEN_DIRECTIVE && !start) {
+        if (t->kind == TOKEN_DIRECTIVE && !start && !(s->in_head && f == &s->base)) {
             begin_directive(s);
             continue;
         }
@@ -430,9 +467,13 @@ static void source_init(Source *s, Eval *ev, Parser *p, const ParserHost *host, 
 
 /* ---- statements ---- */
 
-/* After a mistake: past the next ';' or bracket that closes more than was opened, or up to a directive. */
-static uint32_t recover(const TokenList *list, uint32_t at, uint32_t end) {
+/* After a mistake: past the group, or the next ';' or bracket that closes more than was opened, or up to a directive. */
+static uint32_t recover(const TokenList *list, uint32_t begin, uint32_t at, uint32_t end) {
     int depth = 0;
+    if (list->items[begin].kind == TOKEN_DIRECTIVE && list->items[begin].match) {
+        at = group_end(list, begin) + 1;
+        return at < end ? at : end;
+    }
     for (; at < end; at++) {
         const Token *t = &list->items[at];
         if (t->kind == '{' || t->kind == '(' || t->kind == '[') {
@@ -460,7 +501,9 @@ static void leave_finished(Source *s) {
 /* After a #declare that cannot be read, uses of its name stay silent. */
 static void declare_error(Eval *ev, const TokenList *list, uint32_t at) {
     const Token *head = &list->items[at], *name = &list->items[at + 1];
-    if (head->kind != TOKEN_DIRECTIVE || (head->keyword != KW_declare && head->keyword != KW_local)) return;
+    if (head->kind != TOKEN_DIRECTIVE ||
+        (head->keyword != KW_declare && head->keyword != KW_local && head->keyword != KW_macro))
+        return;
     if (name->kind != TOKEN_WORD || name->keyword || scope_find(ev, name->as.name)) return;
     Value v = value_error();
     slot_set(ev, scope_declare(ev, name->as.name, head->keyword == KW_local), &v);
@@ -503,7 +546,7 @@ done:
     while (s.top != &s.base) pop(&s);
     if (p.failed) declare_error(ev, program->tokens, begin);
     if (p.failed)
-        *at = recover(program->tokens, s.base.at > begin ? s.base.at : begin + 1, end);
+        *at = recover(program->tokens, begin, s.base.at > begin ? s.base.at : begin + 1, end);
     else
         *at =
             p.has_window && s.window_frame == &s.base && p.window.kind != TOKEN_END ? s.window_at : s.base.at;

@@ -45,7 +45,7 @@ static bool open_for_reading(Eval *ev, UserFile *f, const char *name, Span span)
             return false;
         }
     }
-    f->tokens = lexer_run(source, &ev->keywords, ev->parse, ev->diags);
+    f->tokens = lexer_run(source, &ev->keywords, ev->parse);
     return true;
 }
 

@@ -66,6 +66,7 @@ static Shape branches_shape(Eval *ev, const Node *n) {
 }
 
 static Shape cases_shape(Eval *ev, const Node *n) {
+    if (n->as.switch_.prelude.begin < n->as.switch_.prelude.end) return (Shape){2, BIND_NONE, false};
     Shape shape = {0, BIND_PRIMARY, false};
     for (size_t i = 0; i < n->as.switch_.count; i++) {
         Shape one = body_shape(ev, &n->as.switch_.cases[i].body);

@@ -136,14 +136,41 @@ Flow run_body(Eval *ev, const Body *body, Sink *sink) {
 
 /* ---- directives ---- */
 
+Flow run_group_end(Eval *ev, const Node *group, const Body *last, bool reached) {
+    const TokenList *list = last->tokens;
+    if (!list) return FLOW_NEXT;
+    const Token *t = &list->items[last->end], *end = &list->items[group_end(list, last->end)];
+    if (end->kind != TOKEN_END && (t->keyword == KW_end || !reached)) return FLOW_NEXT;
+    if (t->kind == TOKEN_DIRECTIVE && reached)
+        group_report_stray(ev->diags, t);
+    else
+        group_report_endless(ev->diags, list, group->span);
+    ev->stopped = true;
+    return FLOW_STOP;
+}
+
+bool run_branch_goes_on(const Branch *b) {
+    int next = b->body.tokens ? b->body.tokens->items[b->body.end].keyword : KW_end;
+    return b->condition && next != KW_case && next != KW_range;
+}
+
+/* POV-Ray comes upon a #break without a loop where it leaves the branch that holds it. */
+static void blame_end(Eval *ev, const Body *body) {
+    if (body->tokens) ev->break_end = body->tokens->items[group_end(body->tokens, body->end)].span;
+}
+
 static Flow run_if(Eval *ev, const Node *node, Sink *sink) {
-    for (size_t i = 0; i < node->as.branches.count; i++) {
+    size_t count = node->as.branches.count;
+    for (size_t i = 0; i < count; i++) {
         const Branch *b = &node->as.branches.branches[i];
         bool taken = true;
         if (b->condition && !eval_condition(ev, b->condition, &taken)) return FLOW_NEXT;
-        if (taken) return run_body(ev, &b->body, sink);
+        if (!taken) continue;
+        Flow flow = run_body(ev, &b->body, sink);
+        if (flow == FLOW_BREAK) blame_end(ev, &b->body);
+        return flow == FLOW_NEXT ? run_group_end(ev, node, &b->body, !run_branch_goes_on(b)) : flow;
     }
-    return FLOW_NEXT;
+    return run_group_end(ev, node, &node->as.branches.branches[count - 1].body, true);
 }
 
 /* Called before each pass. A loop whose pass met an error ends: its condition may depend on what failed. */
@@ -161,16 +188,24 @@ Flow run_loop_guard(Eval *ev, uint64_t *passes, size_t errors, Span span) {
     return FLOW_NEXT;
 }
 
+/* One pass of a loop; a loop that is left must have an #end too. */
+static Flow run_pass(Eval *ev, const Node *node, const Body *body, Sink *sink) {
+    Flow flow = run_body(ev, body, sink);
+    if (flow == FLOW_STOP || run_group_end(ev, node, body, flow == FLOW_NEXT) == FLOW_STOP) return FLOW_STOP;
+    return flow;
+}
+
 static Flow run_while(Eval *ev, const Node *node, Sink *sink) {
     uint64_t passes = 0;
     size_t errors = ev->diags->failures;
     for (;;) {
         bool go_on;
         ArenaMark mark = arena_mark(&ev->temp);
-        if (!eval_condition(ev, node->as.loop.condition, &go_on) || !go_on) return FLOW_NEXT;
+        if (!eval_condition(ev, node->as.loop.condition, &go_on)) return FLOW_NEXT;
+        if (!go_on) return run_group_end(ev, node, &node->as.loop.body, false);
         arena_reset_to(&ev->temp, mark);
         Flow flow = run_loop_guard(ev, &passes, errors, node->span);
-        if (flow == FLOW_NEXT) flow = run_body(ev, &node->as.loop.body, sink);
+        if (flow == FLOW_NEXT) flow = run_pass(ev, node, &node->as.loop.body, sink);
         if (flow != FLOW_NEXT) return flow == FLOW_BREAK ? FLOW_NEXT : flow;
     }
 }
@@ -193,14 +228,18 @@ static Flow run_for(Eval *ev, const Node *node, Sink *sink) {
     for (;;) {
         VarBinding *b = scope_find(ev, name);
         if (!b || b->slot->value.kind != VALUE_FLOAT) {
-            diag_error(ev->diags, node->span, "the variable of this #for no longer holds a float");
+            const Body *body = &node->as.for_loop.body;
+            Diagnostic *d = diag_error(ev->diags, body->tokens->items[body->end].span,
+                                       "the variable of this #for no longer holds a float");
+            diag_note(ev->diags, d, node->span, "this #for");
             return FLOW_NEXT;
         }
         /* A limit missed by rounding still counts: 0 to 1 by 0.1 makes 11 passes. */
         double now = b->slot->value.as.number;
-        if (step > 0 ? now > to + 1e-10 : now < to - 1e-10) return FLOW_NEXT;
+        if (step > 0 ? now > to + 1e-10 : now < to - 1e-10)
+            return run_group_end(ev, node, &node->as.for_loop.body, false);
         Flow flow = run_loop_guard(ev, &passes, errors, node->span);
-        if (flow == FLOW_NEXT) flow = run_body(ev, &node->as.for_loop.body, sink);
+        if (flow == FLOW_NEXT) flow = run_pass(ev, node, &node->as.for_loop.body, sink);
         if (flow != FLOW_NEXT) return flow == FLOW_BREAK ? FLOW_NEXT : flow;
         b = scope_find(ev, name);
         if (b && b->slot->value.kind == VALUE_FLOAT) b->slot->value.as.number += step;
@@ -219,14 +258,16 @@ bool run_case_matches(Eval *ev, const SwitchCase *c, double subject) {
 static Flow run_switch(Eval *ev, const Node *node, Sink *sink) {
     double subject;
     if (!eval_float(ev, node->as.switch_.subject, &subject)) return FLOW_NEXT;
+    const Body *last = &node->as.switch_.prelude;
+    Flow flow = run_body(ev, last, sink);
     bool found = false;
-    for (size_t i = 0; i < node->as.switch_.count; i++) {
+    for (size_t i = 0; flow == FLOW_NEXT && i < node->as.switch_.count; i++) {
         const SwitchCase *c = &node->as.switch_.cases[i];
         found = found || run_case_matches(ev, c, subject);
-        if (!found) continue;
-        Flow flow = run_body(ev, &c->body, sink);
-        if (flow != FLOW_NEXT) return flow == FLOW_BREAK ? FLOW_NEXT : flow;
+        last = &c->body;
+        if (found) flow = run_body(ev, last, sink);
     }
+    if (flow == FLOW_STOP || run_group_end(ev, node, last, flow == FLOW_NEXT) == FLOW_STOP) return FLOW_STOP;
     return FLOW_NEXT;
 }
 
@@ -328,9 +369,12 @@ Flow run_node(Eval *ev, const Node *node, Sink *sink) {
     case NODE_WHILE: flow = run_while(ev, node, sink); break;
     case NODE_FOR: flow = run_for(ev, node, sink); break;
     case NODE_SWITCH: flow = run_switch(ev, node, sink); break;
-    case NODE_BREAK: flow = FLOW_BREAK; break;
+    case NODE_BREAK:
+        ev->last_break = ev->break_end = node->span;
+        flow = FLOW_BREAK;
+        break;
     case NODE_MACRO: run_define_macro(ev, node); break;
-    case NODE_INCLUDE: run_include(ev, node, sink); break;
+    case NODE_INCLUDE: flow = run_include(ev, node, sink); break;
     case NODE_VERSION: run_version(ev, node); break;
     case NODE_DEFAULT: run_default(ev, node); break;
     case NODE_MESSAGE: run_message(ev, node); break;

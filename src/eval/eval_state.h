@@ -167,6 +167,7 @@ struct Eval {
     double version;
     size_t silent_errors; /* erroneous values that were left out of blocks */
     bool stopped, interrupted;
+    Span last_break, break_end; /* blamed if no loop is found around it; the #end of the branches that it left */
     void (*outer_exhausted)(void *context); /* the memory budget's own handler */
     void *outer_context;
     Name index_name, count_name, particles_name;
@@ -270,9 +271,14 @@ Program *eval_program(Eval *ev, TokenList *tokens);
 bool eval_deeper(Eval *ev, Span span);
 void run_assign(Eval *ev, const Node *node);
 void run_define_macro(Eval *ev, const Node *node);
-void run_include(Eval *ev, const Node *node, Sink *sink);
+Flow run_include(Eval *ev, const Node *node, Sink *sink);
 /* Loads and lexes what an #include names; NULL after a report. */
 TokenList *eval_load_include(Eval *ev, const Node *node, Span *path_span);
+/* At the end of `last`, a branch or pass of `group`: FLOW_STOP after a report if the group has no #end, or if (reached: the text up to
+ * there was read, not skipped) another directive stands where #end should. */
+Flow run_group_end(Eval *ev, const Node *group, const Body *last, bool reached);
+/* Whether #else or #elseif may follow the branch. */
+bool run_branch_goes_on(const Branch *b);
 bool run_case_matches(Eval *ev, const SwitchCase *c, double subject);
 Flow run_loop_guard(Eval *ev, uint64_t *passes, size_t errors, Span span);
 

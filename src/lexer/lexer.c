@@ -15,10 +15,11 @@ typedef struct Lexer {
     const SourceFile *file;
     const KeywordTable *keywords;
     Arena *arena;
-    DiagList *diags;
     const char *text;
     uint32_t at, size;
     TokenBuffer tokens;
+    BrokenKind mistake; /* the first one in the string that is being read */
+    Span mistake_span;
 } Lexer;
 
 static Span span_from(const Lexer *lx, uint32_t begin) { return (Span){lx->file->id, begin, lx->at}; }
@@ -29,12 +30,51 @@ static Token *push(Lexer *lx, int kind, uint32_t begin) {
     return t;
 }
 
+/* Text that cannot be read: said where a parser comes upon it, after all that stands before it has run. */
+static Token *push_broken(Lexer *lx, BrokenKind kind, Span span) {
+    Token *t = push(lx, TOKEN_BROKEN, span.begin);
+    t->keyword = (uint16_t)kind;
+    t->span = span;
+    return t;
+}
+
+void token_report_broken(DiagList *diags, const Token *token) {
+    Diagnostic *d;
+    switch ((BrokenKind)token->keyword) {
+    case BROKEN_COMMENT:
+        diag_error(diags, token->span, "the comment that begins after this, in line %g, has no end",
+                   token->as.number);
+        break;
+    case BROKEN_STRING: diag_error(diags, token->span, "this string has no closing quote"); break;
+    case BROKEN_UNICODE: diag_error(diags, token->span, "\\u needs hexadecimal digits"); break;
+    case BROKEN_DIRECTIVE: diag_error(diags, token->span, "a directive's word must follow '#'"); break;
+    case BROKEN_ESCAPE:
+        d = diag_error(diags, token->span, "unknown escape in a string");
+        diag_hint(diags, d, "a backslash itself is written \\\\");
+        break;
+    case BROKEN_NOTHING: break;
+    }
+}
+
+static double line_of(const Lexer *lx, uint32_t at) {
+    double line = 1;
+    for (uint32_t i = 0; i < at; i++) line += lx->text[i] == '\n';
+    return line;
+}
+
+/* POV-Ray blames the last thing that it could read; the message tells where the comment begins. */
+static void endless_comment(Lexer *lx, uint32_t begin) {
+    Span span = {lx->file->id, begin, begin + 2};
+    if (lx->tokens.count) span = lx->tokens.items[lx->tokens.count - 1].span;
+    push_broken(lx, BROKEN_COMMENT, span)->as.number = line_of(lx, begin);
+}
+
 /* comment = "/" "*" { comment | character } "*" "/" */
 static void skip_block_comment(Lexer *lx) {
     uint32_t begin = lx->at, depth = 0;
     do {
         if (lx->at >= lx->size) {
-            diag_error(lx->diags, (Span){lx->file->id, begin, begin + 2}, "this comment has no end");
+            endless_comment(lx, begin);
             return;
         }
         const char *c = lx->text + lx->at;
@@ -115,6 +155,12 @@ static bool unicode_escape(Lexer *lx, StrBuf *out) {
     return true;
 }
 
+static void string_mistake(Lexer *lx, BrokenKind kind, Span span) {
+    if (lx->mistake) return;
+    lx->mistake = kind;
+    lx->mistake_span = span;
+}
+
 static void lex_escape(Lexer *lx, StrBuf *out) {
     static const char letters[] = "abfnrtv0\\'\"", meant[] = "\a\b\f\n\r\t\v\0\\'\"";
     uint32_t begin = lx->at++;
@@ -125,12 +171,10 @@ static void lex_escape(Lexer *lx, StrBuf *out) {
         lx->at++;
     } else if (c == 'u') {
         lx->at++;
-        if (!unicode_escape(lx, out))
-            diag_error(lx->diags, span_from(lx, begin), "\\u needs hexadecimal digits");
+        if (!unicode_escape(lx, out)) string_mistake(lx, BROKEN_UNICODE, span_from(lx, begin));
     } else {
         if (lx->at < lx->size) lx->at++;
-        Diagnostic *d = diag_error(lx->diags, span_from(lx, begin), "unknown escape in a string");
-        diag_hint(lx->diags, d, "a backslash itself is written \\\\");
+        string_mistake(lx, BROKEN_ESCAPE, span_from(lx, begin));
     }
 }
 
@@ -138,6 +182,7 @@ static void lex_escape(Lexer *lx, StrBuf *out) {
 static void lex_string(Lexer *lx) {
     uint32_t begin = lx->at++;
     StrBuf decoded = {0};
+    lx->mistake = BROKEN_NOTHING;
     while (lx->at < lx->size && lx->text[lx->at] != '"') {
         if (lx->text[lx->at] == '\\')
             lex_escape(lx, &decoded);
@@ -147,9 +192,15 @@ static void lex_string(Lexer *lx) {
     if (lx->at >= lx->size) {
         const char *eol = memchr(lx->text + begin, '\n', lx->size - begin);
         uint32_t end = eol ? (uint32_t)(eol - lx->text) : lx->size;
-        diag_error(lx->diags, (Span){lx->file->id, begin, end}, "this string has no closing quote");
+        lx->mistake = BROKEN_NOTHING;
+        string_mistake(lx, BROKEN_STRING, (Span){lx->file->id, begin, end});
     } else {
         lx->at++;
+    }
+    if (lx->mistake) {
+        strbuf_free(&decoded);
+        push_broken(lx, lx->mistake, lx->mistake_span);
+        return;
     }
     TokenString *string = arena_new(lx->arena, TokenString);
     string->length = decoded.size;
@@ -191,7 +242,7 @@ static void lex_directive(Lexer *lx) {
         return;
     }
     if (!is_word_start(lx->text[lx->at])) {
-        diag_error(lx->diags, (Span){lx->file->id, begin, begin + 1}, "a directive's word must follow '#'");
+        push_broken(lx, BROKEN_DIRECTIVE, (Span){lx->file->id, begin, begin + 1});
         return;
     }
     Name name = take_word(lx);
@@ -239,13 +290,8 @@ static void lex_one(Lexer *lx) {
         lex_unknown(lx);
 }
 
-TokenList *lexer_run(const SourceFile *file, const KeywordTable *keywords, Arena *arena, DiagList *diags) {
-    Lexer lx = {.file = file,
-                .keywords = keywords,
-                .arena = arena,
-                .diags = diags,
-                .text = file->text,
-                .size = file->size};
+TokenList *lexer_run(const SourceFile *file, const KeywordTable *keywords, Arena *arena) {
+    Lexer lx = {.file = file, .keywords = keywords, .arena = arena, .text = file->text, .size = file->size};
     if (lx.size >= 3 && memcmp(lx.text, "\xEF\xBB\xBF", 3) == 0) lx.at = 3;
     for (skip_blanks(&lx); lx.at < lx.size; skip_blanks(&lx)) lex_one(&lx);
     /* The end is blamed for what is missing: it lies right after the last token, not behind blank lines. */
@@ -265,6 +311,7 @@ const char *token_describe(const Token *token, Arena *arena) {
     case TOKEN_WORD: return arena_printf(arena, "'%s'", token->as.name->text);
     case TOKEN_DIRECTIVE: return arena_printf(arena, "'#%s'", token->as.name->text);
     case TOKEN_VALUE: return "a value";
+    case TOKEN_BROKEN: return "text that cannot be read";
     case TOKEN_LESS_EQUAL: return "'<='";
     case TOKEN_GREATER_EQUAL: return "'>='";
     case TOKEN_NOT_EQUAL: return "'!='";
@@ -274,7 +321,7 @@ const char *token_describe(const Token *token, Arena *arena) {
 }
 
 void lexer_print(const TokenList *tokens, SourceSet *sources, StrBuf *out) {
-    static const char *const kinds[] = {"end", "number", "string", "word", "directive", "value"};
+    static const char *const kinds[] = {"end", "number", "string", "word", "directive", "value", "broken"};
     for (uint32_t i = 0; i < tokens->count; i++) {
         const Token *t = &tokens->items[i];
         SourcePlace place = source_locate(sources, t->span);

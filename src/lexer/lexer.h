@@ -23,9 +23,11 @@ const char *keyword_text(Keyword keyword);
 /* Whether the word means something after #. */
 bool keyword_is_directive(Keyword keyword);
 
-/* All tokens of a file, in `arena`. Errors (unknown characters, strings and comments that do not end, words after # that are no
- * directive) are reported to `diags` and left out of the tokens. */
-TokenList *lexer_run(const SourceFile *file, const KeywordTable *keywords, Arena *arena, DiagList *diags);
+/* All tokens of a file, in `arena`. What cannot be read (strings and comments that do not end, unknown escapes) becomes a TOKEN_BROKEN,
+ * which is reported where it is met: scenes say much before they come to it, and a branch that is skipped may hold it. */
+TokenList *lexer_run(const SourceFile *file, const KeywordTable *keywords, Arena *arena);
+/* Says what is wrong with a TOKEN_BROKEN. */
+void token_report_broken(DiagList *diags, const Token *token);
 
 /* One token a line: place, kind, text. */
 void lexer_print(const TokenList *tokens, SourceSet *sources, StrBuf *out);

@@ -102,6 +102,11 @@ static void match_directive(Matcher *m, uint32_t index) {
     }
 }
 
+/* Groups without #end go on to the end of the file, where that is said. */
+static void end_all(Matcher *m, uint32_t end) {
+    while (has_group(m)) end_group(m, end);
+}
+
 bool token_match(Token *tokens, uint32_t count, Arena *arena) {
     Matcher m = {.tokens = tokens, .arena = arena, .balanced = true};
     for (uint32_t i = 0; i < count; i++) {
@@ -113,5 +118,7 @@ bool token_match(Token *tokens, uint32_t count, Arena *arena) {
         else if (kind == ')' || kind == ']' || kind == '}')
             close_one(&m, i);
     }
-    return m.balanced && m.count == 0;
+    bool closed = m.balanced && m.count == 0;
+    end_all(&m, count - 1);
+    return closed;
 }

@@ -31,11 +31,21 @@ typedef enum TokenKind {
     TOKEN_WORD,      /* keyword or identifier */
     TOKEN_DIRECTIVE, /* # and its word in one; keyword is KW_NONE for a word that is no directive */
     TOKEN_VALUE,     /* made while macros are expanded: a name replaced by its value */
+    TOKEN_BROKEN,    /* cannot be read; keyword holds a BrokenKind */
     /* The single characters stand for themselves; these have two. */
     TOKEN_LESS_EQUAL = 128,
     TOKEN_GREATER_EQUAL,
     TOKEN_NOT_EQUAL,
 } TokenKind;
+
+typedef enum BrokenKind {
+    BROKEN_NOTHING,
+    BROKEN_COMMENT, /* has no end; as.number is the line where it begins, the span that of the token before it */
+    BROKEN_STRING, /* has no end */
+    BROKEN_ESCAPE,
+    BROKEN_UNICODE,
+    BROKEN_DIRECTIVE, /* # without a word */
+} BrokenKind;
 
 struct Value;
 
@@ -46,7 +56,7 @@ typedef struct Token {
     uint16_t keyword; /* Keyword of a word or directive */
     Span span;
     /* Of an opening bracket: the index of its closing one. Of a directive that opens a group or continues it (if, else, case …):
-     * the index of the next one of its group, up to #end. 0: none, or brackets and groups interleave. */
+     * the index of the next one of its group, up to #end or, if that is missing, to TOKEN_END. 0: none, or brackets interleave. */
     uint32_t match;
     union {
         double number;

@@ -147,6 +147,7 @@ struct Node {
         } for_loop;
         struct {
             Node *subject;
+            Body prelude; /* what stands before the first case: it always runs */
             SwitchCase *cases;
             size_t count;
         } switch_;

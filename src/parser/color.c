@@ -41,7 +41,7 @@ typedef struct ColorPartList {
 static Node *color_parts(Parser *p, Span begin, ColorPartList parts) {
     Node *n = parser_node(p, NODE_COLOR, begin);
     bool have_base = parts.count > 0, named = have_base;
-    while (!p->failed) {
+    while (!p->failed && !(parts.count && parser_directive_follows(p))) {
         const Token *t = parser_peek(p);
         int keyword = t->kind == TOKEN_WORD ? t->keyword : KW_NONE;
         if (keyword == KW_color || keyword == KW_colour) {

@@ -7,32 +7,41 @@ typedef struct Group {
     uint32_t end; /* the directive that ends it */
 } Group;
 
-/* Blamed on the end of the file, where #end is missing, with a note where the group begins. */
-static Node *never_ends(Parser *p, TokenList *list, uint32_t index) {
-    if (p->slow && !p->failed) {
-        const Token *t = &list->items[index], *end = &list->items[list->count - 1];
-        Diagnostic *d =
-            diag_error(p->diags, end->span, "the file ends, but #end is missing for a #%s", t->as.name->text);
-        diag_note(p->diags, d, t->span, "this #%s has no #end", t->as.name->text);
-    }
-    p->failed = true;
-    return NULL;
-}
-
-static bool group_begin(Parser *p, TokenList *list, uint32_t index, uint32_t body, Group *out) {
-    const Token *t = &list->items[index];
-    if (t->match == 0) {
-        never_ends(p, list, index);
-        return false;
-    }
-    *out = (Group){list, body, t->match};
-    return true;
+static void group_begin(TokenList *list, uint32_t index, uint32_t body, Group *out) {
+    *out = (Group){list, body, list->items[index].match};
 }
 
 static Body group_body(const Group *g) { return (Body){.tokens = g->list, .begin = g->at, .end = g->end}; }
 
 /* The raw position after a head: the fast road's own, or what the host has not pulled yet. */
 static uint32_t raw_position(Parser *p) { return p->slow ? p->host->position(p->host->context) : p->at; }
+
+void group_report_stray(DiagList *diags, const Token *t) {
+    if (t->keyword == KW_case || t->keyword == KW_range)
+        diag_error(diags, t->span, "this #%s belongs to no #switch", t->as.name->text);
+    else
+        diag_error(diags, t->span, "this #%s belongs to no #if", t->as.name->text);
+}
+
+void group_report_endless(DiagList *diags, const TokenList *list, Span head) {
+    const Token *end = &list->items[list->count - 1], *last = end - (list->count > 1);
+    if (last->kind == TOKEN_BROKEN) {
+        token_report_broken(diags, last); /* a string or comment that swallowed the #end */
+        return;
+    }
+    const Token *t = list->items;
+    while (t < end && t->span.begin != head.begin) t++;
+    if (t == end) return;
+    const char *word = t->as.name->text;
+    Diagnostic *d = diag_error(diags, end->span, "the file ends, but #end is missing for a #%s", word);
+    diag_note(diags, d, head, "this #%s has no #end", word);
+}
+
+uint32_t group_end(const TokenList *list, uint32_t index) {
+    while (list->items[index].kind == TOKEN_DIRECTIVE && list->items[index].match)
+        index = list->items[index].match;
+    return index;
+}
 
 /* On the fast road a branch must make sense by itself. */
 static bool bodies_whole(Parser *p, const Node *n, bool unbalanced) {
@@ -52,11 +61,14 @@ static bool bodies_whole(Parser *p, const Node *n, bool unbalanced) {
     return whole;
 }
 
-static void go_on_after(Parser *p, uint32_t end, uint32_t *next) {
+/* Past the whole group, whatever else stands between here and its #end. */
+static void go_on_after(Parser *p, const Group *g, uint32_t *next) {
+    uint32_t end = group_end(g->list, g->end);
+    if (g->list->items[end].kind != TOKEN_END) end++;
     if (p->slow)
-        *next = end + 1;
+        *next = end;
     else
-        p->at = end + 1;
+        p->at = end;
 }
 
 /* On the slow road what follows is not pulled for it: that would run the directives that come next before this one. */
@@ -74,15 +86,27 @@ static Node *in_parentheses(Parser *p) {
     return e;
 }
 
+/* No word of the language is ever declared. */
+static Node *declared_test(Parser *p) {
+    p->raw = true;
+    const Token *t = parser_peek(p);
+    if (t->kind != TOKEN_WORD || !t->keyword) return parser_target(p);
+    Node *never = parser_node(p, NODE_NUMBER, t->span);
+    parser_take(p);
+    return never;
+}
+
 /* if = "#if" "(" full ")" | "#ifdef" "(" target ")" | "#ifndef" "(" target ")" */
 static Node *condition(Parser *p, int keyword) {
     if (keyword == KW_if || keyword == KW_elseif) return in_parentheses(p);
     if (!parser_expect(p, '(', "'('")) return NULL;
-    Node *target = parser_target(p);
+    Node *target = declared_test(p), *defined = target;
     if (!target || !parser_expect(p, ')', "')'")) return NULL;
-    Node *defined = parser_node(p, NODE_BUILTIN, target->span);
-    defined->op = KW_defined;
-    *list_push(p->arena, &defined->as.list) = target;
+    if (target->kind != NODE_NUMBER) {
+        defined = parser_node(p, NODE_BUILTIN, target->span);
+        defined->op = KW_defined;
+        *list_push(p->arena, &defined->as.list) = target;
+    }
     if (keyword == KW_ifdef) return defined;
     Node *not = parser_node(p, NODE_UNARY, target->span);
     not ->op = '!';
@@ -102,14 +126,13 @@ static Node *if_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *
     Node *n = parser_node(p, NODE_IF, head->span);
     Node *test = condition(p, head->keyword);
     Group g;
-    if (!test || !group_begin(p, list, index, raw_position(p), &g)) return NULL;
+    if (!test) return NULL;
+    group_begin(list, index, raw_position(p), &g);
     BranchList branches = {0};
     *list_push(p->arena, &branches) = (Branch){test, group_body(&g)};
-    bool else_seen = false;
-    while (list->items[g.end].keyword != KW_end) {
+    for (bool else_seen = false; !else_seen;) {
         const Token *t = &list->items[g.end];
-        if (else_seen || (t->keyword != KW_elseif && t->keyword != KW_else))
-            return parser_fail(p, t->span, "this #%s belongs to no #if", t->as.name->text);
+        if (t->keyword != KW_elseif && t->keyword != KW_else) break;
         else_seen = t->keyword == KW_else;
         g.at = g.end + 1;
         Node *other = NULL;
@@ -120,19 +143,18 @@ static Node *if_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *
             inner.has_window = false;
             inner.list = list;
             inner.at = g.at;
-            inner.end = t->match ? t->match : list->count;
+            inner.end = t->match;
             other = in_parentheses(&inner);
             g.at = inner.at;
             if (!p->slow) p->assumptions = inner.assumptions;
             if (!other) return parser_fail(p, t->span, "the condition of #elseif cannot be read");
         }
-        if (t->match == 0) return never_ends(p, list, index);
         g.end = t->match;
         *list_push(p->arena, &branches) = (Branch){other, group_body(&g)};
     }
     n->as.branches.branches = branches.items;
     n->as.branches.count = branches.count;
-    go_on_after(p, g.end, next);
+    go_on_after(p, &g, next);
     return bodies_whole(p, n, list->items[index].unbalanced) ? n : NULL;
 }
 
@@ -140,9 +162,10 @@ static Node *while_directive(Parser *p, TokenList *list, uint32_t index, uint32_
     Node *n = parser_node(p, NODE_WHILE, list->items[index].span);
     n->as.loop.condition = in_parentheses(p);
     Group g;
-    if (!n->as.loop.condition || !group_begin(p, list, index, raw_position(p), &g)) return NULL;
+    if (!n->as.loop.condition) return NULL;
+    group_begin(list, index, raw_position(p), &g);
     n->as.loop.body = group_body(&g);
-    go_on_after(p, g.end, next);
+    go_on_after(p, &g, next);
     return bodies_whole(p, n, list->items[index].unbalanced) ? n : NULL;
 }
 
@@ -161,9 +184,9 @@ static Node *for_directive(Parser *p, TokenList *list, uint32_t index, uint32_t 
     if (!parser_expect(p, ')', "',' or ')'")) return NULL;
     p->brackets--;
     Group g;
-    if (!group_begin(p, list, index, raw_position(p), &g)) return NULL;
+    group_begin(list, index, raw_position(p), &g);
     n->as.for_loop.body = group_body(&g);
-    go_on_after(p, g.end, next);
+    go_on_after(p, &g, next);
     return bodies_whole(p, n, list->items[index].unbalanced) ? n : NULL;
 }
 
@@ -180,17 +203,17 @@ static Node *switch_directive(Parser *p, TokenList *list, uint32_t index, uint32
     Node *n = parser_node(p, NODE_SWITCH, list->items[index].span);
     n->as.switch_.subject = in_parentheses(p);
     Group g;
-    if (!n->as.switch_.subject || !group_begin(p, list, index, raw_position(p), &g)) return NULL;
-    if (g.at < g.end && list->items[g.at].kind != ';')
-        return parser_fail(p, list->items[g.at].span, "expected #case or #range after #switch");
+    if (!n->as.switch_.subject) return NULL;
+    group_begin(list, index, raw_position(p), &g);
+    n->as.switch_.prelude = group_body(&g);
     struct {
         SwitchCase *items;
         size_t count, capacity;
     } cases = {0};
-    while (list->items[g.end].keyword != KW_end) {
+    for (;;) {
         const Token *t = &list->items[g.end];
-        if (t->keyword == KW_elseif) return parser_fail(p, t->span, "this #%s belongs to no #if", t->as.name->text);
-        if (t->match == 0) return never_ends(p, list, index);
+        bool is_else = t->keyword == KW_else && cases.count > 0;
+        if (t->keyword != KW_case && t->keyword != KW_range && !is_else) break;
         SwitchCase one = {0};
         Parser inner = *p;
         inner.slow = false;
@@ -208,7 +231,7 @@ static Node *switch_directive(Parser *p, TokenList *list, uint32_t index, uint32
     }
     n->as.switch_.cases = cases.items;
     n->as.switch_.count = cases.count;
-    go_on_after(p, g.end, next);
+    go_on_after(p, &g, next);
     return bodies_whole(p, n, list->items[index].unbalanced) ? n : NULL;
 }
 
@@ -217,7 +240,9 @@ static Node *macro_directive(Parser *p, TokenList *list, uint32_t index, uint32_
     Node *n = parser_node(p, NODE_MACRO, list->items[index].span);
     p->raw = true;
     const Token *word = parser_peek(p);
-    if (word->kind != TOKEN_WORD) return parser_fail(p, word->span, "expected the macro's name, found %s", token_describe(word, p->arena));
+    if (word->kind != TOKEN_WORD)
+        return parser_fail(p, word->span, "expected the macro's name, found %s",
+                           token_describe(word, p->arena));
     if (word->keyword)
         return parser_fail(p, word->span, "'%s' is a word of the language: it cannot be a name",
                            word->as.name->text);
@@ -240,7 +265,11 @@ static Node *macro_directive(Parser *p, TokenList *list, uint32_t index, uint32_
     }
     if (!parser_expect(p, ')', "',' or ')'")) return NULL;
     Group g;
-    if (!group_begin(p, list, index, raw_position(p), &g)) return NULL;
+    group_begin(list, index, raw_position(p), &g);
+    if (list->items[g.end].kind == TOKEN_END) {
+        if (p->slow) group_report_endless(p->diags, list, n->span);
+        return parser_give_up(p);
+    }
     if (list->items[g.end].keyword != KW_end)
         return parser_fail(p, list->items[g.end].span, "this #%s stands in a macro, outside of its #if",
                            list->items[g.end].as.name->text);
@@ -248,7 +277,7 @@ static Node *macro_directive(Parser *p, TokenList *list, uint32_t index, uint32_
     n->as.macro.count = names.count;
     n->as.macro.body = group_body(&g);
     n->as.macro.unbalanced = list->items[index].unbalanced;
-    go_on_after(p, g.end, next);
+    go_on_after(p, &g, next);
     return n;
 }
 
@@ -466,9 +495,11 @@ Node *parser_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *nex
     case KW_write: return write_directive(p, head);
     case KW_else:
     case KW_elseif:
-    case KW_end: return parser_fail(p, head.span, "this #%s belongs to no #if", head.as.name->text);
+    case KW_end:
     case KW_case:
-    case KW_range: return parser_fail(p, head.span, "this #%s belongs to no #switch", head.as.name->text);
+    case KW_range:
+        if (p->slow) group_report_stray(p->diags, &head);
+        return parser_give_up(p);
     default: return unknown_directive(p, head);
     }
 }

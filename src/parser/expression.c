@@ -162,8 +162,7 @@ static Node *name_or_call(Parser *p) {
     if (parser_peek(p)->kind != '(') {
         if (!p->slow && !p->in_function) {
             const void *macro;
-            if (parser_classify(p, word.as.name, &macro) == NAME_MACRO)
-                return parser_give_up(p);
+            if (parser_classify(p, word.as.name, &macro) == NAME_MACRO) return parser_give_up(p);
             p->assumptions.count--; /* its being a value or not makes no difference here */
         }
         return n;
@@ -289,13 +288,17 @@ static bool is_text(const Node *n) {
            n->op == KW_substr || n->op == KW_strlwr || n->op == KW_strupr || n->op == KW_datetime;
 }
 
+bool parser_directive_follows(Parser *p) {
+    if (!p->slow || p->brackets > 0 || p->has_window) return false;
+    const Token *t = p->host->after(p->host->context, 0);
+    return t->kind == TOKEN_DIRECTIVE && t->keyword != KW_end;
+}
+
 /* On the slow road, looking at the next token runs the directives before it. Outside of brackets an operand therefore ends where
  * a directive follows it, and after values that no operator can follow nothing is looked at. */
 static bool operand_ends(Parser *p, const Node *n) {
     if (n->kind == NODE_BLOCK || n->kind == NODE_FUNCTION || n->kind == NODE_ARRAY || is_text(n)) return true;
-    return p->slow && p->brackets == 0 && !p->has_window &&
-           p->host->after(p->host->context, 0)->kind == TOKEN_DIRECTIVE &&
-           p->host->after(p->host->context, 0)->keyword != KW_end;
+    return parser_directive_follows(p);
 }
 
 static Node *dot(Parser *p, Node *n) {

@@ -4,15 +4,20 @@
 
 const Token *parser_peek(Parser *p) {
     static const Token end = {.kind = TOKEN_END};
+    const Token *t = &p->window;
     if (p->failed) return &end;
-    if (!p->slow) return p->at < p->end ? &p->list->items[p->at] : &end;
-    if (!p->has_window) {
+    if (!p->slow) {
+        t = p->at < p->end ? &p->list->items[p->at] : &end;
+    } else if (!p->has_window) {
         p->window = p->host->pull(p->host->context, p);
         p->has_window = true;
         p->raw = false;
         if (p->failed) return &end;
     }
-    return &p->window;
+    if (t->kind != TOKEN_BROKEN) return t;
+    if (p->slow) token_report_broken(p->diags, t);
+    p->failed = true;
+    return &end;
 }
 
 /* The token after the next, as it is written. */
@@ -52,7 +57,7 @@ bool parser_accept_keyword(Parser *p, Keyword keyword) {
 /* Where something is missing: the next token, or the end of the last one where nothing follows. */
 static Span here(Parser *p) {
     const Token *t = parser_peek(p);
-    if (t->kind != TOKEN_END || t->span.end > t->span.begin) return t->span;
+    if (t->kind != TOKEN_DIRECTIVE && (t->kind != TOKEN_END || t->span.end > t->span.begin)) return t->span;
     return (Span){p->last.span.file, p->last.span.end, p->last.span.end};
 }
 

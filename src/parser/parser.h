@@ -90,6 +90,12 @@ Node *parser_directive(Parser *parser, TokenList *list, uint32_t index, uint32_t
 /* "(" arguments ")" of a macro call. */
 bool parser_arguments(Parser *parser, NodeList *arguments);
 bool parser_at_end(Parser *parser);
+/* The #end of the group whose directive is at `index` (the #if, or any #else … of it), or TOKEN_END where it is missing. */
+uint32_t group_end(const TokenList *list, uint32_t index);
+/* Reports that the group whose first directive is at `head` has no #end: at the end of the file, with a note where it begins. */
+void group_report_endless(DiagList *diags, const TokenList *list, Span head);
+/* Reports an #else, #case … that continues nothing. */
+void group_report_stray(DiagList *diags, const Token *directive);
 
 /* Whether a body can be run by itself: brackets balanced, and no operator dangling at either end. */
 bool parser_body_is_whole(const Body *body);
@@ -105,6 +111,8 @@ bool parser_expect(Parser *parser, int kind, const char *what);
 Node *parser_give_up(Parser *parser);
 /* Reports on the slow road, fails on both. Returns NULL. */
 Node *parser_fail(Parser *parser, Span span, const char *format, ...) VTS_PRINTF(3, 4);
+/* Slow road, outside of brackets: whether a directive comes next, which looking at the next token would run. */
+bool parser_directive_follows(Parser *parser);
 Node *parser_node(Parser *parser, NodeKind kind, Span begin);
 bool parser_enter(Parser *parser);
 static inline void parser_leave(Parser *parser) { parser->depth--; }

@@ -17,7 +17,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     interner_init(&names, &arena);
     keyword_table_init(&keywords, &names, &arena);
     const SourceFile *file = source_add_text(&sources, "fuzz", (const char *)data, size);
-    TokenList *list = lexer_run(file, &keywords, &arena, &diags);
+    TokenList *list = lexer_run(file, &keywords, &arena);
+    for (uint32_t i = 0; i < list->count; i++)
+        if (list->items[i].kind == TOKEN_BROKEN) token_report_broken(&diags, &list->items[i]);
     for (uint32_t i = 0; i + 1 < list->count; i++) {
         const Token *t = &list->items[i];
         if (t->span.end > file->size || t->span.begin >= t->span.end ||

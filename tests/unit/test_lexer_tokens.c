@@ -26,8 +26,9 @@ static void lex(Lexed *l, const char *text) {
     interner_init(&l->names, &l->arena);
     intern_cstr(&l->names, "somebody_was_here_before");
     keyword_table_init(&l->keywords, &l->names, &l->arena);
-    l->list = lexer_run(source_add_text(&l->sources, "test", text, strlen(text)), &l->keywords, &l->arena,
-                        &l->diags);
+    l->list = lexer_run(source_add_text(&l->sources, "test", text, strlen(text)), &l->keywords, &l->arena);
+    for (uint32_t i = 0; i < l->list->count; i++)
+        if (l->list->items[i].kind == TOKEN_BROKEN) token_report_broken(&l->diags, &l->list->items[i]);
 }
 
 static const Token *at(const Lexed *l, uint32_t i) { return &l->list->items[i]; }

@@ -50,8 +50,8 @@ static Node *parse(Parsed *q, const char *text) {
     diag_init(&q->diags, &q->arena, &q->sources);
     interner_init(&q->names, &q->arena);
     keyword_table_init(&q->keywords, &q->names, &q->arena);
-    TokenList *list = lexer_run(source_add_text(&q->sources, "test", text, strlen(text)), &q->keywords,
-                                &q->arena, &q->diags);
+    TokenList *list =
+        lexer_run(source_add_text(&q->sources, "test", text, strlen(text)), &q->keywords, &q->arena);
     q->host = (ParserHost){.classify = classify, .macro_binding = binding, .macro_is_block = is_block};
     q->parser = (Parser){.arena = &q->arena,
                          .diags = &q->diags,

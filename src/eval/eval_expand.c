@@ -141,6 +141,7 @@ static void break_out(Source *s) {
     while (s->top != &s->base) {
         Frame *f = s->top;
         pop(s);
+        if (f->kind == FRAME_BRANCH) run_break_leaves(s->ev, &f->last);
         if (!is_loop(f) && f->kind != FRAME_SWITCH) continue;
         check_end(s, f, false);
         return;

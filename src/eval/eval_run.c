@@ -154,8 +154,7 @@ bool run_branch_goes_on(const Branch *b) {
     return b->condition && next != KW_case && next != KW_range;
 }
 
-/* POV-Ray comes upon a #break without a loop where it leaves the branch that holds it. */
-static void blame_end(Eval *ev, const Body *body) {
+void run_break_leaves(Eval *ev, const Body *body) {
     if (body->tokens) ev->break_end = body->tokens->items[group_end(body->tokens, body->end)].span;
 }
 
@@ -167,7 +166,7 @@ static Flow run_if(Eval *ev, const Node *node, Sink *sink) {
         if (b->condition && !eval_condition(ev, b->condition, &taken)) return FLOW_NEXT;
         if (!taken) continue;
         Flow flow = run_body(ev, &b->body, sink);
-        if (flow == FLOW_BREAK) blame_end(ev, &b->body);
+        if (flow == FLOW_BREAK) run_break_leaves(ev, &b->body);
         return flow == FLOW_NEXT ? run_group_end(ev, node, &b->body, !run_branch_goes_on(b)) : flow;
     }
     return run_group_end(ev, node, &node->as.branches.branches[count - 1].body, true);

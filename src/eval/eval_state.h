@@ -149,7 +149,8 @@ struct Eval {
     VarBinding *free_bindings;
     Scope *scope;
     uint32_t macro_stamp; /* counts definitions of macros */
-    uint64_t name_stamp;  /* counts changes of what a name means to the parser (its NameClass, or which macro it is) */
+    uint64_t
+        name_stamp; /* counts changes of what a name means to the parser (its NameClass, or which macro it is) */
     CallRecord *calls;
     Macro *macros;
     uint32_t call_depth, include_depth;
@@ -167,7 +168,8 @@ struct Eval {
     double version;
     size_t silent_errors; /* erroneous values that were left out of blocks */
     bool stopped, interrupted;
-    Span last_break, break_end; /* blamed if no loop is found around it; the #end of the branches that it left */
+    Span last_break,
+        break_end; /* blamed if no loop is found around it; the #end of the branches that it left */
     void (*outer_exhausted)(void *context); /* the memory budget's own handler */
     void *outer_context;
     Name index_name, count_name, particles_name;
@@ -277,6 +279,8 @@ TokenList *eval_load_include(Eval *ev, const Node *node, Span *path_span);
 /* At the end of `last`, a branch or pass of `group`: FLOW_STOP after a report if the group has no #end, or if (reached: the text up to
  * there was read, not skipped) another directive stands where #end should. */
 Flow run_group_end(Eval *ev, const Node *group, const Body *last, bool reached);
+/* A #break leaves this branch: without a loop around it, POV-Ray blames the branch's #end. */
+void run_break_leaves(Eval *ev, const Body *branch);
 /* Whether #else or #elseif may follow the branch. */
 bool run_branch_goes_on(const Branch *b);
 bool run_case_matches(Eval *ev, const SwitchCase *c, double subject);

@@ -237,7 +237,11 @@ static EvalStatus evaluate(Eval *ev, const SourceFile *file, const Scene **scene
     Body body = {.tokens = tokens, .begin = 0, .end = tokens->count - 1};
     if (ev->diags->error_count == 0 || !diag_full(ev->diags)) {
         Flow flow = run_body(ev, &body, &sink);
-        if (flow == FLOW_BREAK) diag_error(ev->diags, ev->last_break, "#break outside of a loop or #switch");
+        if (flow == FLOW_BREAK) {
+            Diagnostic *d = diag_error(ev->diags, ev->break_end, "#break outside of a loop or #switch");
+            if (ev->break_end.begin != ev->last_break.begin)
+                diag_note(ev->diags, d, ev->last_break, "this #break");
+        }
     }
     if (ev->interrupted) return EVAL_INTERRUPTED;
     if (ev->diags->error_count) return EVAL_FAILED;

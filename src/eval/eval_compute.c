@@ -188,9 +188,26 @@ const Compute *compute_prepare(Eval *ev, const Node *node) {
     return NULL;
 }
 
+/* What calls functions is apart from the loop below, whose values then stay in registers. */
+static VTS_NOINLINE double compute_rare(ComputeOp op, double a, double b, bool *gives_up) {
+    switch (op) {
+    case COMPUTE_ABS: return fabs(a);
+    case COMPUTE_CEIL: return ceil(a);
+    case COMPUTE_COS: return cos(a);
+    case COMPUTE_FLOOR: return floor(a);
+    case COMPUTE_INT: return trunc(a);
+    case COMPUTE_RADIANS: return a * VTS_RADIANS;
+    case COMPUTE_SIN: return sin(a);
+    case COMPUTE_SQRT: *gives_up = !(a >= 0); return sqrt(a);
+    case COMPUTE_DIV: *gives_up = b == 0; return trunc(a / b);
+    default: *gives_up = b == 0; return fmod(a, b);
+    }
+}
+
 bool compute_run(const Eval *ev, const Compute *compute, double *out) {
     double stack[DEEPEST_COMPUTE + 1], *below = stack, a = 0; /* a: the top */
     VarBinding *const *bindings = ev->bindings;
+    bool gives_up = false;
     for (const ComputeStep *s = compute->steps, *end = s + compute->count; s < end; s++) {
         double b = s->number;
         if (s->from == FROM_NAME) {
@@ -208,17 +225,6 @@ bool compute_run(const Eval *ev, const Compute *compute, double *out) {
             break;
         case COMPUTE_NEGATE: a = -a; break;
         case COMPUTE_NOT: a = !value_is_true(a); break;
-        case COMPUTE_ABS: a = fabs(a); break;
-        case COMPUTE_CEIL: a = ceil(a); break;
-        case COMPUTE_COS: a = cos(a); break;
-        case COMPUTE_FLOOR: a = floor(a); break;
-        case COMPUTE_INT: a = trunc(a); break;
-        case COMPUTE_RADIANS: a *= VTS_RADIANS; break;
-        case COMPUTE_SIN: a = sin(a); break;
-        case COMPUTE_SQRT:
-            if (!(a >= 0)) return false;
-            a = sqrt(a);
-            break;
         case COMPUTE_SQR: a *= a; break;
         case COMPUTE_ADD: a += b; break;
         case COMPUTE_SUBTRACT: a -= b; break;
@@ -235,16 +241,12 @@ bool compute_run(const Eval *ev, const Compute *compute, double *out) {
         case COMPUTE_GREATER_EQUAL: a = a >= b || value_are_equal(a, b); break;
         case COMPUTE_AND: a = value_is_true(a) && value_is_true(b); break;
         case COMPUTE_OR: a = value_is_true(a) || value_is_true(b); break;
-        case COMPUTE_MOD:
-            if (b == 0) return false;
-            a = fmod(a, b);
-            break;
-        case COMPUTE_DIV:
-            if (b == 0) return false;
-            a = trunc(a / b);
-            break;
         case COMPUTE_MIN: a = b < a ? b : a; break;
         case COMPUTE_MAX: a = b > a ? b : a; break;
+        default:
+            a = compute_rare((ComputeOp)s->op, a, b, &gives_up);
+            if (gives_up) return false;
+            break;
         }
     }
     *out = a;

@@ -168,6 +168,7 @@ typedef struct Passed {
 } Passed;
 
 static bool pass(Eval *ev, const Node *argument, Passed *out) {
+    out->reference = NULL;
     if (argument->kind == NODE_NAME || argument->kind == NODE_INDEX) {
         bool failed = false;
         out->reference = eval_target(ev, argument, &failed);
@@ -204,7 +205,7 @@ bool macro_enter(Eval *ev, const Macro *m, const NodeList *arguments, Span span,
         ev->interrupted = ev->stopped = true;
         return false;
     }
-    Passed few[FEW_ARGUMENTS] = {{0}};
+    Passed few[FEW_ARGUMENTS];
     Passed *passed =
         arguments->count <= FEW_ARGUMENTS ? few : arena_new_array(&ev->temp, Passed, arguments->count);
     for (size_t i = 0; i < arguments->count; i++)

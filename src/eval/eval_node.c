@@ -71,6 +71,9 @@ bool eval_operand(Eval *ev, const Node *node, double *number, Value *other) {
         if (compute && compute_run(ev, compute, number)) return true;
         return binary(ev, node, number, other);
     }
+    case NODE_UNARY:
+        if (node->op == '(') return eval_operand(ev, node->as.operand.a, number, other);
+        return any_operand(ev, node, number, other);
     default: return any_operand(ev, node, number, other);
     }
 }

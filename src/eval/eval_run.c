@@ -18,7 +18,7 @@ bool eval_deeper(Eval *ev, Span span) {
 
 /* ---- statements and their memo ---- */
 
-Program *eval_program(Eval *ev, TokenList *tokens) {
+Program *eval_program_new(Eval *ev, TokenList *tokens) {
     uint32_t id = tokens->file->id;
     if (id >= ev->program_count) {
         uint32_t count = ev->program_count ? ev->program_count * 2 : 16;
@@ -99,7 +99,9 @@ const Statement *statement_at(Eval *ev, Program *program, uint32_t at, uint32_t 
 
 Flow run_statement(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink) {
     Name block = sink->kind == SINK_ITEMS ? sink->block : NULL;
-    const Statement *s = statement_at(ev, program, *at, end, block);
+    const Statement *s = program->memo[*at];
+    if (!s || s->name_stamp != ev->name_stamp || s->end != end || s->block != block)
+        s = statement_at(ev, program, *at, end, block);
     if (!s->node) return run_slow(ev, program, at, end, sink);
     *at = s->next;
     return run_node(ev, s->node, sink);

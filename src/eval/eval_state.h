@@ -269,7 +269,12 @@ Flow run_node(Eval *ev, const Node *node, Sink *sink);
 Flow run_statement(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink);
 /* The statement at a token, from the memo or parsed now; NULL node: slow road. */
 const Statement *statement_at(Eval *ev, Program *program, uint32_t at, uint32_t end, Name block);
-Program *eval_program(Eval *ev, TokenList *tokens);
+Program *eval_program_new(Eval *ev, TokenList *tokens);
+static inline Program *eval_program(Eval *ev, TokenList *tokens) {
+    uint32_t id = tokens->file->id;
+    Program *known = id < ev->program_count ? ev->programs[id] : NULL;
+    return known ? known : eval_program_new(ev, tokens);
+}
 bool eval_deeper(Eval *ev, Span span);
 void run_assign(Eval *ev, const Node *node);
 void run_define_macro(Eval *ev, const Node *node);

@@ -111,16 +111,13 @@ char *arena_printf(Arena *arena, const char *format, ...) {
     return text;
 }
 
-ArenaMark arena_mark(const Arena *arena) { return (ArenaMark){arena->block, arena->used}; }
-
-void arena_reset_to(Arena *arena, ArenaMark mark) {
+void arena_drop_blocks(Arena *arena, ArenaMark mark) {
     while (arena->block != mark.block) {
         ArenaBlock *block = arena->block;
         arena->block = block->older;
         if (!arena->spare && block->size <= LARGEST_DOUBLED_BLOCK) arena->spare = block;
         else release_block(arena, block);
     }
-    arena->used = mark.used;
 }
 
 void arena_list_grow_(Arena *arena, void **items, size_t *capacity, size_t count, size_t item_size) {

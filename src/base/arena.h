@@ -56,8 +56,13 @@ void *arena_copy(Arena *arena, const void *data, size_t size);
 char *arena_strdup(Arena *arena, const char *text);
 char *arena_printf(Arena *arena, const char *format, ...) VTS_PRINTF(2, 3);
 
-ArenaMark arena_mark(const Arena *arena);
-void arena_reset_to(Arena *arena, ArenaMark mark);
+static inline ArenaMark arena_mark(const Arena *arena) { return (ArenaMark){arena->block, arena->used}; }
+/* Gives back the blocks that were added since the mark. */
+void arena_drop_blocks(Arena *arena, ArenaMark mark);
+static inline void arena_reset_to(Arena *arena, ArenaMark mark) {
+    if (arena->block != mark.block) arena_drop_blocks(arena, mark);
+    arena->used = mark.used;
+}
 
 /* Growing arrays in an arena: `items`, `count`, `capacity` fields of any struct.
  *   typedef struct { Foo *items; size_t count, capacity; } FooList;

@@ -39,22 +39,10 @@ typedef enum ComputeOp {
 
 typedef enum OperandFrom { FROM_NUMBER, FROM_NAME, FROM_STACK } OperandFrom;
 
-typedef struct ComputeStep {
-    uint8_t op;
-    uint8_t from;
-    uint32_t name_id; /* FROM_NAME */
-    double number;    /* FROM_NUMBER */
-} ComputeStep;
-
 enum { LONGEST_COMPUTE = 64, DEEPEST_COMPUTE = 16 };
 
-struct Compute {
-    uint32_t count;
-    ComputeStep steps[];
-};
-
 /* What stands in a node that was met once, and in one that is not arithmetic. */
-static const Compute MET_ONCE = {0}, NOT_COMPUTED = {0};
+static const Compute MET_ONCE = {.pending = true}, NOT_COMPUTED = {0};
 
 typedef struct Draft {
     ComputeStep steps[LONGEST_COMPUTE];
@@ -170,22 +158,19 @@ static bool compile(Draft *d, const Node *node) {
     }
 }
 
-/* Text that runs only once is not worth compiling. */
-const Compute *compute_prepare(Eval *ev, const Node *node) {
+void compute_prepare(Eval *ev, const Node *node) {
     Node *n = (Node *)(uintptr_t)node; /* the code is kept in the tree */
-    const Compute *known = node->as.operand.compute;
-    if (known) {
-        if (known != &MET_ONCE) return known == &NOT_COMPUTED ? NULL : known;
-        Draft d = {.ev = ev};
-        n->as.operand.compute = &NOT_COMPUTED;
-        if (!compile(&d, node)) return NULL;
-        Compute *c = arena_push(ev->parse, sizeof *c + d.count * sizeof(ComputeStep));
-        c->count = d.count;
-        for (uint32_t i = 0; i < d.count; i++) c->steps[i] = d.steps[i];
-        return n->as.operand.compute = c;
+    if (!n->as.operand.compute) {
+        n->as.operand.compute = &MET_ONCE; /* text that runs only once is not worth compiling */
+        return;
     }
-    n->as.operand.compute = &MET_ONCE;
-    return NULL;
+    Draft d = {.ev = ev};
+    n->as.operand.compute = &NOT_COMPUTED;
+    if (!compile(&d, node)) return;
+    Compute *c = arena_push(ev->parse, sizeof *c + d.count * sizeof(ComputeStep));
+    c->count = d.count;
+    for (uint32_t i = 0; i < d.count; i++) c->steps[i] = d.steps[i];
+    n->as.operand.compute = c;
 }
 
 /* What calls functions is apart from the loop below, whose values then stay in registers. */

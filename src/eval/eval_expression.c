@@ -85,14 +85,6 @@ Value eval_compound(Eval *ev, const Node *node) {
     }
 }
 
-bool eval_condition(Eval *ev, const Node *node, bool *out) {
-    double number;
-    *out = false;
-    if (!eval_float(ev, node, &number)) return false;
-    *out = value_is_true(number);
-    return true;
-}
-
 bool eval_string(Eval *ev, const Node *node, const char **text, size_t *length) {
     Value v = eval_node(ev, node);
     return value_to_string(ev, &v, node->span, text, length);

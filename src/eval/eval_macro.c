@@ -179,7 +179,11 @@ static bool pass(Eval *ev, const Node *argument, Passed *out) {
         }
         if (out->reference) return true;
     }
-    out->value = eval_node(ev, argument);
+    double number;
+    if (eval_operand(ev, argument, &number, &out->value)) {
+        out->value = value_float(number);
+        return true;
+    }
     return out->value.kind != VALUE_ERROR;
 }
 
@@ -253,7 +257,7 @@ static Value call_macro(Eval *ev, const Node *node) {
 
 Value eval_call(Eval *ev, const Node *node) {
     const Node *base = node->as.apply.base;
-    Value callee = value_error();
+    Value callee;
     if (base->kind == NODE_NAME) {
         VarBinding *b = scope_find(ev, base->as.name);
         if (!b || !b->slot->set) {
@@ -263,8 +267,8 @@ Value eval_call(Eval *ev, const Node *node) {
             eval_undeclared(ev, base->as.name, base->span);
             return value_error();
         }
+        if (b->slot->value.kind == VALUE_MACRO) return call_macro(ev, node);
         callee = b->slot->value;
-        if (callee.kind == VALUE_MACRO) return call_macro(ev, node);
     } else {
         callee = eval_node(ev, base);
     }

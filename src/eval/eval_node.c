@@ -56,6 +56,7 @@ static VTS_NOINLINE bool any_operand(Eval *ev, const Node *node, double *number,
     case NODE_UNARY:
         *other = value_unary(ev, node->op, eval_node(ev, node->as.operand.a), node->span);
         break;
+    case NODE_CALL: *other = eval_call(ev, node); break;
     default: *other = eval_compound(ev, node); break;
     }
     *number = other->as.number;
@@ -66,11 +67,7 @@ bool eval_operand(Eval *ev, const Node *node, double *number, Value *other) {
     switch (node->kind) {
     case NODE_NUMBER: *number = node->as.number; return true;
     case NODE_NAME: return name_operand(ev, node, number, other);
-    case NODE_BINARY: {
-        const Compute *compute = compute_prepare(ev, node);
-        if (compute && compute_run(ev, compute, number)) return true;
-        return binary(ev, node, number, other);
-    }
+    case NODE_BINARY: return compute_try(ev, node, number) || binary(ev, node, number, other);
     case NODE_UNARY:
         if (node->op == '(') return eval_operand(ev, node->as.operand.a, number, other);
         return any_operand(ev, node, number, other);
@@ -87,4 +84,13 @@ Value eval_node(Eval *ev, const Node *node) {
 bool eval_float(Eval *ev, const Node *node, double *out) {
     Value other;
     return eval_operand(ev, node, out, &other) || value_to_float(ev, &other, node->span, out);
+}
+
+bool eval_condition(Eval *ev, const Node *node, bool *out) {
+    Value other;
+    double number;
+    *out = false;
+    if (!eval_operand(ev, node, &number, &other) && !value_to_float(ev, &other, node->span, &number)) return false;
+    *out = value_is_true(number);
+    return true;
 }

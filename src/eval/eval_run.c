@@ -361,6 +361,20 @@ static bool is_macro_call(const Eval *ev, const Node *node) {
            scope_classify(ev, node->as.apply.base->as.name, &macro) == NAME_MACRO;
 }
 
+static void run_value(Eval *ev, const Node *node, Sink *sink) {
+    Value v;
+    double number;
+    if (eval_operand(ev, node, &number, &v)) {
+        v = value_float(number);
+        if (sink->kind == SINK_SINGLE && !sink->filled) {
+            sink->value = v;
+            sink->filled = true;
+            return;
+        }
+    }
+    sink_value(ev, sink, v, node->span);
+}
+
 Flow run_node(Eval *ev, const Node *node, Sink *sink) {
     Flow flow = FLOW_NEXT;
     switch (node->kind) {
@@ -392,7 +406,7 @@ Flow run_node(Eval *ev, const Node *node, Sink *sink) {
         if (is_macro_call(ev, node)) return run_call(ev, node, sink);
         sink_value(ev, sink, eval_node(ev, node), node->span);
         break;
-    default: sink_value(ev, sink, eval_node(ev, node), node->span); break;
+    default: run_value(ev, node, sink); break;
     }
     if (ev->diags->error_count && diag_full(ev->diags)) ev->stopped = true;
     return ev->stopped ? FLOW_STOP : flow;

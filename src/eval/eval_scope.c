@@ -87,10 +87,14 @@ Slot *scope_bind(Eval *ev, Name name, Slot *reference, const Value *value) {
     NameClass before = binding_class(scope_find(ev, name));
     VarBinding *b = push(ev, name, ev->scope);
     uint64_t stamp = ev->name_stamp;
-    if (reference)
+    if (reference) {
         b->slot = reference;
-    else
+    } else if (value->kind == VALUE_FLOAT) {
+        b->own.value = *value;
+        b->own.set = true;
+    } else {
         slot_set(ev, b->slot, value);
+    }
     ev->name_stamp = stamp;
     note_change(ev, before, binding_class(b));
     return b->slot;

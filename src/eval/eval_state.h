@@ -228,11 +228,27 @@ NameClass scope_classify(const Eval *ev, Name name, const Macro **macro);
 NameClass slot_class(const Slot *slot);
 
 /* ---- eval_compute.c ---- */
-typedef struct Compute Compute;
-/* The code of a binary expression, made when it is met for the second time; NULL: not yet, or it cannot be compiled. */
-const Compute *compute_prepare(Eval *ev, const Node *node);
+typedef struct ComputeStep {
+    uint8_t op;
+    uint8_t from;     /* where the operand is */
+    uint32_t name_id; /* of an operand that is a name */
+    double number;
+} ComputeStep;
+typedef struct Compute {
+    uint32_t count; /* 0: no code */
+    bool pending;   /* no code yet */
+    ComputeStep steps[];
+} Compute;
+/* Makes the code of a binary expression when it is met for the second time. */
+void compute_prepare(Eval *ev, const Node *node);
 /* False where the code is not made for the values that it meets: nothing has happened then. */
 bool compute_run(const Eval *ev, const Compute *compute, double *out);
+static inline bool compute_try(Eval *ev, const Node *node, double *out) {
+    const Compute *compute = node->as.operand.compute;
+    if (compute && compute->count) return compute_run(ev, compute, out);
+    if (!compute || compute->pending) compute_prepare(ev, node);
+    return false;
+}
 
 /* ---- eval_node.c, eval_expression.c ---- */
 Value eval_node(Eval *ev, const Node *node);

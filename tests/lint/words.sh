@@ -39,7 +39,7 @@ example_words doc/reference/directives.md > "$folder/directive_examples"
 
 { keywords 'CONSTANT|COLOR|WORD'; context_words; } | require "table or heading" "$folder/all" "doc/scene.md, doc/reference"
 { keywords 'FUNCTION|CONSTANT'; known_functions; } | require "table" "$folder/functions" doc/reference/functions.md
-{ keywords 'FUNCTION|CONSTANT'; known_functions; } | grep -vxE 'internal|inside|trace' | require "example" "$folder/function_examples" doc/reference/functions.md
+{ keywords 'FUNCTION|CONSTANT'; known_functions; } | grep -vx internal | require "example" "$folder/function_examples" doc/reference/functions.md
 { keywords DIRECTIVE; echo version; } | sed 's/^/#/' | require "table" "$folder/directives" doc/reference/directives.md
 { keywords DIRECTIVE; echo version; } | sed 's/^/#/' | require "example" "$folder/directive_examples" doc/reference/directives.md
 exit $failed

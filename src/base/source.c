@@ -22,7 +22,7 @@ static SourceFile *add_file(SourceSet *set, const char *path, const char *name, 
 
 SourceStatus source_load(SourceSet *set, const char *path, const char *name, const SourceFile **out) {
     for (size_t i = 0; i < set->count; i++)
-        if (strcmp(set->items[i]->path, path) == 0) {
+        if (!set->items[i]->stale && strcmp(set->items[i]->path, path) == 0) {
             *out = set->items[i];
             return SOURCE_OK;
         }
@@ -57,8 +57,20 @@ SourceStatus source_load(SourceSet *set, const char *path, const char *name, con
         return status;
     }
     text[size] = '\0';
-    *out = add_file(set, path, name, text, size);
+    SourceFile *file = add_file(set, path, name, text, size);
+    file->device = (uint64_t)info.st_dev;
+    file->inode = (uint64_t)info.st_ino;
+    *out = file;
     return SOURCE_OK;
+}
+
+void source_forget(SourceSet *set, const char *path) {
+    struct stat info;
+    if (stat(path, &info) != 0) return;
+    for (size_t i = 0; i < set->count; i++) {
+        SourceFile *file = set->items[i];
+        if (file->inode == (uint64_t)info.st_ino && file->device == (uint64_t)info.st_dev) file->stale = true;
+    }
 }
 
 const SourceFile *source_add_text(SourceSet *set, const char *name, const char *text, size_t size) {

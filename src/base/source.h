@@ -17,6 +17,8 @@ typedef struct SourceFile {
     uint32_t id;       /* its Span.file */
     uint32_t *lines;   /* offset of each line's first byte; made by the first source_locate() */
     uint32_t line_count;
+    uint64_t device, inode; /* which file of the disk it was, 0 and 0 for text from memory */
+    bool stale;             /* the file has been written since: source_load() reads it again */
 } SourceFile;
 
 typedef struct SourceSet {
@@ -37,6 +39,8 @@ void source_set_init(SourceSet *set, Arena *arena);
 /* Reads a file whole. SOURCE_BINARY when it holds a NUL byte; SOURCE_TOO_LARGE past 1 GiB. A file that the set
  * already holds (same path) is returned again. `name` is shown in diagnostics (copied; NULL: the path). */
 SourceStatus source_load(SourceSet *set, const char *path, const char *name, const SourceFile **out);
+/* To be called when a file is written: what the set holds of it, under whatever path, is not returned again. */
+void source_forget(SourceSet *set, const char *path);
 /* Takes text that is already in memory (copied). */
 const SourceFile *source_add_text(SourceSet *set, const char *name, const char *text, size_t size);
 

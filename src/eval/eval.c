@@ -84,6 +84,10 @@ TokenList *eval_load_include(Eval *ev, const Node *node, Span *path_span) {
         ev->stopped = true;
         return NULL;
     }
+    MemoryFile *written = files_in_memory(ev, name);
+    if (written)
+        return load(ev, source_add_text(ev->sources, name, written->text.data ? written->text.data : "",
+                                        written->text.size));
     Diagnostic *refused = NULL;
     StrBuf places = {0};
     const char *path = path_find(ev, name, *path_span, &refused, &places);

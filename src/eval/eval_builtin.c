@@ -97,7 +97,6 @@ static Value two_arguments(Eval *ev, const Node *node) {
         if (a == 0 && b == 0) return eval_fail(ev, node->span, "pow(0, 0) has no value");
         if (a < 0 && b != trunc(b))
             return eval_fail(ev, node->span, "pow() of a negative number with a fractional exponent");
-        if (a == 0 && b < 0) return eval_fail(ev, node->span, "pow() of 0 with a negative exponent");
         return value_float(pow(a, b));
     }
 }

@@ -13,14 +13,17 @@ MemoryFile *files_in_memory(const Eval *ev, const char *name) {
     return NULL;
 }
 
-static void close_file(UserFile *f) {
-    if (f->stream) fclose(f->stream);
+static void close_file(Eval *ev, UserFile *f) {
+    if (f->stream) {
+        fclose(f->stream);
+        source_forget(ev->sources, f->path);
+    }
     f->stream = NULL;
     f->open = false;
 }
 
 void files_close_all(Eval *ev) {
-    for (UserFile *f = ev->files; f; f = f->next) close_file(f);
+    for (UserFile *f = ev->files; f; f = f->next) close_file(ev, f);
     for (MemoryFile *m = ev->memory; m; m = m->next) strbuf_free(&m->text);
     ev->memory = NULL;
 }
@@ -72,6 +75,8 @@ static bool open_for_writing(Eval *ev, UserFile *f, const char *name, Span span)
         diag_hint(ev->diags, d, "--allow-write gives it a folder");
         return false;
     }
+    f->path = path;
+    source_forget(ev->sources, path);
     f->stream = fopen(path, f->mode == KW_append ? "ab" : "wb");
     if (!f->stream) diag_error(ev->diags, span, "'%s' cannot be written: %s", path, strerror(errno));
     return f->stream != NULL;
@@ -115,7 +120,7 @@ void run_fclose(Eval *ev, const Node *node) {
     const Node *handle = node->as.list.items[0];
     UserFile *f = handle_of(ev, handle);
     if (!f) return;
-    close_file(f);
+    close_file(ev, f);
     if (handle->kind == NODE_NAME) scope_undef(ev, handle->as.name);
 }
 

@@ -113,8 +113,10 @@ typedef struct SplineReader {
     size_t capacity;
     bool have_time, failed;
     double time;
+    double last[5]; /* the point before */
 } SplineReader;
 
+/* As in POV-Ray a float is a vector of two, and the components that a point lacks are those of the point before. */
 static void add_point(SplineReader *r, const Value *v) {
     struct {
         SplinePoint *items;
@@ -122,12 +124,12 @@ static void add_point(SplineReader *r, const Value *v) {
     } list = {r->spline->points, r->spline->count, r->capacity};
     SplinePoint *p = list_push(r->ev->build.arena, &list);
     *p = (SplinePoint){.at = r->time};
-    for (int k = 0; k < 5; k++)
-        p->value[k] = k < v->size || v->kind != VALUE_FLOAT ? value_component(v, k) : 0;
+    int size = v->kind == VALUE_FLOAT ? 2 : v->size;
+    for (int k = 0; k < 5; k++) p->value[k] = k < size ? value_component(v, k) : r->last[k];
+    memcpy(r->last, p->value, sizeof r->last);
     r->spline->points = list.items;
     r->spline->count = list.count;
     r->capacity = list.capacity;
-    int size = v->kind == VALUE_FLOAT ? 1 : v->size;
     if (size > r->spline->size) r->spline->size = size;
 }
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # words.sh ROOT: no word of the language is missing in the reference. Tables and headings of doc/scene.md and doc/reference name
 # every reserved word, every word of vts's own blocks and their items, in code (`word`). doc/reference/functions.md has each
-# function and constant, doc/reference/directives.md each directive, in a table and in an example. Prints what is missing;
-# status 1 then.
+# function and constant, doc/reference/directives.md each directive, in a table and in an example; doc/reference/words.md names
+# no word that is not there. Prints what is missing; status 1 then.
 set -u -o pipefail
 export LC_ALL=C
 cd "$1" || exit 2
@@ -42,4 +42,10 @@ example_words doc/reference/directives.md > "$folder/directive_examples"
 { keywords 'FUNCTION|CONSTANT'; known_functions; } | grep -vx internal | require "example" "$folder/function_examples" doc/reference/functions.md
 { keywords DIRECTIVE; echo version; } | sed 's/^/#/' | require "table" "$folder/directives" doc/reference/directives.md
 { keywords DIRECTIVE; echo version; } | sed 's/^/#/' | require "example" "$folder/directive_examples" doc/reference/directives.md
+
+# And the index names no word that is not there: the first word of each code span in a first cell.
+{ keywords '[A-Z]*'; context_words; } | sort -u > "$folder/words"
+sed -n 's/^| \(`[^|]*\) |.*/\1/p' doc/reference/words.md | grep -oE '`[a-z][a-z0-9_]*' | tr -d '`' | sort -u > "$folder/indexed"
+comm -23 "$folder/indexed" "$folder/words" > "$folder/stale"
+[ -s "$folder/stale" ] && { sed "s|.*|doc/reference/words.md: there is no word '&'|" "$folder/stale"; failed=1; }
 exit $failed

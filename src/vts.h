@@ -51,8 +51,8 @@ typedef struct VtsOptions {
     int width, height;               /* of the picture; default 768 × 576 */
     int threads;                     /* 0: all processors */
     double clock;                    /* the language's `clock`; default 0 */
-    bool clock_set;                  /* clock was given (clock_on) */
-    int frame, first_frame, last_frame; /* `frame_number` and the like; default 1, 1, 1 */
+    bool clock_set;                  /* clock was given */
+    int frame, first_frame, last_frame; /* `frame_number` and the like; default 1, 1, 1: no film, they read as 0 */
     double first_clock, last_clock;  /* `initial_clock`, `final_clock`; default 0, 1 */
     double clock_delta;              /* from one frame to the next; default 1 */
     unsigned long long seed;         /* for sampling */

@@ -14,9 +14,11 @@ bool builtin_argument_count(Eval *ev, const Node *node, size_t least, size_t mos
         diag_error(ev->diags, node->span, "%s() takes %zu argument%s, %zu given", name, least,
                    least == 1 ? "" : "s", count);
     else if (count < least)
-        diag_error(ev->diags, node->span, "%s() takes at least %zu arguments, %zu given", name, least, count);
+        diag_error(ev->diags, node->span, "%s() takes at least %zu argument%s, %zu given", name, least, least == 1 ? "" : "s",
+                   count);
     else
-        diag_error(ev->diags, node->span, "%s() takes at most %zu arguments, %zu given", name, most, count);
+        diag_error(ev->diags, node->span, "%s() takes at most %zu argument%s, %zu given", name, most, most == 1 ? "" : "s",
+                   count);
     return false;
 }
 
@@ -48,7 +50,7 @@ static double one_argument(Eval *ev, const Node *node, double a, bool *failed) {
     case KW_degrees: return a / VTS_RADIANS;
     case KW_exp: return exp(a);
     case KW_floor: return floor(a);
-    case KW_int: return trunc(a);
+    case KW_int: return value_to_int(a);
     case KW_radians: return a * VTS_RADIANS;
     case KW_sin: return sin(a);
     case KW_sinh: return sinh(a);
@@ -90,13 +92,17 @@ static Value two_arguments(Eval *ev, const Node *node) {
     double a, b;
     if (!two_floats(ev, node, &a, &b)) return value_error();
     switch (node->op) {
-    case KW_atan2: return value_float(atan2(a, b));
-    case KW_div: return b == 0 ? eval_fail(ev, node->span, "div() by zero") : value_float(trunc(a / b));
+    case KW_atan2:
+        if (a == 0 && b == 0) return eval_fail(ev, node->span, "atan2(0, 0) has no value");
+        return value_float(atan2(a, b));
+    case KW_div:
+        if (b == 0) diag_warning(ev->diags, node->span, "div() by zero");
+        return value_float(value_to_int(a / b));
     case KW_mod: return value_float(fmod(a, b));
     default:
         if (a == 0 && b == 0) return eval_fail(ev, node->span, "pow(0, 0) has no value");
-        if (a < 0 && b != trunc(b))
-            return eval_fail(ev, node->span, "pow() of a negative number with a fractional exponent");
+        if ((a < 0 && b != trunc(b)) || (a == 0 && b < 0))
+            diag_warning(ev->diags, node->span, "pow(%g, %g) has no finite value", a, b);
         return value_float(pow(a, b));
     }
 }
@@ -105,23 +111,22 @@ static double fold_two(int op, double a, double b) {
     switch (op) {
     case KW_min: return b < a ? b : a; /* of 0 and -0 the first, as in POV-Ray */
     case KW_max: return b > a ? b : a;
-    case KW_bitwise_and: return (double)((int64_t)a & (int64_t)b);
-    case KW_bitwise_or: return (double)((int64_t)a | (int64_t)b);
-    default: return (double)((int64_t)a ^ (int64_t)b);
+    case KW_bitwise_and: return (int32_t)a & (int32_t)b;
+    case KW_bitwise_or: return (int32_t)a | (int32_t)b;
+    default: return (int32_t)a ^ (int32_t)b;
     }
 }
 
-/* min, max and the bitwise functions: two arguments or more. */
+/* min, max and the bitwise functions: any number of arguments. */
 static Value many_arguments(Eval *ev, const Node *node) {
-    if (!builtin_argument_count(ev, node, 2, SIZE_MAX)) return value_error();
+    if (!builtin_argument_count(ev, node, 1, SIZE_MAX)) return value_error();
     bool bits = node->op != KW_min && node->op != KW_max;
     double result = 0;
     for (size_t i = 0; i < node->as.list.count; i++) {
         double a;
         if (!eval_float(ev, node->as.list.items[i], &a)) return value_error();
-        if (bits && !(fabs(a) < 0x1p62))
-            return eval_fail(ev, node->as.list.items[i]->span, "this is no whole number of at most 62 bits");
-        result = i == 0 ? (bits ? trunc(a) : a) : fold_two(node->op, result, a);
+        if (bits) a = value_to_int(a);
+        result = i == 0 ? a : fold_two(node->op, result, a);
     }
     return value_float(result);
 }
@@ -135,7 +140,7 @@ static Value select_value(Eval *ev, const Node *node) {
     for (size_t i = 0; i < count; i++) v[i] = eval_node(ev, node->as.list.items[i + 1]);
     if (!ok) return value_error();
     if (test < 0) return v[0];
-    return count == 3 && test > 0 ? v[2] : v[1];
+    return count == 3 && test != 0 ? v[2] : v[1];
 }
 
 static bool vector_argument(Eval *ev, const Node *node, size_t i, double out[3]) {
@@ -196,7 +201,7 @@ static Value seed_stream(Eval *ev, const Node *node) {
         uint32_t *items;
         size_t count, capacity;
     } list = {ev->streams, ev->stream_count, ev->stream_capacity};
-    *list_push(ev->parse, &list) = fabs(s) < 0x1p62 ? (uint32_t)(int64_t)s : 0;
+    *list_push(ev->parse, &list) = (uint32_t)(int32_t)value_to_int(s);
     ev->streams = list.items;
     ev->stream_count = list.count;
     ev->stream_capacity = list.capacity;
@@ -228,8 +233,7 @@ static Value dimensions(Eval *ev, const Node *node) {
     if (v.kind == VALUE_ERROR) return v;
     if (v.kind != VALUE_ARRAY) return eval_fail(ev, node->as.list.items[0]->span, "expected an array, found %s", value_kind_text(v.kind));
     if (!sized) return value_float(array_rank(v.as.array));
-    if (!(which >= 1)) return eval_fail(ev, node->as.list.items[1]->span, "dimensions count from 1, found %g", which);
-    return value_float(which > 64 ? 0 : (double)array_extent(v.as.array, (int)which - 1));
+    return value_float(!(which >= 1 && which <= 64) ? 0 : (double)array_extent(v.as.array, (int)which - 1));
 }
 
 /* Days since 2000-01-01 00:00 UTC. */

@@ -1,6 +1,7 @@
 #include "eval/eval_state.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,12 +40,43 @@ static Value concat(Eval *ev, const Node *node) {
     return value_error();
 }
 
+/* ---- characters: UTF-8, and bytes that are none stand for themselves ---- */
+
+static size_t char_bytes(const char *text, size_t left) {
+    unsigned char first = (unsigned char)text[0];
+    size_t n = first < 0xC2 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 1;
+    if (n > left) return 1;
+    for (size_t i = 1; i < n; i++)
+        if (((unsigned char)text[i] & 0xC0) != 0x80) return 1;
+    return n;
+}
+
+static size_t char_count(const char *text, size_t length) {
+    size_t count = 0;
+    for (size_t at = 0; at < length; count++) at += char_bytes(text + at, length - at);
+    return count;
+}
+
+/* The byte at which the character with this index (from 0) begins. */
+static size_t char_begin(const char *text, size_t length, size_t index) {
+    size_t at = 0;
+    for (; index > 0 && at < length; index--) at += char_bytes(text + at, length - at);
+    return at;
+}
+
+static unsigned char_code(const char *text, size_t length) {
+    static const uint8_t lead[] = {0, 0x7F, 0x1F, 0x0F, 0x07};
+    if (length == 0) return 0;
+    size_t n = char_bytes(text, length);
+    unsigned code = n == 1 ? (unsigned char)text[0] : (unsigned char)text[0] & lead[n];
+    for (size_t i = 1; i < n; i++) code = code << 6 | ((unsigned char)text[i] & 0x3F);
+    return code;
+}
+
 /* POV-Ray's format: as C's %w.df; a negative width pads with zeros; negative digits ask for C's own six. */
 static void add_number(StrBuf *out, double value, double width, double digits) {
-    int w = (int)double_clamp(width, -1000, 1000), d = (int)double_clamp(digits, -1, 1000);
-    if (digits < 0)
-        strbuf_addf(out, "%f", value);
-    else if (w < 0)
+    int w = (int)double_clamp(width, -1000, 1000), d = digits < 0 ? 6 : (int)double_clamp(digits, 0, 1000);
+    if (w < 0)
         strbuf_addf(out, "%0*.*f", -w, d, value);
     else
         strbuf_addf(out, "%*.*f", w, d, value);
@@ -127,12 +159,14 @@ static Value substr(Eval *ev, const Node *node) {
     if (!builtin_argument_count(ev, node, 3, 3) || !string_argument(ev, node, 0, &text, &length) ||
         !eval_float(ev, node->as.list.items[1], &first) || !eval_float(ev, node->as.list.items[2], &count))
         return value_error();
-    if (!(first >= 1 && count >= 0 && first - 1 + count <= (double)length)) {
-        diag_error(ev->diags, node->span, "substr(): characters %g to %g of a string of %zu", first,
-                   first + count - 1, length);
-        return value_error();
-    }
-    return value_string(ev, text + (size_t)first - 1, (size_t)count);
+    size_t characters = char_count(text, length);
+    first = trunc(first);
+    count = trunc(count);
+    if (!(first >= 1 && count >= 0 && first - 1 + count <= (double)characters))
+        return eval_fail(ev, node->span, "substr(): characters %g to %g of a string of %zu", first,
+                         first + count - 1, characters);
+    size_t begin = char_begin(text, length, (size_t)first - 1);
+    return value_string(ev, text + begin, char_begin(text + begin, length - begin, (size_t)count));
 }
 
 /* datetime(days since 2000-01-01 [, strftime format]) */
@@ -142,6 +176,7 @@ static Value datetime(Eval *ev, const Node *node) {
     if (!builtin_argument_count(ev, node, 1, 2) || !eval_float(ev, node->as.list.items[0], &days))
         return value_error();
     if (node->as.list.count == 2 && !string_argument(ev, node, 1, &format, NULL)) return value_error();
+    if (*format == '\0') return eval_fail(ev, node->span, "datetime() needs a format that is not empty");
     if (!(days > -700000 && days < 3000000)) {
         diag_error(ev->diags, node->span, "datetime(%g) is no date", days);
         return value_error();
@@ -162,8 +197,8 @@ static Value text_measure(Eval *ev, const Node *node) {
         !string_argument(ev, node, 0, &a, &length))
         return value_error();
     switch (node->op) {
-    case KW_asc: return value_float((unsigned char)a[0]);
-    case KW_strlen: return value_float((double)length);
+    case KW_asc: return value_float(char_code(a, length));
+    case KW_strlen: return value_float((double)char_count(a, length));
     case KW_val: return value_float(strtod(a, NULL));
     case KW_file_exists: return value_float(file_exists_for(ev, a, node->span));
     default: return string_argument(ev, node, 1, &b, NULL) ? value_float(strcmp(a, b)) : value_error();

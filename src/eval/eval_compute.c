@@ -180,11 +180,11 @@ static VTS_NOINLINE double compute_rare(ComputeOp op, double a, double b, bool *
     case COMPUTE_CEIL: return ceil(a);
     case COMPUTE_COS: return cos(a);
     case COMPUTE_FLOOR: return floor(a);
-    case COMPUTE_INT: return trunc(a);
+    case COMPUTE_INT: return value_to_int(a);
     case COMPUTE_RADIANS: return a * VTS_RADIANS;
     case COMPUTE_SIN: return sin(a);
     case COMPUTE_SQRT: *gives_up = !(a >= 0); return sqrt(a);
-    case COMPUTE_DIV: *gives_up = b == 0; return trunc(a / b);
+    case COMPUTE_DIV: *gives_up = b == 0; return value_to_int(a / b);
     default: *gives_up = b == 0; return fmod(a, b);
     }
 }

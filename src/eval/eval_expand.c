@@ -109,7 +109,7 @@ static bool repeat_for(Source *s, Frame *f, bool first) {
     if (!b || b->slot->value.kind != VALUE_FLOAT) return false;
     double *now = &b->slot->value.as.number;
     if (!first) *now += f->step;
-    if (f->step > 0 ? *now > f->to + 1e-10 : *now < f->to - 1e-10) return false;
+    if (!(f->step > 0 ? *now <= f->to + 1e-10 : *now >= f->to - 1e-10)) return false;
     if (!next_pass(s, f)) return false;
     to_body(f, &f->node->as.for_loop.body);
     return true;
@@ -463,6 +463,7 @@ static void source_init(Source *s, Eval *ev, Parser *p, const ParserHost *host, 
                   .keywords = &ev->keywords,
                   .host = host,
                   .slow = true,
+                  .semicolons_optional = ev->version < 3.5,
                   .list = frame->list};
 }
 

@@ -52,6 +52,8 @@ static Value eval_dot(Eval *ev, const Node *node) {
         diag_error(ev->diags, node->span, "%s has no components", value_kind_text(v.kind));
         return v = value_error();
     }
+    if (node->op != DOT_GRAY && v.kind == VALUE_VECTOR && node->op >= v.size)
+        return eval_fail(ev, node->span, "a vector of %d components has no such one", v.size);
     if (node->op == DOT_GRAY)
         return value_float(0.297 * value_component(&v, 0) + 0.589 * value_component(&v, 1) +
                            0.114 * value_component(&v, 2));
@@ -120,15 +122,14 @@ static int component_index(int keyword) {
     case KW_red: return 0;
     case KW_green: return 1;
     case KW_blue: return 2;
-    case KW_filter: return 3;
+    case KW_filter:
+    case KW_alpha: return 3;
     default: return 4;
     }
 }
 
 static void color_from(int keyword, const Value *v, double out[5]) {
-    bool whole = keyword == KW_color || keyword == KW_rgbft || keyword == KW_srgbft;
-    int given = v->kind == VALUE_FLOAT ? (whole && keyword == KW_color ? 3 : 5) : v->size;
-    for (int i = 0; i < 5; i++) out[i] = i < given || v->kind != VALUE_FLOAT ? value_component(v, i) : 0;
+    for (int i = 0; i < 5; i++) out[i] = value_component(v, i);
     if (keyword == KW_rgb || keyword == KW_srgb) {
         if (v->kind == VALUE_FLOAT)
             out[3] = out[4] = 0;
@@ -137,10 +138,8 @@ static void color_from(int keyword, const Value *v, double out[5]) {
     } else if (keyword == KW_rgbf || keyword == KW_srgbf) {
         if (v->size <= 4) out[4] = 0;
     } else if (keyword == KW_rgbt || keyword == KW_srgbt) {
-        if (v->size <= 4) {
-            out[4] = out[3];
-            out[3] = 0;
-        }
+        out[4] = out[3];
+        out[3] = 0;
     }
     if (keyword == KW_srgb || keyword == KW_srgbf || keyword == KW_srgbt || keyword == KW_srgbft)
         for (int i = 0; i < 3; i++) out[i] = srgb_to_linear(out[i]);

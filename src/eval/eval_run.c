@@ -82,6 +82,7 @@ const Statement *statement_at(Eval *ev, Program *program, uint32_t at, uint32_t 
                 .list = program->tokens,
                 .at = at,
                 .end = end,
+                .semicolons_optional = ev->version < 3.5,
                 .block = block};
     Node *n = ev->options->expand_always ? NULL : parser_statement(&p);
     if (!s) s = program->memo[at] = arena_new(ev->parse, Statement);
@@ -237,7 +238,7 @@ static Flow run_for(Eval *ev, const Node *node, Sink *sink) {
         }
         /* A limit missed by rounding still counts: 0 to 1 by 0.1 makes 11 passes. */
         double now = b->slot->value.as.number;
-        if (step > 0 ? now > to + 1e-10 : now < to - 1e-10)
+        if (!(step > 0 ? now <= to + 1e-10 : now >= to - 1e-10))
             return run_group_end(ev, node, &node->as.for_loop.body, false);
         Flow flow = run_loop_guard(ev, &passes, errors, node->span);
         if (flow == FLOW_NEXT) flow = run_pass(ev, node, &node->as.for_loop.body, sink);
@@ -281,6 +282,8 @@ void run_assign(Eval *ev, const Node *node) {
         v = eval_block(ev, source, target->as.name);
     else
         is_float = eval_operand(ev, source, &number, &v);
+    if (v.kind == VALUE_VECTOR && v.size > 5)
+        v = eval_fail(ev, source->span, "a vector has 2 to 5 components, this one %d", v.size);
     if (target->kind == NODE_NAME) {
         Slot *slot = scope_declare(ev, target->as.name, node->as.declare.local);
         if (is_float)
@@ -307,8 +310,6 @@ static void run_undef(Eval *ev, const Node *node) {
         VarBinding *b = scope_find(ev, target->as.name);
         if (!b || !b->slot->set)
             diag_warning(ev->diags, target->span, "'%s' is not declared", target->as.name->text);
-        else if (b->slot != &b->own)
-            slot_clear(ev, b->slot);
         scope_undef(ev, target->as.name);
         return;
     }

@@ -189,8 +189,12 @@ bool value_is_numeric(const Value *v);
 double value_component(const Value *v, int i);
 /* POV-Ray's tolerance: nearer than this to 0 is false, nearer than this to each other is equal. */
 #define VALUE_TOLERANCE 1e-10
-static inline bool value_is_true(double number) { return !(fabs(number) < VALUE_TOLERANCE); }
-static inline bool value_are_equal(double a, double b) { return fabs(a - b) < VALUE_TOLERANCE; }
+static inline bool value_is_true(double number) { return fabs(number) > VALUE_TOLERANCE; }
+static inline bool value_are_equal(double a, double b) { return !value_is_true(a - b); }
+/* Whole numbers are C's int, and what lies outside of it is its least one, as in POV-Ray on common machines. */
+static inline double value_to_int(double a) {
+    return a > -2147483649.0 && a < 2147483648.0 ? trunc(a) + 0.0 : -2147483648.0;
+}
 Value value_unary(Eval *ev, int op, Value a, Span span);
 Value value_binary(Eval *ev, int op, Value a, Value b, Span span);
 double value_float_binary(Eval *ev, int op, double a, double b, Span span);

@@ -106,7 +106,7 @@ static bool is_word_start(char c) { return isalpha((unsigned char)c) || c == '_'
 static bool is_word_part(char c) { return isalnum((unsigned char)c) || c == '_'; }
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/* number = (digits ["." [digits]] | "." digits) [("e" | "E") ["+" | "-"] digits] */
+/* number = (digits ["." [digits]] | "." digits) [("e" | "E") ["+" | "-"] [digits]] */
 static void lex_number(Lexer *lx) {
     uint32_t begin = lx->at;
     const char *text = lx->text;
@@ -116,10 +116,8 @@ static void lex_number(Lexer *lx) {
     if (text[lx->at] == 'e' || text[lx->at] == 'E') {
         uint32_t exponent = lx->at + 1;
         if (text[exponent] == '+' || text[exponent] == '-') exponent++;
-        if (is_digit(text[exponent])) {
-            lx->at = exponent;
-            while (is_digit(text[lx->at])) lx->at++;
-        }
+        if (!is_word_part(text[exponent]) || is_digit(text[exponent])) lx->at = exponent;
+        while (is_digit(text[lx->at])) lx->at++;
     }
     push(lx, TOKEN_NUMBER, begin)->as.number = strtod(text + begin, NULL);
 }
@@ -150,8 +148,8 @@ static bool unicode_escape(Lexer *lx, StrBuf *out) {
     int digits = 0;
     for (; digits < 4 && hex_digit(lx->text[lx->at]) >= 0; digits++, lx->at++)
         code = code * 16 + (unsigned)hex_digit(lx->text[lx->at]);
-    if (digits == 0 || code == 0) return false;
-    add_utf8(out, code);
+    if (digits == 0) return false;
+    if (code) add_utf8(out, code);
     return true;
 }
 

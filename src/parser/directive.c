@@ -344,7 +344,7 @@ static Node *declare_directive(Parser *p, Token head) {
     n->as.declare.target = parser_target(p);
     if (!n->as.declare.target || !parser_expect(p, '=', "'='")) return NULL;
     Token first = p->slow ? *p->host->after(p->host->context, 0) : *parser_peek(p);
-    Node *value = parser_expression(p);
+    Node *value = parser_begins_component(p) ? parser_color(p) : parser_expression(p);
     if (value && p->closed && first.kind == TOKEN_WORD && first.keyword == KW_texture && texture_follows(p))
         value = layers(p, value, first);
     n->as.declare.value = value;
@@ -356,7 +356,7 @@ static Node *declare_directive(Parser *p, Token head) {
         p->failed = true;
         return NULL;
     }
-    if (accept_semicolon(p)) return n;
+    if (accept_semicolon(p) || p->semicolons_optional) return n;
     if (needs_semicolon(value)) {
         const Token *t = p->slow && !p->has_window ? p->host->after(p->host->context, 0) : parser_peek(p);
         Span after = {p->last.span.file, p->last.span.end, p->last.span.end};

@@ -73,7 +73,9 @@ bool parser_arguments(Parser *p, NodeList *out) {
             if (!e) return false;
             *list_push(p->arena, out) = e;
         }
-        if (!parser_accept(p, ',') && !(p->closed && parser_begins_expression(p, false))) break;
+        /* POV-Ray misses no comma between arguments, and does not mind one after the last. */
+        if (!parser_accept(p, ',') && !parser_begins_expression(p, false)) break;
+        if (!reference_follows(p) && parser_peek(p)->kind == ')') break;
     }
     if (!parser_expect(p, ')', "',' or ')'")) return false;
     p->brackets--;

@@ -148,7 +148,9 @@ static Node *keyword_item(Parser *p) {
     }
     if (t->keyword == KW_function || t->keyword == KW_array) return parser_expression(p);
     if (parser_begins_component(p) && components_make_colors(p)) return parser_color(p);
-    if (t->keyword == KW_default && brace) { /* old scenes leave its # out */
+    bool bare = (t->keyword == KW_default && brace) || (t->keyword == KW_declare && !p->block) ||
+                (t->keyword == KW_include && after == TOKEN_STRING);
+    if (bare) { /* old scenes leave the # out */
         uint32_t next;
         parser_take(p);
         return parser_directive(p, p->list, 0, &next);

@@ -71,6 +71,7 @@ struct Parser {
     bool in_function;
     bool unfolded;   /* operands are kept as trees */
     bool heads_only; /* branches of directives need not be whole: the text after #end may complete them */
+    bool semicolons_optional; /* before version 3.5 of the language */
     bool guessing;   /* names that mean nothing yet are taken for values */
     bool crossed; /* slow road: a group ended between an operand and what follows it, outside of brackets */
     bool closed;  /* the last operand was a block, a function, an array or a text: no operator follows */

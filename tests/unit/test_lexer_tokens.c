@@ -50,8 +50,10 @@ static void test_numbers(void **state) {
         arena_destroy(&l.arena);
     }
     Lexed l;
-    lex(&l, "1e 2.x"); /* an e without digits is a word; a component follows its dot */
-    assert_int_equal(at(&l, 1)->kind, TOKEN_WORD);
+    lex(&l, "1e 2e+ 3ex"); /* POV-Ray takes an e without digits for an exponent of 0, unless a word begins with it */
+    assert_int_equal(l.list->count, 5);
+    assert_true(at(&l, 0)->as.number == 1 && at(&l, 1)->as.number == 2 && at(&l, 2)->as.number == 3);
+    assert_int_equal(at(&l, 3)->kind, TOKEN_WORD);
     arena_destroy(&l.arena);
 }
 

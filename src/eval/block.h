@@ -59,6 +59,7 @@ struct EvalBlock {
     Span span;       /* from the keyword to the closing brace */
     const BlockItem *items;
     size_t count;
+    Name outer;       /* the word of the block in which this one stands, or NULL */
     Name declared_as; /* the name of `#declare Name = texel { … }` when the block is its whole right side; else NULL */
 };
 

@@ -44,7 +44,8 @@ static void read_angle(Reader *reader, const Word *word, void *target) {
     if (!word_arguments(reader, word, 1, 2) || !word_float(reader, word, 0, &draft->angle)) return;
     draft->angle_span = word->arguments[0].span;
     if (draft->angle < 0)
-        reader_error(reader, draft->angle_span, "the camera's angle cannot be negative, found %g", draft->angle);
+        reader_error(reader, draft->angle_span, "the camera's angle cannot be negative, found %g",
+                     draft->angle);
 }
 
 static void read_kind(Reader *reader, const Word *word, void *target) {
@@ -54,7 +55,8 @@ static void read_kind(Reader *reader, const Word *word, void *target) {
     grammar_word(reader, word);
     if (strcmp(word->text, "cylinder") == 0 && word->count && word_float(reader, word, 0, &type) &&
         !(type >= 1 && type < 5))
-        reader_error(reader, word->arguments[0].span, "the types of cylindrical cameras are 1 to 4, found %g", type);
+        reader_error(reader, word->arguments[0].span, "the types of cylindrical cameras are 1 to 4, found %g",
+                     type);
     inert_add(reader->context, &draft->camera.inert, word->text, word->span);
 }
 
@@ -63,8 +65,8 @@ static void read_blur_samples(Reader *reader, const Word *word, void *target) {
     double samples = 1;
     grammar_word(reader, word);
     if (word->count && word_float(reader, word, word->count - 1, &samples) && samples < 1)
-        reader_error(reader, word->arguments[word->count - 1].span, "'blur_samples' must be at least 1, found %g",
-                     samples);
+        reader_error(reader, word->arguments[word->count - 1].span,
+                     "'blur_samples' must be at least 1, found %g", samples);
 }
 
 #define FIELD(name) offsetof(CameraDraft, name)
@@ -172,8 +174,8 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
 static bool check_angle(Reader *reader, CameraDraft *draft) {
     if (draft->wide && draft->angle >= 180) draft->angle = 90;
     if (draft->angle < 180) return true;
-    reader_error(reader, draft->angle_span, "the angle of this camera must be less than 180 degrees, found %g",
-                 draft->angle);
+    reader_error(reader, draft->angle_span,
+                 "the angle of this camera must be less than 180 degrees, found %g", draft->angle);
     return false;
 }
 

@@ -33,6 +33,17 @@ static void read_phong(Reader *reader, const Word *word, void *target) {
     if (amount(reader, word, 1, &source)) word_float(reader, &source, 0, &((Finish *)target)->phong);
 }
 
+/* A roughness of 0 is taken for the least one. */
+static void read_roughness(Reader *reader, const Word *word, void *target) {
+    double value;
+    if (!word_arguments(reader, word, 1, 1) || !word_float(reader, word, 0, &value)) return;
+    if (value < 0)
+        reader_error(reader, word->arguments[0].span, "'roughness' cannot be negative, found %g", value);
+    if (value == 0)
+        diag_warning(reader->context->diags, word->arguments[0].span, "a roughness of 0 is taken as 1e-6");
+    ((Finish *)target)->roughness = value > 1e-6 ? value : 1e-6;
+}
+
 static const WordRule reflection_rules[] = {
     {"fresnel", WORD_FLAG, offsetof(Finish, fresnel), NULL, false},
     {"falloff", WORD_IGNORED, 0, NULL, false},
@@ -84,13 +95,15 @@ static const WordRule rules[] = {
     {"diffuse", WORD_CUSTOM, FIELD(diffuse), read_diffuse, false},
     {"brilliance", WORD_FLOAT, FIELD(brilliance), NULL, false},
     {"specular", WORD_CUSTOM, FIELD(specular), read_specular, false},
-    {"roughness", WORD_POSITIVE, FIELD(roughness), NULL, false},
+    {"roughness", WORD_CUSTOM, FIELD(roughness), read_roughness, false},
     {"phong", WORD_CUSTOM, FIELD(phong), read_phong, false},
     {"phong_size", WORD_FLOAT, FIELD(phong_size), NULL, false},
     {"metallic", WORD_CUSTOM, FIELD(metallic), read_metallic, false},
     {"reflection", WORD_CUSTOM, FIELD(reflection_min), read_reflection, false},
     {"fresnel", WORD_FLAG, FIELD(fresnel), NULL, false},
     {"conserve_energy", WORD_IGNORED, 0, NULL, false},
+    {"ior", WORD_IGNORED, 0, NULL, false},
+    {"refraction", WORD_IGNORED, 0, NULL, false},
     {"crand", WORD_IGNORED, 0, NULL, false},
     {"reflection_exponent", WORD_IGNORED, 0, NULL, false},
     {"irid", WORD_IGNORED, 0, NULL, false},

@@ -2,6 +2,8 @@
  * file holds a block or a word against it. */
 #include "eval/build_parts.h"
 
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct Grammar {
@@ -79,8 +81,8 @@ static bool is_numeric(ValueKind kind) {
 static const struct OperandKind {
     char letter;
     const char *text;
-} operand_kinds[] = {{'f', "a float"},    {'v', "a vector"},  {'c', "a colour"}, {'s', "a string"},
-                     {'F', "a function"}, {'o', "an object"}, {'p', "a pigment"}};
+} operand_kinds[] = {{'f', "a float"},    {'v', "a vector"},  {'c', "a colour"},  {'s', "a string"},
+                     {'F', "a function"}, {'o', "an object"}, {'p', "a pigment"}, {'x', "a texture"}};
 
 static bool operand_fits(char letter, ValueKind kind) {
     switch (letter) {
@@ -92,6 +94,7 @@ static bool operand_fits(char letter, ValueKind kind) {
     case 'F': return kind == VALUE_FUNCTION;
     case 'o': return kind == VALUE_OBJECT;
     case 'p': return kind == VALUE_PIGMENT;
+    case 'x': return kind == VALUE_TEXTURE;
     default: return true;
     }
 }
@@ -102,16 +105,35 @@ static const char *operand_text(char letter) {
     return "a value";
 }
 
+/* (LOW) or (LOW,HIGH) behind a float; returns where it closes. */
+static const char *check_range(Reader *reader, const char *name, const char *range,
+                               const Argument *argument) {
+    char *end;
+    double low = strtod(range + 1, &end);
+    double high = *end == ',' ? strtod(end + 1, &end) : HUGE_VAL;
+    double found = argument && argument->value.kind == VALUE_FLOAT ? argument->value.as.number : low;
+    if (!(found >= low && found <= high)) {
+        if (high < HUGE_VAL)
+            reader_error(reader, argument->span, "'%s' must lie between %g and %g, found %g", name, low, high,
+                         found);
+        else
+            reader_error(reader, argument->span, "'%s' must be at least %g, found %g", name, low, found);
+    }
+    return end;
+}
+
 /* Matches operands with `operands`; returns how many were used, and after an error says so in *ok. A body's grammar is left
  * in *body. */
-static size_t match(Reader *reader, const char *name, Span span, const char *operands, const Argument *arguments,
-                    size_t count, const char **body, bool *ok) {
+static size_t match(Reader *reader, const char *name, Span span, const char *operands,
+                    const Argument *arguments, size_t count, const char **body, bool *ok) {
     size_t used = 0;
     bool optional = false;
     *body = NULL;
     for (const char *p = operands; *p && *p != ' '; p++) {
         if (*p == '?') {
             optional = true;
+        } else if (*p == '(') {
+            p = check_range(reader, name, p, used ? &arguments[used - 1] : NULL);
         } else if (*p == '*') {
             while (used < count && operand_fits(p[-1], arguments[used].value.kind)) used++;
         } else if (*p == '{') {
@@ -123,7 +145,8 @@ static size_t match(Reader *reader, const char *name, Span span, const char *ope
             const char *what = arena_printf(reader->context->arena, "'%s'", name);
             *ok = false;
             if (used < count)
-                reader_mismatch(reader, arguments[used].span, what, operand_text(*p), arguments[used].value.kind);
+                reader_mismatch(reader, arguments[used].span, what, operand_text(*p),
+                                arguments[used].value.kind);
             else
                 reader_error(reader, span, "%s needs %s%s", what, operand_text(*p), used ? " more" : "");
             return used;
@@ -132,12 +155,12 @@ static size_t match(Reader *reader, const char *name, Span span, const char *ope
     return used;
 }
 
-static void check_body(Reader *parent, const Word *word, const char *name) {
+static void check_body(Reader *parent, const Word *word, const char *name, bool optional) {
     size_t length = (size_t)(word_end(name) - name);
     const Grammar *grammar = length ? find_grammar(name, length) : NULL;
-    if (!word->body)
+    if (!word->body && !optional)
         reader_error(parent, word->span, "'%s' needs its block { … }", word->text);
-    else if (grammar) {
+    else if (word->body && grammar) {
         Reader reader = reader_nested(parent, word->body);
         grammar_read(&reader, grammar->block);
         reader_end_nested(parent, &reader);
@@ -148,8 +171,8 @@ static void surplus(Reader *reader, const Grammar *grammar, const Word *word, si
     for (size_t i = used; i < word->count; i++)
         if (!(reader->on_value && reader->on_value(reader, &word->arguments[i], reader->value_target)) &&
             !accepts_value(grammar, word->arguments[i].value.kind)) {
-            reader_error(reader, word->arguments[i].span, "'%s' takes at most %zu value%s, found %zu", word->text,
-                         used, used == 1 ? "" : "s", word->count);
+            reader_error(reader, word->arguments[i].span, "'%s' takes at most %zu value%s, found %zu",
+                         word->text, used, used == 1 ? "" : "s", word->count);
             return;
         }
 }
@@ -157,12 +180,11 @@ static void surplus(Reader *reader, const Grammar *grammar, const Word *word, si
 static void check_word(Reader *reader, const Grammar *grammar, const Word *word, const char *operands) {
     const char *body;
     bool ok = true;
-    size_t used =
-        match(reader, word->text, word->span, operands, word->arguments, word->count, &body, &ok);
+    size_t used = match(reader, word->text, word->span, operands, word->arguments, word->count, &body, &ok);
     if (!ok) return;
     surplus(reader, grammar, word, used);
     if (body)
-        check_body(reader, word, body);
+        check_body(reader, word, body, strchr(operands, '?') && strchr(operands, '?') < body);
     else if (word->body)
         reader_error(reader, word->body->span, "'%s' takes no block { … } here", word->text);
 }
@@ -178,8 +200,8 @@ static void unknown_word(Reader *reader, const Grammar *grammar, const Word *wor
         p = end;
         while (*p && *p != ' ') p++;
     }
-    Diagnostic *d = reader_error(reader, word->span, "'%s' is neither declared nor a word of '%s'", word->text,
-                                 reader->block->word->text);
+    Diagnostic *d = reader_error(reader, word->span, "'%s' is neither declared nor a word of '%s'",
+                                 word->text, reader->block->word->text);
     const char *closest = closest_word(word->text, words, count);
     if (closest) diag_hint(reader->context->diags, d, "did you mean '%s'?", closest);
 }
@@ -191,14 +213,14 @@ static void read_lead(Reader *reader, const Grammar *grammar) {
     enum { MOST_LEAD = 16 };
     Argument lead[MOST_LEAD];
     size_t count = 0;
-    for (const BlockItem *item; count < MOST_LEAD && (item = reader_peek(reader)) && item->kind == ITEM_VALUE &&
-                                item->value.kind != VALUE_BLOCK;
+    for (const BlockItem *item; count < MOST_LEAD && (item = reader_peek(reader)) &&
+                                item->kind == ITEM_VALUE && item->value.kind != VALUE_BLOCK;
          reader->next++)
         lead[count++] = (Argument){item->value, item->span};
     const char *body;
     bool ok = true;
-    size_t used = match(reader, reader->block->word->text, reader->block->word_span, grammar->lead, lead, count,
-                        &body, &ok);
+    size_t used = match(reader, reader->block->word->text, reader->block->word_span, grammar->lead, lead,
+                        count, &body, &ok);
     reader->next -= count - used;
 }
 
@@ -219,6 +241,7 @@ bool grammar_read(Reader *reader, const char *block) {
     if (!grammar) return true;
     read_lead(reader, grammar);
     const BlockItem *item;
+    bool patterned = false;
     while (!reader->failed && (item = reader_peek(reader))) {
         reader->next++;
         Word word;
@@ -226,15 +249,19 @@ bool grammar_read(Reader *reader, const char *block) {
             read_entry(reader, grammar, item);
         } else if (item_as_word(item, &word)) {
             const char *operands = find_operands(grammar, word.text);
-            if (operands)
+            bool pattern = operands && grammar_has("pattern_types", word.text);
+            if (pattern && patterned)
+                reader_error(reader, word.span, "'%s' is a second pattern", word.text);
+            else if (operands)
                 check_word(reader, grammar, &word, operands);
             else
                 unknown_word(reader, grammar, &word);
+            patterned |= pattern;
         } else if (item->value.kind == VALUE_ERROR) {
             reader->failed = true;
         } else if (!accepts_value(grammar, item->value.kind)) {
-            reader_error(reader, item->span, "%s has no meaning here in '%s'", value_kind_text(item->value.kind),
-                         reader->block->word->text);
+            reader_error(reader, item->span, "%s has no meaning here in '%s'",
+                         value_kind_text(item->value.kind), reader->block->word->text);
         }
     }
     return !reader->failed;
@@ -248,6 +275,11 @@ bool grammar_word(Reader *reader, const Word *word) {
     if (!operands && (operands = find_operands(shared, word->text))) own = shared;
     if (operands) check_word(reader, own, word, operands);
     return operands != NULL;
+}
+
+bool grammar_has(const char *block, const char *word) {
+    const Grammar *grammar = find_grammar(block, strlen(block));
+    return grammar && find_operands(grammar, word);
 }
 
 bool build_checked(BuildContext *context, const EvalBlock *block, Value *out) {

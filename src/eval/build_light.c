@@ -86,7 +86,8 @@ bool build_light(BuildContext *context, const EvalBlock *block, Value *out) {
     const BlockItem *item = reader_peek(&reader);
     if (item && item->kind == ITEM_VALUE && item->value.kind <= VALUE_COLOR) {
         reader.next++;
-        argument_color(&reader, &(Argument){item->value, item->span}, "the light's colour", &draft.light.color);
+        argument_color(&reader, &(Argument){item->value, item->span}, "the light's colour",
+                       &draft.light.color);
     }
     reader_add_table(&reader, rules, VTS_ARRAY_COUNT(rules), &draft);
     reader_add_table(&reader, transform_rules, transform_rule_count, &draft.transform);

@@ -57,8 +57,10 @@ static void sort_entries(EntryList *list) {
 
 static void read_entry(Reader *map, const EvalBlock *block, bool pigments, EntryList *list) {
     Reader reader = reader_nested(map, block);
-    double position;
-    if (reader_float(&reader, "the position of a map's entry", &position, NULL)) {
+    double position = 1; /* of pigments that are averaged: a weight, which may be left out */
+    const BlockItem *first = reader_peek(&reader);
+    bool weightless = pigments && first && !(first->kind == ITEM_VALUE && first->value.kind == VALUE_FLOAT);
+    if (weightless || reader_float(&reader, "the position of a map's entry", &position, NULL)) {
         if (pigments)
             read_pigment_entry(&reader, list, position);
         else

@@ -130,7 +130,21 @@ static bool build_light_copy(Reader *reader, const Light *light, Value *out) {
     return true;
 }
 
+/* `object { O pigment … pigment … }` as a pattern: stays a block for the pigment, texture … around it. */
+static bool is_pattern(const EvalBlock *block) {
+    static const char *const holders[] = {"pigment",     "texture",     "normal",     "density",    "pattern",
+                                          "pigment_map", "texture_map", "normal_map", "density_map"};
+    for (size_t i = 0; block->outer && i < VTS_ARRAY_COUNT(holders); i++)
+        if (strcmp(block->outer->text, holders[i]) == 0) return true;
+    return false;
+}
+
 bool build_object(BuildContext *context, const EvalBlock *block, Value *out) {
+    if (strcmp(block->word->text, "object") == 0 && is_pattern(block)) {
+        Reader pattern = reader_begin(context, block);
+        *out = (Value){.kind = VALUE_BLOCK, .as.block = block};
+        return grammar_read(&pattern, "object_pattern");
+    }
     Reader reader = reader_begin(context, block);
     const BlockItem *first = reader_peek(&reader);
     if (!first || first->kind != ITEM_VALUE) {

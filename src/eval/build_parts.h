@@ -19,6 +19,8 @@ bool grammar_read(Reader *reader, const char *block);
 /* Holds one word of the reader's block against that block's grammar, or against the one of all objects' modifiers. False when
  * neither knows the word; mistakes are reported. */
 bool grammar_word(Reader *reader, const Word *word);
+/* Whether the grammar called `block` has this word. */
+bool grammar_has(const char *block, const char *word);
 /* A block that stays VALUE_BLOCK once its grammar holds. */
 BlockBuilder build_checked;
 

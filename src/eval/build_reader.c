@@ -363,7 +363,8 @@ void reader_word(Reader *reader, const Word *word) {
             apply_rule(reader, word, rule, reader->tables[t].target);
         return;
     }
-    reader_unknown_word(reader, word);
+    if (!reader->on_word || !reader->on_word(reader, word, reader->value_target))
+        reader_unknown_word(reader, word);
 }
 
 static void read_value(Reader *reader, const BlockItem *item) {

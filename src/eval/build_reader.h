@@ -58,7 +58,9 @@ struct Reader {
     uint64_t met; /* bit i: rule i of the first table was read */
     /* Values that are not words: the handler says whether it took the value. NULL: none are expected. */
     bool (*on_value)(Reader *reader, const Argument *value, void *target);
-    void *value_target;
+    /* Words that no table knows: whether the handler did. */
+    bool (*on_word)(Reader *reader, const Word *word, void *target);
+    void *value_target; /* of both */
     struct {
         const WordRule *rule;
         Span span;

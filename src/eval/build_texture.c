@@ -114,46 +114,117 @@ typedef struct TextureDraft {
     const Texture *texture; /* in the space before `transform`; NULL: nothing said yet */
     const InertNote *inert;
     Transform transform;
+    bool mapped; /* a texture_map was read */
+    bool
+        patterned; /* a pattern chooses among textures: which is not modelled, the first one is seen everywhere */
 } TextureDraft;
+
+static const Texture *texture_read(Reader *reader);
 
 static bool on_value(Reader *reader, const Argument *value, void *target) {
     TextureDraft *draft = target;
+    switch (value->value.kind) {
+    case VALUE_FUNCTION:
+        if (draft->patterned) return false;
+        draft->patterned = true;
+        inert_add(reader->context, &draft->inert, "function", value->span);
+        return true;
+    case VALUE_TEXTURE: /* a declared one comes first, those of a pattern's list after it */
+        if (draft->patterned && !draft->texture) draft->texture = value->value.as.texture;
+        if (draft->patterned) return true;
+        if (reader->next > 1 && !reader->block->declared_as)
+            return false; /* #declare L = texture … texture … */
+        break;
+    case VALUE_PIGMENT:
+    case VALUE_NORMAL:
+    case VALUE_FINISH:
+        if (draft->patterned) return false;
+        break;
+    case VALUE_TRANSFORM: break;
+    default: return false;
+    }
     return take_looks(reader->context, value, &draft->texture, &draft->inert, &draft->transform) ||
            take_transform(value, &draft->transform);
 }
 
-#define INERT(word)                                                                                          \
-    { word, WORD_INERT, offsetof(TextureDraft, inert), NULL, false }
-#define IGNORED(word)                                                                                        \
-    { word, WORD_IGNORED, 0, NULL, false }
-static const WordRule rules[] = {
-    INERT("texture_map"), INERT("material_map"),  INERT("uv_mapping"),   INERT("gradient"),
-    INERT("checker"),     INERT("brick"),         INERT("hexagon"),      INERT("bozo"),
-    INERT("bumps"),       INERT("granite"),       INERT("wrinkles"),     INERT("agate"),
-    INERT("marble"),      INERT("wood"),          INERT("crackle"),      INERT("leopard"),
-    INERT("onion"),       INERT("radial"),        INERT("spotted"),      INERT("cells"),
-    INERT("boxed"),       INERT("cylindrical"),   INERT("spherical"),    INERT("planar"),
-    INERT("slope"),       INERT("average"),       INERT("object"),       INERT("image_pattern"),
-    INERT("function"),    INERT("aoi"),           INERT("dents"),        INERT("ripples"),
-    INERT("waves"),       INERT("quilted"),       IGNORED("turbulence"), IGNORED("octaves"),
-    IGNORED("lambda"),    IGNORED("omega"),       IGNORED("frequency"),  IGNORED("phase"),
-    IGNORED("warp"),      IGNORED("quick_color"), IGNORED("brick_size"), IGNORED("mortar"),
-};
+/* The texture of the first entry of texture_map { … }, or of the declared map that it holds. */
+static const Texture *first_of_map(Reader *reader, const EvalBlock *map) {
+    for (size_t i = 0; i < map->count; i++) {
+        const BlockItem *item = &map->items[i];
+        if (item->kind == ITEM_VALUE && item->value.kind == VALUE_BLOCK)
+            return first_of_map(reader, item->value.as.block);
+        if (item->kind != ITEM_ENTRY) continue;
+        Reader entry = reader_nested(reader, item->entry);
+        Argument position;
+        reader_take_value(&entry, VALUE_FLOAT, &position);
+        const Texture *texture = texture_read(&entry);
+        reader_end_nested(reader, &entry);
+        return texture;
+    }
+    return NULL;
+}
+
+/* tiles { texture … tile2 texture … }, object { O texture … }, material_map { … texture … } */
+static const Texture *first_in(const EvalBlock *block) {
+    for (size_t i = 0; i < block->count; i++)
+        if (block->items[i].kind == ITEM_VALUE && block->items[i].value.kind == VALUE_TEXTURE)
+            return block->items[i].value.as.texture;
+    return NULL;
+}
+
+/* Patterns whose textures stand in a list, not in a map. */
+static bool has_list(const char *pattern) {
+    static const char *const words[] = {"checker", "brick",  "hexagon", "square",       "triangular",
+                                        "cubic",   "object", "tiles",   "material_map", "texture_map"};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(words); i++)
+        if (strcmp(words[i], pattern) == 0) return true;
+    return false;
+}
+
+static bool read_map(Reader *reader, const Word *word, TextureDraft *draft) {
+    if (!draft->patterned) reader_error(reader, word->span, "'texture_map' needs a pattern before it");
+    draft->mapped = true;
+    if (word->body && !draft->texture && !reader->failed) draft->texture = first_of_map(reader, word->body);
+    return true;
+}
+
+static bool on_word(Reader *reader, const Word *word, void *target) {
+    TextureDraft *draft = target;
+    if (!grammar_word(reader, word)) return false;
+    if (strcmp(word->text, "texture_map") == 0) return read_map(reader, word, draft);
+    bool own = strcmp(word->text, "tiles") == 0 || strcmp(word->text, "material_map") == 0;
+    if (!own && !grammar_has("pattern_types", word->text)) return true;
+    if (draft->patterned) reader_error(reader, word->span, "'%s' is a second pattern", word->text);
+    inert_add(reader->context, &draft->inert, word->text, word->span);
+    draft->patterned = true;
+    draft->mapped = has_list(word->text);
+    if (word->body && !draft->texture && !reader->failed) draft->texture = first_in(word->body);
+    return true;
+}
+
+static const Texture *texture_read(Reader *reader) {
+    TextureDraft draft = {.transform = transform_identity()};
+    reader_add_table(reader, transform_rules, transform_rule_count, &draft.transform);
+    reader->on_value = on_value;
+    reader->on_word = on_word;
+    reader->value_target = &draft;
+    if (!reader_run(reader)) return NULL;
+    if (draft.patterned && !draft.mapped) {
+        reader_error(reader, draft.inert->span, "a pattern of textures needs a 'texture_map'");
+        return NULL;
+    }
+    const Texture *base = draft.texture ? draft.texture : texture_default(reader->context);
+    Texture *texture = copy_texture(reader->context, texture_placed(reader->context, base, &draft.transform));
+    texture->span = reader->block->span;
+    note_inert(reader->context, draft.inert, &texture->inert);
+    return texture;
+}
 
 bool build_texture(BuildContext *context, const EvalBlock *block, Value *out) {
-    TextureDraft draft = {.transform = transform_identity()};
     Reader reader = reader_begin(context, block);
-    reader_add_table(&reader, rules, VTS_ARRAY_COUNT(rules), &draft);
-    reader_add_table(&reader, transform_rules, transform_rule_count, &draft.transform);
-    reader.on_value = on_value;
-    reader.value_target = &draft;
-    if (!reader_run(&reader)) return false;
-    const Texture *base = draft.texture ? draft.texture : texture_default(context);
-    Texture *texture = copy_texture(context, texture_placed(context, base, &draft.transform));
-    texture->span = block->span;
-    note_inert(context, draft.inert, &texture->inert);
+    const Texture *texture = texture_read(&reader);
     *out = (Value){.kind = VALUE_TEXTURE, .as.texture = texture};
-    return true;
+    return texture != NULL;
 }
 
 /* ---- normal, interior, wind_field: a note of what is not drawn ---- */
@@ -166,6 +237,10 @@ bool build_inert_value(BuildContext *context, const EvalBlock *block, Value *out
     const InertNote *note = NULL;
     Reader reader = reader_begin(context, block);
     if (!grammar_read(&reader, block->word->text)) return false;
+    if (block->count == 0 && strcmp(block->word->text, "normal") == 0) {
+        reader_error(&reader, block->word_span, "'normal' without a pattern");
+        return false;
+    }
     if (block->count) inert_add(context, &note, block->word->text, block->word_span);
     for (size_t i = 0; i < VTS_ARRAY_COUNT(kinds); i++)
         if (strcmp(kinds[i].word, block->word->text) == 0)
@@ -177,6 +252,9 @@ bool build_inert_value(BuildContext *context, const EvalBlock *block, Value *out
 
 static bool on_material_value(Reader *reader, const Argument *value, void *target) {
     Material *material = target;
+    if (value->value.kind == VALUE_PIGMENT || value->value.kind == VALUE_NORMAL ||
+        value->value.kind == VALUE_FINISH)
+        return false;
     if (value->value.kind == VALUE_MATERIAL) {
         *material = *(const Material *)value->value.as.node;
         return true;

@@ -51,8 +51,12 @@ Value eval_block(Eval *ev, const Node *node, Name declared_as) {
     size_t errors = ev->diags->failures + ev->silent_errors;
     bool known = true;
     BlockBuilder *builder = block_builder_find(&ev->build, node->as.block.word, &known);
+    Name outer = ev->block_word;
+    ev->block_word = node->as.block.word;
     EvalBlock *block = (EvalBlock *)(uintptr_t)eval_block_items(
         ev, node->as.block.word, node->as.block.word_span, node->span, node->as.block.body);
+    ev->block_word = outer;
+    block->outer = declared_as ? NULL : outer;
     block->declared_as = declared_as;
     Value v = value_error();
     if (keyword_of(&ev->keywords, block->word) == KW_spline) {

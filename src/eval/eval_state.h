@@ -172,6 +172,7 @@ struct Eval {
         break_end; /* blamed if no loop is found around it; the #end of the branches that it left */
     void (*outer_exhausted)(void *context); /* the memory budget's own handler */
     void *outer_context;
+    Name block_word; /* of the innermost block that is being read, or NULL */
     Name index_name, count_name, particles_name;
 };
 

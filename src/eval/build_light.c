@@ -2,7 +2,7 @@
 
 typedef struct LightDraft {
     Light light;
-    bool parallel;
+    bool parallel, colored;
     Transform transform;
 } LightDraft;
 
@@ -48,8 +48,12 @@ static const WordRule rules[] = {
 };
 
 static bool on_value(Reader *reader, const Argument *value, void *target) {
-    (void)reader;
-    return take_transform(value, &((LightDraft *)target)->transform);
+    LightDraft *draft = target;
+    if (take_transform(value, &draft->transform)) return true;
+    if (draft->colored) return false;
+    draft->colored = true; /* `parallel rgb 1`: the colour may also follow words */
+    argument_color(reader, value, "the light's colour", &draft->light.color);
+    return true;
 }
 
 const Light *light_placed(const BuildContext *context, const Light *light, const Transform *t) {
@@ -83,12 +87,6 @@ bool build_light(BuildContext *context, const EvalBlock *block, Value *out) {
     else if (!reader_vector(&reader, "the location", &draft.light.location, NULL))
         return false;
     draft.light.span = block->span;
-    const BlockItem *item = reader_peek(&reader);
-    if (item && item->kind == ITEM_VALUE && item->value.kind <= VALUE_COLOR) {
-        reader.next++;
-        argument_color(&reader, &(Argument){item->value, item->span}, "the light's colour",
-                       &draft.light.color);
-    }
     reader_add_table(&reader, rules, VTS_ARRAY_COUNT(rules), &draft);
     reader_add_table(&reader, transform_rules, transform_rule_count, &draft.transform);
     reader.on_value = on_value;

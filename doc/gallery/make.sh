@@ -14,6 +14,7 @@ find_program() {
 size_of() {
   case $1 in
     meadow_ball) echo 400x400 ;;
+    hillside) echo 480x320 ;;
     *) echo 480x360 ;;
   esac
 }

@@ -325,6 +325,7 @@ bool hierarchy_intersect(const Hierarchy *h, const Ray *ray, double t_min, doubl
         return false;
     }
     Vec3 normal = vec3_normalize(query.normal);
+    hit->flat = vec3_dot(normal, ray->direction) > 0 ? vec3_negate(normal) : normal;
     if (!part->object && part->soup.vertices.items) {
         /* Smooth normals where the triangles have them. */
         const SoupTriangle *triangle = &part->soup.triangles.items[rayhit.hit.primID];

@@ -10,7 +10,8 @@ typedef struct Hierarchy Hierarchy;
 
 typedef struct SurfaceHit {
     double t;
-    Vec3 normal;       /* unit, turned towards the ray's origin */
+    Vec3 normal;       /* unit, turned towards the ray's origin; of smooth triangles the interpolated one */
+    Vec3 flat;         /* of the surface itself: on which side of it a place lies */
     uint32_t object;   /* number of the drawn part, for telling edges */
     const Look *look;
     const Transform *space; /* object space of the texture → scene */

@@ -247,21 +247,24 @@ static float surface_visibility(Tracer *tr, const Light *light, const LightRay *
     Vec3 point = cone_point(cone, hit->t), s, t;
     double width = cone_diameter(cone, hit->t), turn = 2 * VTS_PI * random_unit(random_mix(tr->seed));
     vec3_frame(cone->direction, &s, &t);
-    double facing = vec3_dot(cone->direction, hit->normal), free_samples = 0;
+    double facing = vec3_dot(cone->direction, hit->flat), free_samples = 0;
+    /* In the hollow of a mesh a place beside the point lies under the neighbouring face, by less than the footprint's width: what is
+     * nearer than that casts no shadow that this cone could tell. */
+    double clear = 0.7 * width;
     for (int i = 0; i < SHADOW_SAMPLES; i++) {
         double angle = turn + 2 * VTS_PI * i / SHADOW_SAMPLES;
         Vec3 across = vec3_madd(vec3_scale(s, 0.35 * width * cos(angle)), t, 0.35 * width * sin(angle));
         /* Along the cone back onto the surface's plane; at grazing angles straight down to it. */
-        double height = vec3_dot(across, hit->normal);
-        across = fabs(facing) > 0.1 ? vec3_madd(across, cone->direction, -height / facing) : vec3_madd(across, hit->normal, -height);
-        Vec3 from = vec3_madd(vec3_add(point, across), hit->normal, bias);
+        double height = vec3_dot(across, hit->flat);
+        across = fabs(facing) > 0.1 ? vec3_madd(across, cone->direction, -height / facing) : vec3_madd(across, hit->flat, -height);
+        Vec3 from = vec3_madd(vec3_add(point, across), hit->flat, bias);
         Ray shadow = {from, ray->direction};
-        free_samples += !hierarchy_occluded(tr->compiled->hierarchy, &shadow, fabs(bias), ray->distance);
+        free_samples += !hierarchy_occluded(tr->compiled->hierarchy, &shadow, fmax(fabs(bias), clear), ray->distance);
     }
     tr->counters.shadow_rays += SHADOW_SAMPLES;
     if (free_samples == 0) return 0;
     double aperture = tr->compiled->shadow_aperture;
-    Cone shadow_cone = {vec3_madd(point, hit->normal, bias), ray->direction, width * aperture, cone->spread * aperture};
+    Cone shadow_cone = {vec3_madd(point, hit->flat, bias), ray->direction, width * aperture, cone->spread * aperture};
     return (float)(free_samples / SHADOW_SAMPLES) * skin_transmittance(tr, &shadow_cone, ray->distance, -1, NULL, 0);
 }
 
@@ -286,7 +289,7 @@ static Vec3f shade_surface(Tracer *tr, const Cone *cone, const SurfaceHit *hit, 
         tone = vec3f_mul(tone, ray.color);
         float visible = 1;
         if (reaching * luminance(tone) > SHADOW_WORTH) {
-            double outside = vec3_dot(ray.direction, hit->normal) > 0 ? bias : -bias;
+            double outside = vec3_dot(ray.direction, hit->flat) > 0 ? bias : -bias;
             visible = surface_visibility(tr, &scene->lights[l], &ray, cone, hit, outside);
         }
         sum = vec3f_madd(sum, tone, visible);

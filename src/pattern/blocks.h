@@ -3,12 +3,14 @@
 #define VTS_PATTERN_BLOCKS_H
 
 #include "pattern/spot.h"
+#include "scene/scene.h"
 
-enum { BLOCK_KINDS = 3 };
+enum { BLOCK_KINDS = 6 };
 
-/* shares[] add up to 1; [0 .. kinds) are used. */
-void checker_shares(const Spot *spot, double shares[BLOCK_KINDS]); /* 2: even, odd */
-void brick_shares(const Spot *spot, double shares[BLOCK_KINDS]);   /* 2: mortar, brick */
-void hexagon_shares(const Spot *spot, double shares[BLOCK_KINDS]); /* 3 */
+/* shares[] add up to 1; those of kinds that the pattern has not are 0. The pigment's kind is one that pattern_traits() gives a
+ * number of blocks. */
+void block_shares(const Pigment *pigment, const Spot *spot, double shares[BLOCK_KINDS]);
+/* The kind of block at a place of pattern space. */
+int block_index(const Pigment *pigment, Vec3 p);
 
 #endif

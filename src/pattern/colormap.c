@@ -18,6 +18,10 @@ static const ColorMapEntry radial_map[] = {ENTRY(0, 0, 1, 1), ENTRY(0.333, 1, 1,
                                            ENTRY(1, 0, 1, 1)};
 static const ColorMapEntry checker_colors[] = {ENTRY(0, 0, 0, 1), ENTRY(1, 0, 1, 0)};
 static const ColorMapEntry brick_colors[] = {ENTRY(0, 0.5, 0.5, 0.5), ENTRY(1, 0.6, 0.15, 0.15)};
+static const ColorMapEntry six_colors[] = {ENTRY(0, 1, 0, 0), ENTRY(1, 0, 1, 0), ENTRY(2, 0, 0, 1),
+                                           ENTRY(3, 1, 1, 0), ENTRY(4, 0, 1, 1), ENTRY(5, 1, 0, 1)};
+static const ColorMapEntry mandel_map[] = {ENTRY(0.001, 0, 0, 0), ENTRY(0.001, 0, 1, 1),
+                                           ENTRY(0.012, 1, 1, 0), ENTRY(0.015, 1, 0, 1), ENTRY(0.1, 0, 1, 1)};
 static const ColorMapEntry hexagon_colors[] = {ENTRY(0, 0, 0, 1), ENTRY(1, 0, 1, 0), ENTRY(2, 1, 0, 0)};
 
 #define MAP(entries) ((ColorMap){entries, VTS_ARRAY_COUNT(entries)})
@@ -32,6 +36,10 @@ static ColorMap own_map(PatternKind kind) {
     case PATTERN_CHECKER: return MAP(checker_colors);
     case PATTERN_BRICK: return MAP(brick_colors);
     case PATTERN_HEXAGON: return MAP(hexagon_colors);
+    case PATTERN_CUBIC:
+    case PATTERN_TRIANGULAR: return MAP(six_colors);
+    case PATTERN_SQUARE: return (ColorMap){six_colors, 4};
+    case PATTERN_MANDEL: return MAP(mandel_map);
     default: return MAP(grey_map);
     }
 }
@@ -49,15 +57,37 @@ static void add_piece(MapPieces *pieces, double lo, double hi, double weight) {
     }
 }
 
-/* An interval within one period, through the wave. The weight is shared by length. */
-static void add_phase(MapPieces *pieces, Wave wave, double lo, double hi, double weight) {
-    if (wave == WAVE_RAMP || hi <= lo) {
+static double cycloid(double x) { return sin(2 * VTS_PI * (x - floor(x))); }
+
+static double triangle(double x) {
+    x -= floor(x);
+    return x >= 0.5 ? 2 * (1 - x) : 2 * x;
+}
+
+static double through_wave(const Pigment *pigment, double phase) {
+    switch (pigment_wave(pigment)) {
+    case WAVE_TRIANGLE: return triangle(phase);
+    case WAVE_SINE: return (1 + cycloid(phase)) / 2;
+    case WAVE_SCALLOP: return fabs(cycloid(phase / 2));
+    case WAVE_CUBIC: return phase * phase * (3 - 2 * phase);
+    case WAVE_POLY: return pow(phase, (double)(float)pigment->wave_exponent);
+    default: return phase;
+    }
+}
+
+/* An interval within one period, through the wave: in quarters of the period, where waves only rise or only fall. The weight
+ * is shared by length. */
+static void add_phase(MapPieces *pieces, const Pigment *pigment, double lo, double hi, double weight) {
+    if (pigment_wave(pigment) == WAVE_RAMP || hi <= lo) {
         add_piece(pieces, lo, hi, weight);
         return;
     }
-    double turn = double_clamp(0.5, lo, hi), per_length = weight / (hi - lo);
-    add_piece(pieces, 2 * lo, 2 * turn, (turn - lo) * per_length);
-    add_piece(pieces, 2 - 2 * hi, 2 - 2 * turn, (hi - turn) * per_length);
+    int quarters = pigment_wave(pigment) == WAVE_TRIANGLE ? 2 : 4;
+    for (int k = 0; k < quarters; k++) {
+        double a = double_clamp((double)k / quarters, lo, hi), b = double_clamp((k + 1.0) / quarters, lo, hi);
+        double from = through_wave(pigment, a), to = through_wave(pigment, b - (b == 1 ? 1e-12 : 0));
+        if (b > a) add_piece(pieces, fmin(from, to), fmax(from, to), weight * (b - a) / (hi - lo));
+    }
 }
 
 static double restarted(Restart restart, double value) {
@@ -67,11 +97,11 @@ static double restarted(Restart restart, double value) {
 /* A single value goes through POV-Ray's formula to the letter; its period of 1.00001 keeps a value of 1 from being 0. */
 static double point_phase(const Pigment *pigment, PatternTraits traits, double value) {
     value = restarted(traits.restart, value);
-    double phase = fmod(value * (double)(float)pigment->frequency + (double)(float)pigment->phase, 1.00001);
+    double phase = value;
+    if (pigment->frequency != 0)
+        phase = fmod(value * (double)(float)pigment->frequency + (double)(float)pigment->phase, 1.00001);
     if (phase < 0) phase -= floor(phase);
-    if (traits.wave == WAVE_RAMP) return phase;
-    phase -= floor(phase);
-    return phase >= 0.5 ? 2 * (1 - phase) : 2 * phase;
+    return through_wave(pigment, phase);
 }
 
 /* Values from lo to hi, all before a restart. */
@@ -87,9 +117,9 @@ static void add_values(MapPieces *pieces, const Pigment *pigment, PatternTraits 
     weight /= length;
     if (start < 0 || start + length > 1) start -= floor(start); /* a value of 1 begins no other period */
     double first = fmin(rest, 1 - start);
-    add_phase(pieces, traits.wave, 0, 1, whole * weight);
-    add_phase(pieces, traits.wave, start, start + first, first * weight);
-    add_phase(pieces, traits.wave, 0, rest - first, (rest - first) * weight);
+    add_phase(pieces, pigment, 0, 1, whole * weight);
+    add_phase(pieces, pigment, start, start + first, first * weight);
+    add_phase(pieces, pigment, 0, rest - first, (rest - first) * weight);
 }
 
 /* The same for values that start again at each whole number, from 0 on. */

@@ -13,7 +13,7 @@ typedef struct ColorMap {
 ColorMap colormap_of(const Pigment *pigment);
 
 /* Pieces of the range of values, each filled uniformly; weights add up to 1. */
-enum { MAX_PIECES = 16 };
+enum { MAX_PIECES = 32 };
 typedef struct MapPieces {
     struct {
         double lo, hi, weight;

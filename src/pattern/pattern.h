@@ -12,7 +12,8 @@
 /* The colour at `point` of the textured object's space. `normal` (unit, or zero) is used by slope patterns too. */
 Color pigment_color(const Pigment *pigment, Vec3 point, Vec3 normal, double footprint);
 /* The pattern's value before the colour map, frequency, phase and wave applied: function { pattern { … } }. Block patterns
- * give the index of their entry; PATTERN_SOLID gives 0. */
+ * give the index of their entry (of checker and brick frequency, phase and wave are applied to it); PATTERN_SOLID and
+ * PATTERN_AVERAGE give 0. */
 double pigment_value(const Pigment *pigment, Vec3 point, Vec3 normal);
 /* Whether the pigment has one colour everywhere, which *color gets. */
 bool pigment_is_uniform(const Pigment *pigment, Color *color);

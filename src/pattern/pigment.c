@@ -34,26 +34,14 @@ static Color mapped_spread(const Pigment *pigment, Spread spread, const Spot *sp
 
 /* ---- blocks ---- */
 
-static void block_shares(PatternKind kind, const Spot *spot, double shares[BLOCK_KINDS]) {
-    if (kind == PATTERN_CHECKER)
-        checker_shares(spot, shares);
-    else if (kind == PATTERN_BRICK)
-        brick_shares(spot, shares);
-    else
-        hexagon_shares(spot, shares);
-}
-
-static bool is_block(PatternKind kind) {
-    return kind == PATTERN_CHECKER || kind == PATTERN_BRICK || kind == PATTERN_HEXAGON;
-}
-
 static Color block_color(const Pigment *pigment, const Spot *spot) {
     double shares[BLOCK_KINDS];
     Color sum = {0, 0, 0, 0, 0};
     Pigment plain = {.kind = pigment->kind};
     ColorMap map = colormap_of(pigment), own = colormap_of(&plain);
-    block_shares(pigment->kind, spot, shares);
-    for (size_t k = 0; k < own.count; k++) /* colours that were not given are the pattern's own */
+    block_shares(pigment, spot, shares);
+    size_t kinds = (size_t)pattern_traits(pigment->kind).blocks;
+    for (size_t k = 0; k < kinds; k++) /* colours that were not given are the pattern's own */
         if (shares[k] > 0)
             add_color(&sum, entry_color(&(k < map.count ? map : own).entries[k], spot), shares[k]);
     return sum;
@@ -98,10 +86,10 @@ static Color cells_color(const Pigment *pigment, const Spot *spot) {
     return sum;
 }
 
-/* ---- functions ---- */
+/* ---- patterns of which only values are known ---- */
 
-/* Nothing is known of a function: the mean of four places, each with the range of all of them. */
-static Color function_color(const Pigment *pigment, const Spot *spot) {
+/* The mean of four places, each with the range of all of them. */
+static Color sampled_color(const Pigment *pigment, const Spot *spot) {
     static const double places[4][2] = {{-0.125, -0.375}, {0.375, -0.125}, {0.125, 0.375}, {-0.375, 0.125}};
     if (spot_is_point(spot)) return mapped_spread(pigment, pattern_value(pigment, spot), spot);
     Vec3 u = spot->axes[0], v = spot->axes[1];
@@ -121,14 +109,24 @@ static Color function_color(const Pigment *pigment, const Spot *spot) {
 
 /* ---- pigments ---- */
 
+static Color average_color(const Pigment *pigment, const Spot *spot) {
+    Color sum = {0, 0, 0, 0, 0};
+    double total = 0;
+    for (size_t k = 0; k < pigment->entry_count; k++) total += pigment->entries[k].position;
+    if (!(fabs(total) > 0)) return sum;
+    for (size_t k = 0; k < pigment->entry_count; k++)
+        add_color(&sum, entry_color(&pigment->entries[k], spot), pigment->entries[k].position / total);
+    return sum;
+}
+
 Color pigment_color_at(const Pigment *pigment, const Spot *outer) {
     if (pigment->kind == PATTERN_SOLID) return pigment->color;
-    Spot spot = spot_back(outer, &pigment->transform);
-    if (!pattern_traits(pigment->kind).warps_itself && has_turbulence(pigment))
-        spot = turbulence_warp(&spot, pigment);
-    if (is_block(pigment->kind)) return block_color(pigment, &spot);
+    PatternTraits traits = pattern_traits(pigment->kind);
+    Spot spot = spot_in_pattern(pigment, outer, traits.warps_itself);
+    if (traits.blocks) return block_color(pigment, &spot);
     if (pigment->kind == PATTERN_CELLS) return cells_color(pigment, &spot);
-    if (pigment->kind == PATTERN_FUNCTION) return function_color(pigment, &spot);
+    if (pigment->kind == PATTERN_AVERAGE) return average_color(pigment, &spot);
+    if (traits.sampled) return sampled_color(pigment, &spot);
     return mapped_spread(pigment, pattern_value(pigment, &spot), &spot);
 }
 
@@ -139,15 +137,14 @@ Color pigment_color(const Pigment *pigment, Vec3 point, Vec3 normal, double foot
 
 double pigment_value(const Pigment *pigment, Vec3 point, Vec3 normal) {
     if (pigment->kind == PATTERN_SOLID) return 0;
-    Spot outer = spot_make(point, normal, 0), spot = spot_back(&outer, &pigment->transform);
-    if (!pattern_traits(pigment->kind).warps_itself && has_turbulence(pigment))
-        spot = turbulence_warp(&spot, pigment);
-    if (is_block(pigment->kind)) {
-        double shares[BLOCK_KINDS];
-        block_shares(pigment->kind, &spot, shares);
-        return shares[1] > 0 ? 1 : shares[2] > 0 ? 2 : 0;
-    }
-    double value = pigment->kind == PATTERN_CELLS ? cell_value(spot.p) : pattern_value(pigment, &spot).value;
+    Spot outer = spot_make(point, normal, 0);
+    PatternTraits traits = pattern_traits(pigment->kind);
+    Spot spot = spot_in_pattern(pigment, &outer, traits.warps_itself);
+    if (traits.blocks && pigment->kind != PATTERN_CHECKER && pigment->kind != PATTERN_BRICK)
+        return block_index(pigment, spot.p);
+    double value = traits.blocks                     ? block_index(pigment, spot.p)
+                   : pigment->kind == PATTERN_CELLS ? cell_value(spot.p)
+                                                    : pattern_value(pigment, &spot).value;
     return colormap_pieces(pigment, (Spread){value, 0}).items[0].lo;
 }
 
@@ -159,8 +156,7 @@ static bool same_color(Color a, Color b) {
 bool pigment_is_uniform(const Pigment *pigment, Color *color) {
     if (pigment->kind == PATTERN_SOLID) return *color = pigment->color, true;
     ColorMap map = colormap_of(pigment);
-    Pigment plain = {.kind = pigment->kind};
-    if (is_block(pigment->kind) && map.count < colormap_of(&plain).count) return false;
+    if (map.count < (size_t)pattern_traits(pigment->kind).blocks) return false;
     for (size_t k = 0; k < map.count; k++) {
         Color entry = map.entries[k].color;
         if (map.entries[k].pigment && !pigment_is_uniform(map.entries[k].pigment, &entry)) return false;

@@ -2,6 +2,8 @@
  * radial's hole at the axis), scenes rely on them. */
 #include "pattern/values.h"
 
+#include "pattern/numbers.h"
+#include "pattern/pigment.h"
 #include "tape/noise.h"
 
 PatternTraits pattern_traits(PatternKind kind) {
@@ -9,11 +11,36 @@ PatternTraits pattern_traits(PatternKind kind) {
     case PATTERN_MARBLE:
     case PATTERN_WOOD: return (PatternTraits){.wave = WAVE_TRIANGLE, .warps_itself = true};
     case PATTERN_GRADIENT: return (PatternTraits){.restart = RESTART_PAST_ONE};
+    case PATTERN_FUNCTION: return (PatternTraits){.restart = RESTART_PAST_ONE, .sampled = true};
     case PATTERN_ONION: return (PatternTraits){.restart = RESTART_AT_ONE};
-    case PATTERN_RADIAL:
-    case PATTERN_FUNCTION: return (PatternTraits){.wave = WAVE_RAMP};
+    case PATTERN_RADIAL: return (PatternTraits){.bounded = false};
+    case PATTERN_CHECKER:
+    case PATTERN_BRICK:
+    case PATTERN_OBJECT: return (PatternTraits){.blocks = 2};
+    case PATTERN_HEXAGON: return (PatternTraits){.blocks = 3};
+    case PATTERN_SQUARE: return (PatternTraits){.blocks = 4};
+    case PATTERN_CUBIC:
+    case PATTERN_TRIANGULAR: return (PatternTraits){.blocks = 6};
+    case PATTERN_QUILTED:
+    case PATTERN_RIPPLES:
+    case PATTERN_WAVES:
+    case PATTERN_SPIRAL1:
+    case PATTERN_SPIRAL2:
+    case PATTERN_MANDEL:
+    case PATTERN_JULIA:
+    case PATTERN_MAGNET_MANDEL:
+    case PATTERN_MAGNET_JULIA:
+    case PATTERN_PIGMENT:
+    case PATTERN_DENSITY:
+    case PATTERN_TILING: return (PatternTraits){.sampled = true};
     default: return (PatternTraits){.bounded = true};
     }
+}
+
+WaveKind pigment_wave(const Pigment *pigment) {
+    if (pigment->wave != WAVE_OWN) return pigment->wave;
+    WaveKind own = pattern_traits(pigment->kind).wave;
+    return own == WAVE_OWN ? WAVE_RAMP : own;
 }
 
 static Spread exactly(double value) { return (Spread){value, 0}; }
@@ -31,15 +58,24 @@ static Spread faded(double value, double mean, double deviation, double size, do
     return (Spread){mean + kept * (value - mean), width_of_variance(variance_lost(deviation, kept))};
 }
 
-static Spread bozo(const Spot *spot) { return faded(noise_pov(spot->p), 0.506, 0.126, spot_size(spot), 0.4); }
+static Spread bozo(const Pigment *pigment, const Spot *spot) {
+    return faded(noise_generated(generator_of(pigment), spot->p), 0.506, 0.126, spot_size(spot), 0.4);
+}
+
+static Spread dents(const Pigment *pigment, const Spot *spot) {
+    double noise = noise_generated(generator_of(pigment), spot->p);
+    return faded(noise * noise * noise, 0.154, 0.105, spot_size(spot), 0.6);
+}
 
 /* Σ weightₖ · octave(frequencyₖ · p), the octaves fading one after the other. */
-static Spread octave_sum(const Spot *spot, int count, double frequency, double (*octave)(Vec3 p), double mean,
-                         double deviation, double sharpness) {
+static Spread octave_sum(const Pigment *pigment, const Spot *spot, int count, double frequency,
+                         double (*octave)(int generator, Vec3 p), double mean, double deviation,
+                         double sharpness) {
+    int generator = generator_of(pigment);
     double sum = 0, variance = 0, weight = 1, size = spot_size(spot);
     for (int k = 0; k < count; k++) {
-        Spread part =
-            faded(octave(vec3_scale(spot->p, frequency)), mean, deviation, size * frequency, sharpness);
+        Spread part = faded(octave(generator, vec3_scale(spot->p, frequency)), mean, deviation,
+                            size * frequency, sharpness);
         sum += weight * part.value;
         variance += weight * weight * part.width * part.width / 12;
         frequency *= 2;
@@ -48,21 +84,32 @@ static Spread octave_sum(const Spot *spot, int count, double frequency, double (
     return (Spread){sum, width_of_variance(variance)};
 }
 
-static double granite_octave(Vec3 p) { return fmin(fabs(1 - 2 * noise_pov(p)), 0.5); }
-static double wrinkle_octave(Vec3 p) { return double_clamp(2 * noise_pov(p) - 0.5, 0, 1); }
+/* What the later noises are spread by, the first is not: POV-Ray's. */
+static double granite_octave(int generator, Vec3 p) {
+    double noise = noise_generated(generator, p);
+    return generator < NOISE_CORRECTED ? fabs(0.5 - noise) : fmin(fabs(1 - 2 * noise), 0.5);
+}
 
-static Spread granite(const Spot *spot) { return octave_sum(spot, 6, 4, granite_octave, 0.201, 0.14, 1); }
+static double wrinkle_octave(int generator, Vec3 p) {
+    double noise = noise_generated(generator, p);
+    return generator < NOISE_CORRECTED ? noise : double_clamp(2 * noise - 0.5, 0, 1);
+}
 
-static Spread wrinkles(const Spot *spot) {
-    Spread sum = octave_sum(spot, 10, 1, wrinkle_octave, 0.512, 0.245, 0.4);
+static Spread granite(const Pigment *pigment, const Spot *spot) {
+    return octave_sum(pigment, spot, 6, 4, granite_octave, 0.201, 0.14, 1);
+}
+
+static Spread wrinkles(const Pigment *pigment, const Spot *spot) {
+    Spread sum = octave_sum(pigment, spot, 10, 1, wrinkle_octave, 0.512, 0.245, 0.4);
     return (Spread){sum.value / 2, sum.width / 2};
 }
 
 static Spread agate(const Pigment *pigment, const Spot *spot) {
-    Octaves octaves = has_turbulence(pigment) ? octaves_of(pigment) : (Octaves){6, 2, 0.5F};
+    Octaves octaves =
+        has_turbulence(pigment) ? octaves_of(pigment) : (Octaves){6, 2, 0.5F, generator_of(pigment)};
     Spread turb = turbulence(spot, octaves);
-    double phase = 1.3 * turb.value + 1.1 * spot->p.z;
-    double width = 2 * VTS_PI * hypot(1.3 * turb.width, 1.1 * spot_width(spot, vec3(0, 0, 1)));
+    double amount = 1.3 * pigment->agate_turbulence, phase = amount * turb.value + 1.1 * spot->p.z;
+    double width = 2 * VTS_PI * hypot(amount * turb.width, 1.1 * spot_width(spot, vec3(0, 0, 1)));
     double kept = sine_kept(width);
     double value = 0.5 * (kept * cycloidal(phase) + 1);
     return (Spread){pow(double_clamp(value, 0, 1), 0.77), width_of_variance(0.125 * (1 - kept * kept))};
@@ -99,23 +146,8 @@ static Spread wood(const Pigment *pigment, const Spot *spot) {
 
 /* ---- cells ---- */
 
-static double crackle_at(Vec3 p) {
-    /* POV-Ray takes a place 10⁻⁷ below a cell's border for the next cell. */
-    Vec3 corner = vec3(floor(p.x + 1e-7), floor(p.y + 1e-7), floor(p.z + 1e-7));
-    double first = (double)INFINITY, second = (double)INFINITY;
-    for (int cell = 0; cell < 125; cell++) {
-        Vec3 at = vec3_add(corner, vec3(cell % 5 - 2, cell / 5 % 5 - 2, cell / 25 - 2));
-        double square = vec3_length_squared(vec3_sub(noise_pov_cell_point(at), p));
-        if (square < first)
-            second = first, first = square;
-        else if (square < second)
-            second = square;
-    }
-    return double_clamp(sqrt(second) - sqrt(first), 0, 1);
-}
-
-static Spread crackle(const Spot *spot) {
-    return faded(crackle_at(spot->p), 0.196, 0.158, spot_size(spot), 2);
+static Spread crackle(const Pigment *pigment, const Spot *spot) {
+    return faded(crackle_number(pigment, spot->p), 0.196, 0.158, spot_size(spot), 2);
 }
 
 /* ---- shapes ---- */
@@ -158,30 +190,72 @@ static Spread boxed(const Spot *spot) {
     return falling((Spread){vec3_get(p, axis), spot_width(spot, vec3(axis == 0, axis == 1, axis == 2))});
 }
 
-/* From 0, facing against the direction, to 1, facing along it, by the angle. */
+static double unwrapped(double value) { return value < 0 ? 1 + fmod(value, 1) : fmod(value, 1); }
+
+/* From 0, facing against the direction, to 1, facing along it, by the angle; with the altitude's share. */
 static double slope(const Pigment *pigment, const Spot *spot) {
+    if (vec3_length_squared(spot->normal) == 0) return 0;
     double cosine = vec3_dot(vec3_normalize(pigment->direction), vec3_normalize(spot->normal));
-    return 0.5 + asin(double_clamp(cosine, -1, 1)) / VTS_PI;
+    double value = 0.5 + asin(double_clamp(cosine, -1, 1)) / VTS_PI;
+    if (pigment->slope_high != pigment->slope_low)
+        value = (value - pigment->slope_low) / (pigment->slope_high - pigment->slope_low);
+    double share = vec3_length(pigment->altitude), own = vec3_length(pigment->direction);
+    if (share == 0) return value == 1 ? 1 - 1e-10 : unwrapped(value);
+    double height = vec3_dot(spot->p, pigment->altitude) / share;
+    if (pigment->altitude_high != pigment->altitude_low)
+        height = (height - pigment->altitude_low) / (pigment->altitude_high - pigment->altitude_low);
+    value = (own * value + share * height) / (own + share);
+    return value >= 1 && value < 1 + 1e-10 ? value - 1e-10 : unwrapped(value);
+}
+
+/* ---- others ---- */
+
+static double quilted(const Pigment *pigment, Vec3 p) {
+    Vec3 d = vec3(p.x - floor(p.x) - 0.5, p.y - floor(p.y) - 0.5, p.z - floor(p.z) - 0.5);
+    double t = vec3_length(d), rest = 1 - t; /* a Bézier curve from 0 to 1, stretched to the cell's corners */
+    double curve = t * t * t + 3 * t * rest * (rest * pigment->control0 + t * pigment->control1);
+    return curve * 1.154700538 * (fabs(d.x) + fabs(d.y) + fabs(d.z)) / 3;
+}
+
+static double triangle(double x) {
+    x -= floor(x);
+    return x >= 0.5 ? 2 * (1 - x) : 2 * x;
+}
+
+static double spiral(const Pigment *pigment, Vec3 p) {
+    Spot spot = spot_make(p, vec3_splat(0), 0);
+    double turb =
+        has_turbulence(pigment) ? pigment->turbulence.x * turbulence(&spot, octaves_of(pigment)).value : 0;
+    double r = sqrt(p.x * p.x + p.y * p.y), angle = r > 0 ? asin(p.y / r) : 0;
+    angle = r == 0 ? 0 : p.x < 0 ? 1.5 * VTS_PI - angle : 0.5 * VTS_PI + angle;
+    double value = p.z + r + pigment->number * angle / (2 * VTS_PI) + turb;
+    return pigment->kind == PATTERN_SPIRAL1 ? value : triangle(r) + triangle(value);
+}
+
+static double source_gray(const Pigment *pigment, const Spot *spot) {
+    Color c = pigment->source ? pigment_color_at(pigment->source, spot) : (Color){0};
+    return 0.297 * c.red + 0.589 * c.green + 0.114 * c.blue;
 }
 
 static double function_at(const Pigment *pigment, Vec3 p) {
     double in[3] = {p.x, p.y, p.z}, out[8];
     if (!pigment->function || tape_output_count(pigment->function) != 1) return 0;
     tape_eval_once(pigment->function, in, out);
-    return isfinite(out[0]) ? out[0] : 0;
+    return isnan(out[0]) ? 0 : double_clamp(out[0], -1e300, 1e300);
 }
 
 Spread pattern_value(const Pigment *pigment, const Spot *spot) {
     switch (pigment->kind) {
     case PATTERN_GRADIENT: return gradient(pigment, spot);
     case PATTERN_BOZO:
-    case PATTERN_SPOTTED: return bozo(spot);
-    case PATTERN_GRANITE: return granite(spot);
-    case PATTERN_WRINKLES: return wrinkles(spot);
+    case PATTERN_SPOTTED: return bozo(pigment, spot);
+    case PATTERN_DENTS: return dents(pigment, spot);
+    case PATTERN_GRANITE: return granite(pigment, spot);
+    case PATTERN_WRINKLES: return wrinkles(pigment, spot);
     case PATTERN_AGATE: return agate(pigment, spot);
     case PATTERN_MARBLE: return marble(pigment, spot);
     case PATTERN_WOOD: return wood(pigment, spot);
-    case PATTERN_CRACKLE: return crackle(spot);
+    case PATTERN_CRACKLE: return crackle(pigment, spot);
     case PATTERN_LEOPARD: return leopard(spot);
     case PATTERN_RADIAL: return radial(spot);
     case PATTERN_BOXED: return boxed(spot);
@@ -191,6 +265,17 @@ Spread pattern_value(const Pigment *pigment, const Spot *spot) {
     case PATTERN_PLANAR: return falling((Spread){fabs(spot->p.y), spot_width(spot, vec3(0, 1, 0))});
     case PATTERN_SLOPE: return exactly(slope(pigment, spot));
     case PATTERN_FUNCTION: return exactly(function_at(pigment, spot->p));
+    case PATTERN_QUILTED: return exactly(quilted(pigment, spot->p));
+    case PATTERN_RIPPLES:
+    case PATTERN_WAVES: return exactly(water_number(pigment, spot->p, pigment->kind == PATTERN_WAVES));
+    case PATTERN_SPIRAL1:
+    case PATTERN_SPIRAL2: return exactly(spiral(pigment, spot->p));
+    case PATTERN_MANDEL:
+    case PATTERN_JULIA:
+    case PATTERN_MAGNET_MANDEL:
+    case PATTERN_MAGNET_JULIA: return exactly(fractal_number(pigment, spot->p));
+    case PATTERN_PIGMENT: return exactly(source_gray(pigment, spot));
+    case PATTERN_DENSITY: return exactly(density_number(pigment, spot->p));
     default: return exactly(0);
     }
 }

@@ -4,19 +4,20 @@
 
 #include "pattern/warp.h"
 
-typedef enum Wave { WAVE_RAMP, WAVE_TRIANGLE } Wave;
-
 /* Where a pattern's value starts again from 0, before its frequency multiplies it. */
 typedef enum Restart { RESTART_NEVER, RESTART_AT_ONE, RESTART_PAST_ONE } Restart;
 
 typedef struct PatternTraits {
-    Wave wave;
+    WaveKind wave;     /* unless the pigment names one */
     Restart restart;   /* left to the reader of pattern_value(), for whom the value runs on */
     bool bounded;      /* values stay in [0, 1] and do not wrap of themselves */
     bool warps_itself; /* turbulence is part of the pattern's own formula */
+    bool sampled;      /* nothing is known of its means: places of the footprint are asked one by one */
+    int blocks;        /* kinds of block; 0: the pattern has a value */
 } PatternTraits;
 
 PatternTraits pattern_traits(PatternKind kind);
+WaveKind pigment_wave(const Pigment *pigment);
 /* The pattern's value at a spot of pattern space (already warped), before its restart, frequency, phase and wave. */
 Spread pattern_value(const Pigment *pigment, const Spot *spot);
 

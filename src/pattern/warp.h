@@ -13,7 +13,11 @@ typedef struct Spread {
 typedef struct Octaves {
     int count;
     float lambda, omega; /* POV-Ray keeps them as floats */
+    int generator;       /* of the noise: 1, 2, 3 */
 } Octaves;
+
+/* The noise that the pigment asks for. */
+int generator_of(const Pigment *pigment);
 
 /* The pigment's own. */
 Octaves octaves_of(const Pigment *pigment);
@@ -32,7 +36,12 @@ static inline double width_of_variance(double variance) { return sqrt(12 * varia
 Spread turbulence(const Spot *spot, Octaves octaves);
 /* The vector turbulence; *variance gets that of each component over the footprint. */
 Vec3 turbulence_vector(const Spot *spot, Octaves octaves, double *variance);
-/* The spot moved by the pigment's turbulence. */
-Spot turbulence_warp(const Spot *spot, const Pigment *pigment);
+/* The spot moved by a turbulence. */
+Spot turbulence_warp(const Spot *spot, Vec3 amount, Octaves octaves);
+/* Where a warp other than turbulence takes a place (warp_place.c). */
+Vec3 warp_place(const Warp *warp, Vec3 p);
+/* A spot of the textured object's space in the space of the pattern: through the transforms and warps of the pigment, at last
+ * its own turbulence if that is not part of the pattern's formula. */
+Spot spot_in_pattern(const Pigment *pigment, const Spot *outer, bool warps_itself);
 
 #endif

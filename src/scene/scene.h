@@ -35,7 +35,62 @@ typedef enum PatternKind {
     PATTERN_LEOPARD, PATTERN_ONION, PATTERN_RADIAL, PATTERN_SPOTTED, PATTERN_CELLS, PATTERN_BOXED, PATTERN_CYLINDRICAL,
     PATTERN_SPHERICAL, PATTERN_PLANAR, PATTERN_SLOPE,
     PATTERN_FUNCTION, /* value = tape(x, y, z) */
+    PATTERN_CUBIC, PATTERN_SQUARE, PATTERN_TRIANGULAR, /* block patterns too */
+    PATTERN_OBJECT,   /* block pattern: the function tells outside (0) from inside (1) */
+    PATTERN_DENTS, PATTERN_QUILTED, PATTERN_RIPPLES, PATTERN_WAVES, PATTERN_SPIRAL1, PATTERN_SPIRAL2,
+    PATTERN_MANDEL, PATTERN_JULIA, PATTERN_MAGNET_MANDEL, PATTERN_MAGNET_JULIA,
+    PATTERN_PIGMENT,  /* the grey of a pigment */
+    PATTERN_AVERAGE,  /* no value: all entries, weighted by their positions */
+    PATTERN_DENSITY,  /* a grid of numbers in the unit cube */
+    PATTERN_TILING,
 } PatternKind;
+
+/* What becomes of a pattern's value, frequency and phase applied. */
+typedef enum WaveKind { WAVE_OWN /* the pattern's */, WAVE_RAMP, WAVE_TRIANGLE, WAVE_SINE, WAVE_SCALLOP, WAVE_CUBIC, WAVE_POLY } WaveKind;
+
+/* A change of place before the pattern looks at it. */
+typedef enum WarpKind {
+    WARP_TURBULENCE, WARP_REPEAT, WARP_BLACK_HOLE, WARP_CYLINDRICAL, WARP_SPHERICAL, WARP_TOROIDAL, WARP_PLANAR, WARP_CUBIC
+} WarpKind;
+
+typedef struct Warp {
+    WarpKind kind;
+    Transform inner;    /* from what the pattern, or the warp before this one, sees to what this warp gives */
+    Vec3 turbulence;    /* amount; and of repeat: the offset */
+    int octaves;
+    double lambda, omega;
+    int axis;           /* repeat: 0, 1, 2 */
+    double width;
+    Vec3 flip;          /* factors 1 or -1 */
+    Vec3 center;        /* black hole */
+    double radius, strength, falloff;
+    bool inverse, repeated;
+    Vec3 repeat, uncertainty; /* uncertainty: `turbulence` of the black hole */
+    Vec3 orientation;   /* mappings; z */
+    double exponent;    /* dist_exp; of planar: the distance */
+    double major_radius;
+} Warp;
+
+/* `exterior` and `interior` of fractals: how the number comes about, and its factor. */
+typedef struct FractalSettings {
+    double re, im;      /* julia's constant */
+    int iterations, exponent, magnet;
+    int exterior, interior;
+    double exterior_factor, interior_factor;
+} FractalSettings;
+
+typedef struct CrackleSettings {
+    Vec3 form;          /* weights of the distances to the nearest three points; <-1, 1, 0> */
+    double metric, offset; /* 2, 0 */
+    bool solid;
+} CrackleSettings;
+
+/* Numbers in [0, 1] at the cells of the unit cube, x fastest. */
+typedef struct DensityGrid {
+    Hash128 hash;
+    int size[3];
+    const float *values;
+} DensityGrid;
 
 typedef struct Pigment Pigment;
 
@@ -61,6 +116,23 @@ struct Pigment {
     Color quick_color;
     Vec3 brick_size;                 /* <8, 3, 4.5> */
     double mortar;                   /* 0.5 */
+    WaveKind wave;
+    double wave_exponent;            /* poly_wave; 1 */
+    int noise_generator;             /* 1, 2, 3; 0: 2 */
+    const Warp *warps;               /* in the order of the text: a place goes through the last first */
+    size_t warp_count;
+    FractalSettings fractal;
+    CrackleSettings crackle;
+    double agate_turbulence;         /* 1 */
+    double control0, control1;       /* quilted: 1, 1 */
+    int number;                      /* arms of a spiral, kind of a tiling */
+    int wave_count;                  /* ripples, waves: 10 */
+    double slope_low, slope_high;    /* slope: low = high: all of [0, 1] */
+    Vec3 altitude;                   /* slope: 0: without; else its length is the altitude's share, `direction`'s the slope's */
+    double altitude_low, altitude_high;
+    const Pigment *source;           /* PATTERN_PIGMENT */
+    const DensityGrid *density;      /* PATTERN_DENSITY */
+    int interpolation;               /* density: 0, 1 linear, 2 cubic */
     const InertNote *inert;
     Transform transform;             /* pattern space → space of the textured object */
 };

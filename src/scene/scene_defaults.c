@@ -18,6 +18,13 @@ Pigment pigment_default(void) {
                        .omega = 0.5,
                        .brick_size = {8, 3, 4.5},
                        .mortar = 0.5,
+                       .wave_exponent = 1,
+                       .fractal = {.exponent = 2, .exterior = 1, .exterior_factor = 1, .interior_factor = 1},
+                       .crackle = {.form = {-1, 1, 0}, .metric = 2},
+                       .agate_turbulence = 1,
+                       .control0 = 1,
+                       .control1 = 1,
+                       .wave_count = 10,
                        .transform = transform_identity()};
     pigment_rehash(&pigment);
     return pigment;

@@ -59,6 +59,55 @@ static void add_indices(Hash128 *hash, const uint32_t (*triangles)[3], size_t co
     if (triangles) hash_add(hash, triangles, count * sizeof *triangles);
 }
 
+static void add_warp(Hash128 *h, const Warp *w) {
+    const Vec3 vectors[] = {w->turbulence, w->flip, w->center, w->repeat, w->uncertainty, w->orientation};
+    const double numbers[] = {w->kind,     w->octaves,  w->lambda,      w->omega,   w->axis,
+                              w->width,    w->radius,   w->strength,    w->falloff, w->inverse,
+                              w->repeated, w->exponent, w->major_radius};
+    hash_add_transform(h, &w->inner);
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(vectors); i++) hash_add_vec3(h, vectors[i]);
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(numbers); i++) hash_add_double(h, numbers[i]);
+}
+
+/* What only some patterns use. */
+static void add_settings(Hash128 *h, const Pigment *p) {
+    const FractalSettings *f = &p->fractal;
+    const double numbers[] = {p->wave,
+                              p->wave_exponent,
+                              p->noise_generator,
+                              f->re,
+                              f->im,
+                              f->iterations,
+                              f->exponent,
+                              f->magnet,
+                              f->exterior,
+                              f->interior,
+                              f->exterior_factor,
+                              f->interior_factor,
+                              p->crackle.metric,
+                              p->crackle.offset,
+                              p->crackle.solid,
+                              p->agate_turbulence,
+                              p->control0,
+                              p->control1,
+                              p->number,
+                              p->wave_count,
+                              p->slope_low,
+                              p->slope_high,
+                              p->altitude_low,
+                              p->altitude_high,
+                              p->interpolation,
+                              p->source != NULL,
+                              p->density != NULL,
+                              (double)p->warp_count};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(numbers); i++) hash_add_double(h, numbers[i]);
+    hash_add_vec3(h, p->crackle.form);
+    hash_add_vec3(h, p->altitude);
+    if (p->source) hash_add_hash(h, p->source->hash);
+    if (p->density) hash_add_hash(h, p->density->hash);
+    for (size_t i = 0; i < p->warp_count; i++) add_warp(h, &p->warps[i]);
+}
+
 void pigment_rehash(Pigment *p) {
     Hash128 h = hash_begin(KIND_PIGMENT);
     hash_add_u64(&h, p->kind);
@@ -76,6 +125,7 @@ void pigment_rehash(Pigment *p) {
     hash_add_vec3(&h, p->turbulence);
     hash_add_vec3(&h, vec3(p->octaves, p->lambda, p->omega));
     hash_add_vec3(&h, p->brick_size);
+    add_settings(&h, p);
     hash_add_transform(&h, &p->transform);
     p->hash = h;
 }

@@ -65,9 +65,12 @@ static void add_inert(const Printer *p, const InertNote *note) {
 /* ---- looks ---- */
 
 static const char *const pattern_names[] = {
-    "solid", "gradient", "checker",     "brick",     "hexagon", "bozo",  "granite",  "wrinkles",
-    "agate", "marble",   "wood",        "crackle",   "leopard", "onion", "radial",   "spotted",
-    "cells", "boxed",    "cylindrical", "spherical", "planar",  "slope", "function",
+    "solid",         "gradient",     "checker",         "brick",   "hexagon",      "bozo",      "granite",
+    "wrinkles",      "agate",        "marble",          "wood",    "crackle",      "leopard",   "onion",
+    "radial",        "spotted",      "cells",           "boxed",   "cylindrical",  "spherical", "planar",
+    "slope",         "function",     "cubic",           "square",  "triangular",   "object",    "dents",
+    "quilted",       "ripples",      "waves",           "spiral1", "spiral2",      "mandel",    "julia",
+    "magnet mandel", "magnet julia", "pigment_pattern", "average", "density_file", "tiling",
 };
 
 static void print_pigment(Printer *p, const char *word, const Pigment *pigment);

@@ -13,13 +13,10 @@
 #include <cmocka.h>
 
 static Pigment make_pigment(PatternKind kind) {
-    return (Pigment){.kind = kind,
-                     .direction = {1, 0, 0},
-                     .frequency = 1,
-                     .octaves = 6,
-                     .lambda = 2,
-                     .omega = 0.5,
-                     .transform = transform_identity()};
+    Pigment pigment = pigment_default();
+    pigment.kind = kind;
+    pigment.direction = vec3(1, 0, 0);
+    return pigment;
 }
 
 static double grey(Color c) { return (c.red + c.green + c.blue) / 3; }

@@ -16,13 +16,10 @@ static const Color black = {0, 0, 0, 0, 0}, white = {1, 1, 1, 0, 0}, red = {1, 0
                    green = {0, 1, 0, 0, 0}, blue = {0, 0, 1, 0, 0};
 
 static Pigment make_pigment(PatternKind kind) {
-    return (Pigment){.kind = kind,
-                     .direction = {1, 0, 0},
-                     .frequency = 1,
-                     .octaves = 6,
-                     .lambda = 2,
-                     .omega = 0.5,
-                     .transform = transform_identity()};
+    Pigment pigment = pigment_default();
+    pigment.kind = kind;
+    pigment.direction = vec3(1, 0, 0);
+    return pigment;
 }
 
 static void expect_color(const Pigment *pigment, double x, double y, double z, Color expected) {

@@ -1,0 +1,124 @@
+/* Escape-time fractals in x and y. The operations keep POV-Ray's order: iterated, other roundings soon show. */
+#include "pattern/numbers.h"
+
+typedef struct Complex {
+    double re, im;
+} Complex;
+
+static double square(double a) { return a * a; }
+static double norm(Complex z) { return z.re * z.re + z.im * z.im; }
+
+static double binomial(int n, int k) {
+    double product = 1;
+    for (int i = 1; i <= k; i++) product = product * (n - k + i) / i;
+    return product;
+}
+
+/* zⁿ from the binomial series. */
+static Complex general_power(Complex z, int n) {
+    Complex sum = {pow(z.re, n), 0};
+    for (int k = 1; k <= n; k++) {
+        double term = (k & 2 ? -1 : 1) * binomial(n, k) * pow(z.re, n - k) * pow(z.im, k);
+        if (k % 2)
+            sum.im += term;
+        else
+            sum.re += term;
+    }
+    return sum;
+}
+
+static Complex power(Complex z, int n) {
+    double a = z.re, b = z.im, a2 = a * a, b2 = b * b;
+    switch (n) {
+    case 2: return (Complex){a2 - b2, 2 * a * b};
+    case 3: return (Complex){a2 * a - 3 * a * b2, 3 * a2 * b - b2 * b};
+    case 4: return (Complex){a2 * a2 - 6 * a2 * b2 + b2 * b2, 4 * (a2 * a * b - a * b2 * b)};
+    default: return general_power(z, n);
+    }
+}
+
+static Complex squared_quotient(Complex u, Complex v) {
+    double scale = v.re * v.re + v.im * v.im;
+    double a = (u.re * v.re + u.im * v.im) / scale, b = (u.im * v.re - u.re * v.im) / scale;
+    return (Complex){a * a - b * b, 2 * a * b};
+}
+
+/* ((z² + c - 1) / (2z + c - 2))² */
+static Complex magnet1(Complex z, Complex c) {
+    double a = z.re, b = z.im;
+    return squared_quotient((Complex){a * a - b * b + c.re - 1, 2 * a * b + c.im},
+                            (Complex){2 * a + c.re - 2, 2 * b + c.im});
+}
+
+/* ((z³ + 3(c - 1)z + (c - 1)(c - 2)) / (3z² + 3(c - 2)z + (c - 1)(c - 2) + 1))² */
+static Complex magnet2(Complex z, Complex c) {
+    double a = z.re, b = z.im, a2 = a * a, b2 = b * b, c1 = c.re - 1, c2 = c.re - 2;
+    double re = c1 * c2 - c.im * c.im, im = (c1 + c2) * c.im;
+    Complex u = {a2 * a - 3 * a * b2 + 3 * (a * c1 - b * c.im) + re,
+                 3 * a2 * b - b2 * b + 3 * (a * c.im + b * c1) + im};
+    Complex v = {3 * (a2 - b2) + 3 * (a * c2 - b * c.im) + re + 1, 6 * a * b + 3 * (a * c.im + b * c2) + im};
+    return squared_quotient(u, v);
+}
+
+static Complex step(const FractalSettings *f, Complex z, Complex c) {
+    if (f->magnet) return f->magnet == 1 ? magnet1(z, c) : magnet2(z, c);
+    Complex next = power(z, f->exponent);
+    return (Complex){next.re + c.re, next.im + c.im};
+}
+
+/* Magnets end far away or near their fixed point 1. */
+static bool escaped(const FractalSettings *f, Complex z) {
+    if (!f->magnet) return norm(z) > 4;
+    return norm(z) > 10000 || square(z.re - 1) + square(z.im) < 1 / 10000.;
+}
+
+static double remainder_of(int iterations, double period, double factor) {
+    int whole = period >= 1 && period < 1e9 ? (int)period : 0;
+    return whole ? iterations % whole / factor : 0;
+}
+
+static double exterior(const FractalSettings *f, int iterations, Complex z) {
+    double factor = f->exterior_factor;
+    switch (f->exterior) {
+    case 0: return factor;
+    case 1: return (double)iterations / f->iterations;
+    case 2: return z.re * factor;
+    case 3: return z.im * factor;
+    case 4: return z.re * z.re * factor;
+    case 5: return z.im * z.im * factor;
+    case 6: return sqrt(norm(z)) * factor;
+    case 7: return remainder_of(iterations, factor, factor);
+    case 8: return remainder_of(iterations, 1 + factor, factor);
+    default: return 0;
+    }
+}
+
+/* Number 6 multiplies only the second square: POV-Ray's. */
+static double interior(const FractalSettings *f, Complex z, double nearest) {
+    double factor = f->interior_factor;
+    switch (f->interior) {
+    case 0: return factor;
+    case 1: return sqrt(nearest) * factor;
+    case 2: return z.re * factor;
+    case 3: return z.im * factor;
+    case 4: return z.re * z.re * factor;
+    case 5: return z.im * z.im * factor;
+    case 6: return z.re * z.re + z.im * z.im * factor;
+    default: return 0;
+    }
+}
+
+double fractal_number(const Pigment *pigment, Vec3 p) {
+    const FractalSettings *f = &pigment->fractal;
+    bool julia = pigment->kind == PATTERN_JULIA || pigment->kind == PATTERN_MAGNET_JULIA;
+    bool from_zero = pigment->kind == PATTERN_MAGNET_MANDEL;
+    Complex place = {p.x, p.y}, c = julia ? (Complex){f->re, f->im} : place;
+    Complex z = from_zero ? (Complex){0, 0} : place;
+    double nearest = from_zero ? 10000 : norm(z);
+    for (int i = 0; i < f->iterations; i++) {
+        z = step(f, z, c);
+        nearest = fmin(nearest, norm(z));
+        if (escaped(f, z)) return exterior(f, i, z);
+    }
+    return interior(f, z, nearest);
+}

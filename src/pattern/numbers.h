@@ -1,0 +1,16 @@
+/* Patterns' numbers at single places of pattern space, as POV-Ray 3.7 computes them; values.c averages them. */
+#ifndef VTS_PATTERN_NUMBERS_H
+#define VTS_PATTERN_NUMBERS_H
+
+#include "scene/scene.h"
+
+/* fractal.c: mandel, julia, magnet. */
+double fractal_number(const Pigment *pigment, Vec3 p);
+/* crackle.c */
+double crackle_number(const Pigment *pigment, Vec3 p);
+/* water.c: ripples and waves, from 0 to 1; `wave` weighs long waves more. */
+double water_number(const Pigment *pigment, Vec3 p, bool waves);
+/* density.c: 0 outside of the unit cube. */
+double density_number(const Pigment *pigment, Vec3 p);
+
+#endif

@@ -1,6 +1,7 @@
 /* Functions that are not written in the language: POV-Ray's internal ones, as functions.inc numbers them, and those that vts adds. */
 #include "eval/eval_function.h"
 
+#include "eval/build_pattern.h"
 #include "tape/internal.h"
 
 #include <string.h>
@@ -61,6 +62,35 @@ Value internal_function(Eval *ev, const Node *node, int id) {
                         .hash = hash_begin(0x696E7465)};
     hash_add_u64(&e->hash, (uint64_t)f->number);
     return external_function(ev, node, e);
+}
+
+/* ---- objects as functions: inside or not ---- */
+
+typedef struct InsideQuery {
+    const EvalGeometry *geometry;
+    const Object *object;
+} InsideQuery;
+
+static void eval_inside(const void *data, const double *in, double *out) {
+    const InsideQuery *q = data;
+    out[0] = q->geometry->inside(q->geometry->context, q->object, vec3(in[0], in[1], in[2])) ? 1 : 0;
+}
+
+const Tape *object_inside_tape(const BuildContext *context, const Object *object, Span span) {
+    const EvalGeometry *geometry = ((const Eval *)context->eval)->options->geometry;
+    if (!geometry || !geometry->inside) return NULL;
+    InsideQuery *query = arena_new(context->arena, InsideQuery);
+    *query = (InsideQuery){geometry, object};
+    TapeExternal *e = arena_new(context->arena, TapeExternal);
+    *e = (TapeExternal){
+        .name = "inside", .input_count = 3, .output_count = 1, .eval = eval_inside, .data = query};
+    e->hash = hash_begin(0x696E7369);
+    hash_add_hash(&e->hash, object->hash);
+    TapeBuilder *tape = tape_builder_create(context->arena, 3);
+    TapeRef in[3], out;
+    for (int i = 0; i < 3; i++) in[i] = tape_input(tape, i);
+    tape_call(tape, e, in, &out, span);
+    return tape_finish(tape, &out, 1);
 }
 
 /* ---- splines and transforms as functions ---- */

@@ -1,11 +1,12 @@
-/* Density files: numbers in the cells of the unit cube. Beyond the last cell comes the first: POV-Ray's. */
+/* Density files: numbers in the cells of the unit cube. Beyond the last cell comes the first. Before the first comes, in
+ * POV-Ray, not the last but the cell 2⁶⁴ - 1 modulo the size. */
 #include "pattern/numbers.h"
 
 static float cell(const DensityGrid *grid, long x, long y, long z) {
     long at[3] = {x, y, z};
     for (int k = 0; k < 3; k++) {
         long size = grid->size[k];
-        at[k] = at[k] < 0 ? size - 1 : at[k] % size;
+        at[k] = at[k] < 0 ? (long)(UINT64_MAX % (uint64_t)size) : at[k] % size;
     }
     return grid->values[((size_t)at[2] * (size_t)grid->size[1] + (size_t)at[1]) * (size_t)grid->size[0] +
                         (size_t)at[0]];

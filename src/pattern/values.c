@@ -10,6 +10,8 @@ PatternTraits pattern_traits(PatternKind kind) {
     switch (kind) {
     case PATTERN_MARBLE:
     case PATTERN_WOOD: return (PatternTraits){.wave = WAVE_TRIANGLE, .warps_itself = true};
+    case PATTERN_SPIRAL1:
+    case PATTERN_SPIRAL2: return (PatternTraits){.wave = WAVE_TRIANGLE, .sampled = true};
     case PATTERN_GRADIENT: return (PatternTraits){.restart = RESTART_PAST_ONE};
     case PATTERN_FUNCTION: return (PatternTraits){.restart = RESTART_PAST_ONE, .sampled = true};
     case PATTERN_ONION: return (PatternTraits){.restart = RESTART_AT_ONE};
@@ -24,8 +26,6 @@ PatternTraits pattern_traits(PatternKind kind) {
     case PATTERN_QUILTED:
     case PATTERN_RIPPLES:
     case PATTERN_WAVES:
-    case PATTERN_SPIRAL1:
-    case PATTERN_SPIRAL2:
     case PATTERN_MANDEL:
     case PATTERN_JULIA:
     case PATTERN_MAGNET_MANDEL:

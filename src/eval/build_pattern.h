@@ -1,0 +1,35 @@
+/* Patterns' words, for the builder of pigments. */
+#ifndef VTS_EVAL_BUILD_PATTERN_H
+#define VTS_EVAL_BUILD_PATTERN_H
+
+#include "eval/build_parts.h"
+
+/* A pigment under construction. Block patterns collect their colours in `items`. */
+typedef struct PigmentDraft {
+    Pigment pigment;
+    ColorMapEntry *items;
+    size_t count, capacity;
+    int magnet; /* of `magnet 1 mandel …`, until its second word is met */
+} PigmentDraft;
+
+/* Names of patterns, what belongs to them, waves, turbulence and warps; target: a PigmentDraft. */
+extern const WordRule pattern_rules[];
+extern const size_t pattern_rule_count;
+extern const WordRule pattern_setting_rules[];
+extern const size_t pattern_setting_rule_count;
+
+/* How many colours the pattern lists; 0: it has a map. */
+size_t pattern_block_count(PatternKind kind);
+/* A colour or pigment of a block pattern's list; false: it is neither. */
+bool take_block_entry(Reader *reader, PigmentDraft *draft, const Argument *value);
+/* object { O … } as a pattern. */
+bool take_object_pattern(Reader *reader, PigmentDraft *draft, const Object *object);
+/* warp { … } of a pigment. */
+WordHandler read_warp;
+
+/* A function of place that gives 1 inside of the object, else 0 (eval_internal.c); NULL: objects cannot be asked here. */
+const Tape *object_inside_tape(const BuildContext *context, const Object *object, Span span);
+/* The density file that the text at `span` names (eval_density.c); NULL after a report. */
+const DensityGrid *density_load(const BuildContext *context, const char *name, Span span);
+
+#endif

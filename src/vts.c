@@ -330,7 +330,7 @@ static void describe(VtsSession *session, const char *scene_path) {
 }
 
 static VtsStatus file_error(VtsSession *session, const StrBuf *why) {
-    diag_error(&session->diags, (Span){0}, "%s", why->size ? why->data : "the picture could not be written");
+    diag_error(&session->diags, (Span){0}, "no picture: %s", why->size ? why->data : "it could not be written");
     print_diagnostics(session);
     return VTS_ERROR_FILE;
 }

@@ -1,5 +1,7 @@
 #include "base/diag.h"
 
+#include "base/utf8.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -110,8 +112,24 @@ void diag_hint(DiagList *list, Diagnostic *to, const char *format, ...) {
 
 static size_t count_characters(const char *text, size_t size) {
     size_t count = 0;
-    for (size_t i = 0; i < size; i++) count += ((unsigned char)text[i] & 0xC0u) != 0x80u;
+    for (size_t i = 0; i < size; i += size_max(utf8_size(text + i, size - i), 1)) count++;
     return count;
+}
+
+/* Control characters would move the caret, bytes that are no UTF-8 confuse terminals. */
+static void add_visible(StrBuf *out, const char *text, size_t size) {
+    for (size_t i = 0, n; i < size; i += size_max(n, 1)) {
+        n = utf8_size(text + i, size - i);
+        if (n == 1 && ((unsigned char)text[i] < 0x20 || text[i] == 0x7F)) strbuf_addc(out, ' ');
+        else if (n == 0) strbuf_adds(out, "\xEF\xBF\xBD");
+        else strbuf_add(out, text + i, n);
+    }
+}
+
+static size_t character_begin(const char *line, size_t at) {
+    size_t begin = at;
+    while (begin > 0 && at - begin < 3 && ((unsigned char)line[begin] & 0xC0u) == 0x80u) begin--;
+    return begin;
 }
 
 /* The source line, and under it a caret at the span's first character, extended over the rest of it on this line.
@@ -125,17 +143,15 @@ static void add_excerpt(StrBuf *out, SourceSet *sources, Span span, SourcePlace 
     if (start + length > size) length = size > start ? size - start : 1;
     size_t from = 0, shown = size;
     if (size > LONGEST_SHOWN_LINE) {
-        from = start > LONGEST_SHOWN_LINE / 2 ? start - LONGEST_SHOWN_LINE / 2 : 0;
+        from = start > LONGEST_SHOWN_LINE / 2 ? character_begin(line, start - LONGEST_SHOWN_LINE / 2) : 0;
         shown = size_min(size - from, LONGEST_SHOWN_LINE);
+        if (from + shown < size) shown = character_begin(line, from + shown) - from;
         if (length > from + shown - start) length = from + shown - start;
     }
     char number[24];
     int width = snprintf(number, sizeof number, "%5u", place.line);
     strbuf_addf(out, "%s | %s", number, from ? "…" : "");
-    for (size_t i = 0; i < shown; i++) {
-        unsigned char c = (unsigned char)line[from + i];
-        strbuf_addc(out, c < 0x20 || c == 0x7F ? ' ' : (char)c); /* control characters would move the caret */
-    }
+    add_visible(out, line + from, shown);
     strbuf_addf(out, "%s\n", from + shown < size ? "…" : "");
     strbuf_repeat(out, ' ', (size_t)width);
     strbuf_adds(out, " | ");

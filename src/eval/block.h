@@ -83,6 +83,12 @@ BlockBuilder *block_builder_find(const BuildContext *context, Name word, bool *k
 /* The word of a block that an unknown `word { … }` was likely meant to be, or NULL: for a hint. */
 const char *block_word_suggest(const char *word);
 
+/* Whether a word is one of the language's, which no scene can declare. */
+bool eval_is_keyword(const BuildContext *context, Name word);
+/* The nearest of `words` and of the declared names, or NULL: for a hint. */
+const char *eval_suggest_name(const BuildContext *context, const char *text, const char *const *words,
+                              size_t word_count);
+
 /* The builders' other entry: a value that stands at top level of the file goes into the scene. False after a diagnostic
  * ("a float has no meaning here"). `declared texels` and the like that stand alone are errors too. */
 typedef struct SceneDraft SceneDraft;

@@ -148,7 +148,8 @@ static size_t match(Reader *reader, const char *name, Span span, const char *ope
                 reader_mismatch(reader, arguments[used].span, what, operand_text(*p),
                                 arguments[used].value.kind);
             else
-                reader_error(reader, span, "%s needs %s%s", what, operand_text(*p), used ? " more" : "");
+                reader_error(reader, span, "'%s' needs %s%s", name, used ? "another value: " : "",
+                             operand_text(*p));
             return used;
         }
     }
@@ -171,8 +172,9 @@ static void surplus(Reader *reader, const Grammar *grammar, const Word *word, si
     for (size_t i = used; i < word->count; i++)
         if (!(reader->on_value && reader->on_value(reader, &word->arguments[i], reader->value_target)) &&
             !accepts_value(grammar, word->arguments[i].value.kind)) {
-            reader_error(reader, word->arguments[i].span, "'%s' takes at most %zu value%s, found %zu",
-                         word->text, used, used == 1 ? "" : "s", word->count);
+            reader_error(reader, word->arguments[i].span,
+                         "too many values for '%s': expected %s%zu, found %zu", word->text, "", used,
+                         word->count);
             return;
         }
 }

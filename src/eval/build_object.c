@@ -149,9 +149,9 @@ bool build_object(BuildContext *context, const EvalBlock *block, Value *out) {
     const BlockItem *first = reader_peek(&reader);
     if (!first || first->kind != ITEM_VALUE) {
         if (first && first->kind == ITEM_WORD)
-            reader_error(&reader, first->word_span, "'%s' is not declared", first->word->text);
+            reader_undeclared(&reader, first->word->text, first->word_span);
         else
-            reader_error(&reader, block->word_span, "'%s' begins with an object", block->word->text);
+            reader_error(&reader, block->word_span, "'%s' needs an object", block->word->text);
         return false;
     }
     reader.next++;

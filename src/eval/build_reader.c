@@ -79,6 +79,35 @@ static Span block_end(const EvalBlock *block) {
     return end;
 }
 
+static const char *item_text(Reader *reader, const BlockItem *item) {
+    if (!item) return "'}'";
+    if (item->kind == ITEM_ENTRY) return "an entry [ … ]";
+    Name word = item->kind == ITEM_WORD ? item->word : item->value.as.block->word;
+    return arena_printf(reader->context->arena, "'%s'", word->text);
+}
+
+void reader_expect_word(Reader *reader, const Word *word, const char *words) {
+    const BlockItem *item = reader_peek(reader);
+    bool take = item && item->kind == ITEM_WORD && word->count == 0;
+    reader_error(reader, take ? item->word_span : word->span, "expected %s after '%s'%s%s", words, word->text,
+                 take ? ", found " : "", take ? item_text(reader, item) : "");
+    reader->next += take;
+}
+
+static const WordRule *find_rule(const WordTable *table, const char *text) {
+    for (size_t i = 0; i < table->count; i++)
+        if (strcmp(table->rules[i].text, text) == 0) return &table->rules[i];
+    return NULL;
+}
+
+/* Whether a word is nobody's: neither the language's nor this block's. */
+static bool is_undeclared(const Reader *reader, Name word) {
+    if (eval_is_keyword(reader->context, word)) return false;
+    for (size_t t = 0; t < reader->table_count; t++)
+        if (find_rule(&reader->tables[t], word->text)) return false;
+    return true;
+}
+
 static bool next_value(Reader *reader, const char *what, const char *wanted, Argument *out) {
     const BlockItem *item = reader_peek(reader);
     if (item && item->kind == ITEM_VALUE && item->value.kind != VALUE_BLOCK) {
@@ -86,12 +115,14 @@ static bool next_value(Reader *reader, const char *what, const char *wanted, Arg
         reader->next++;
         return true;
     }
-    if (item && item->kind == ITEM_WORD)
-        reader_error(reader, item->word_span, "'%s' wants %s here (%s), found the word '%s'",
-                     reader->block->word->text, what, wanted, item->word->text);
+    Span span = !item ? block_end(reader->block) : item->kind == ITEM_WORD ? item->word_span : item->span;
+    if (item && item->kind == ITEM_VALUE && item->value.kind == VALUE_ERROR)
+        reader->failed = true;
+    else if (item && item->kind == ITEM_WORD && is_undeclared(reader, item->word))
+        reader_undeclared(reader, item->word->text, span);
     else
-        reader_error(reader, item ? item->span : block_end(reader->block), "'%s' wants %s here (%s)",
-                     reader->block->word->text, what, wanted);
+        reader_error(reader, span, "expected %s (%s) in '%s', found %s", what, wanted,
+                     reader->block->word->text, item_text(reader, item));
     return false;
 }
 
@@ -200,13 +231,14 @@ static bool take_surplus(Reader *reader, const Word *word, size_t from) {
 
 bool word_arguments(Reader *reader, const Word *word, size_t low, size_t high) {
     if (word->count < low) {
-        reader_error(reader, word->span, "'%s' needs %zu value%s, found %zu", word->text, low,
-                     low == 1 ? "" : "s", word->count);
+        reader_error(reader, word->span, "too few values for '%s': expected %s%zu, found %zu", word->text,
+                     low == high ? "" : "at least ", low, word->count);
         return false;
     }
     if (word->count > high && !take_surplus(reader, word, high)) {
-        reader_error(reader, word->arguments[high].span, "'%s' takes at most %zu value%s, found %zu",
-                     word->text, high, high == 1 ? "" : "s", word->count);
+        reader_error(reader, word->arguments[high].span,
+                     "too many values for '%s': expected %s%zu, found %zu", word->text,
+                     low == high ? "" : "at most ", high, word->count);
         return false;
     }
     return true;
@@ -214,7 +246,7 @@ bool word_arguments(Reader *reader, const Word *word, size_t low, size_t high) {
 
 static const Argument *word_argument(Reader *reader, const Word *word, size_t index, const char *wanted) {
     if (index < word->count) return &word->arguments[index];
-    reader_error(reader, word->span, "'%s' needs %s%s", word->text, wanted, index ? " more" : "");
+    reader_error(reader, word->span, "'%s' needs %s%s", word->text, index ? "another value: " : "", wanted);
     return NULL;
 }
 
@@ -319,12 +351,6 @@ static void apply_rule(Reader *reader, const Word *word, const WordRule *rule, v
     }
 }
 
-static const WordRule *find_rule(const WordTable *table, const char *text) {
-    for (size_t i = 0; i < table->count; i++)
-        if (strcmp(table->rules[i].text, text) == 0) return &table->rules[i];
-    return NULL;
-}
-
 /* False after an error: the word stood there before. */
 static bool check_once(Reader *reader, const Word *word, const WordRule *rule) {
     for (size_t i = 0; i < reader->seen_count; i++)
@@ -350,7 +376,13 @@ void reader_unknown_word(Reader *reader, const Word *word) {
             words[count++] = reader->tables[t].rules[i].text;
     Diagnostic *d = reader_error(reader, word->span, "'%s' is neither declared nor a word of '%s'",
                                  word->text, reader->block->word->text);
-    const char *closest = closest_word(word->text, words, count);
+    const char *closest = eval_suggest_name(reader->context, word->text, words, count);
+    if (closest) diag_hint(reader->context->diags, d, "did you mean '%s'?", closest);
+}
+
+void reader_undeclared(Reader *reader, const char *name, Span span) {
+    Diagnostic *d = reader_error(reader, span, "'%s' is not declared", name);
+    const char *closest = eval_suggest_name(reader->context, name, NULL, 0);
     if (closest) diag_hint(reader->context->diags, d, "did you mean '%s'?", closest);
 }
 

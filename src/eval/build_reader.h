@@ -72,6 +72,8 @@ Reader reader_begin(BuildContext *context, const EvalBlock *block);
 void reader_add_table(Reader *reader, const WordRule *rules, size_t count, void *target);
 /* Reads all items that are left; false when anything was wrong. */
 bool reader_run(Reader *reader);
+/* Reports that none of the `words` follows `word`, and takes what does. */
+void reader_expect_word(Reader *reader, const Word *word, const char *words);
 /* Looks one word up in the tables and reads it. */
 void reader_word(Reader *reader, const Word *word);
 
@@ -112,6 +114,8 @@ Diagnostic *reader_error(Reader *reader, Span span, const char *format, ...) VTS
 void reader_mismatch(Reader *reader, Span span, const char *what, const char *wanted, ValueKind found);
 /* The same for a word that nobody knows, with the nearest of the tables' words as a hint. */
 void reader_unknown_word(Reader *reader, const Word *word);
+/* A name that nothing was declared as, with the nearest declared one as a hint. */
+void reader_undeclared(Reader *reader, const char *name, Span span);
 /* Adds a note to a list of things that stay undrawn. */
 void inert_add(const BuildContext *context, const InertNote **list, const char *word, Span span);
 

@@ -84,7 +84,7 @@ static void read_charset(Reader *reader, const Word *word, void *target) {
     Word name;
     if (!reader_take_word(reader, "utf8", &name) && !reader_take_word(reader, "ascii", &name) &&
         !reader_take_word(reader, "sys", &name))
-        reader_error(reader, word->span, "'charset' needs ascii, utf8 or sys");
+        reader_expect_word(reader, word, "ascii, utf8 or sys");
 }
 
 #define FIELD(name) offsetof(SettingsDraft, settings.name)

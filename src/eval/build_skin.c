@@ -69,7 +69,7 @@ static void read_tiling(Reader *reader, const Word *word, void *target) {
     if (word->count == 0 && reader_take_word(reader, "wang", &next))
         inert_add(reader->context, &((SkinDraft *)target)->skin.inert, "tiling wang", word->span);
     else
-        reader_error(reader, word->span, "'tiling' is followed by plain or wang");
+        reader_expect_word(reader, word, "plain or wang");
 }
 
 static const WordRule rules[] = {

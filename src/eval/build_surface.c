@@ -164,7 +164,7 @@ static void read_uv(Reader *reader, const Word *word, void *target) {
         draft->surface.uv_axis = vec3_normalize(draft->surface.uv_axis);
         return;
     }
-    reader_error(reader, word->span, "'uv' is followed by mesh, planar AXIS, cylindrical or spherical");
+    reader_expect_word(reader, word, "mesh, planar AXIS, cylindrical or spherical");
 }
 
 static void read_subdivide(Reader *reader, const Word *word, void *target) {

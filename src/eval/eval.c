@@ -38,12 +38,21 @@ static void add_call_notes(void *context, DiagList *list, Diagnostic *diagnostic
     if (expanded)
         diag_note(list, diagnostic, expanded->last_call, "in macro '%s', called here", expanded->name->text);
     for (const CallRecord *c = ev->calls; c; c = c->outer, count++) {
+        size_t times = 1;
+        while (c->outer && c->outer->macro == c->macro && c->outer->span.file == c->span.file &&
+               c->outer->span.begin == c->span.begin)
+            c = c->outer, times++; /* recursion */
         if (count == MOST_NOTES && c->outer) {
             diag_note(list, diagnostic, c->span, "and further calls around this one");
             return;
         }
-        if (c->macro)
+        if (c->macro && times > 1)
+            diag_note(list, diagnostic, c->span, "in macro '%s', called here %zu times within itself",
+                      c->macro->text, times);
+        else if (c->macro)
             diag_note(list, diagnostic, c->span, "in macro '%s', called here", c->macro->text);
+        else if (times > 1)
+            diag_note(list, diagnostic, c->span, "included here %zu times within itself", times);
         else
             diag_note(list, diagnostic, c->span, "included here");
     }
@@ -74,6 +83,18 @@ static TokenList *load(Eval *ev, const SourceFile *file) {
     return tokens;
 }
 
+SourceStatus eval_load_text(Eval *ev, const char *path, Span span, const SourceFile **out) {
+    SourceStatus status = source_load(ev->sources, path, NULL, out);
+    switch (status) {
+    case SOURCE_OK: break;
+    case SOURCE_NOT_FOUND: diag_error(ev->diags, span, "there is no file '%s'", path); break;
+    case SOURCE_UNREADABLE: diag_error(ev->diags, span, "'%s' cannot be read", path); break;
+    case SOURCE_TOO_LARGE: diag_error(ev->diags, span, "'%s' is too large for a text", path); break;
+    case SOURCE_BINARY: diag_error(ev->diags, span, "'%s' is not a text: it holds zero bytes", path); break;
+    }
+    return status;
+}
+
 TokenList *eval_load_include(Eval *ev, const Node *node, Span *path_span) {
     const char *name;
     *path_span = node->as.operand.a->span;
@@ -93,17 +114,12 @@ TokenList *eval_load_include(Eval *ev, const Node *node, Span *path_span) {
     const char *path = path_find(ev, name, *path_span, &refused, &places);
     const SourceFile *file = NULL;
     if (!path && !refused) {
-        Diagnostic *d = diag_error(ev->diags, *path_span, "there is no include file '%s'", name);
+        Diagnostic *d = diag_error(ev->diags, *path_span, "there is no file '%s'", name);
         diag_hint(ev->diags, d, "looked in %s", places.data ? places.data : "no folder");
     }
     strbuf_free(&places);
     if (!path) return NULL;
-    SourceStatus status = source_load(ev->sources, path, NULL, &file);
-    if (status == SOURCE_OK) return load(ev, file);
-    diag_error(ev->diags, *path_span,
-               status == SOURCE_BINARY ? "'%s' is not a text: it holds zero bytes" : "'%s' cannot be read",
-               path);
-    return NULL;
+    return eval_load_text(ev, path, *path_span, &file) == SOURCE_OK ? load(ev, file) : NULL;
 }
 
 Flow run_include(Eval *ev, const Node *node, Sink *sink) {
@@ -192,18 +208,9 @@ static void watch_memory(Eval *ev) {
 }
 
 static bool load_scene(Eval *ev, const char *path, const SourceFile **file, EvalStatus *status) {
-    SourceStatus loaded = source_load(ev->sources, path, NULL, file);
+    SourceStatus loaded = eval_load_text(ev, path, (Span){0}, file);
     *status = loaded == SOURCE_NOT_FOUND || loaded == SOURCE_UNREADABLE ? EVAL_NO_FILE : EVAL_FAILED;
-    switch (loaded) {
-    case SOURCE_OK: return true;
-    case SOURCE_NOT_FOUND: diag_error(ev->diags, (Span){0}, "there is no file '%s'", path); break;
-    case SOURCE_UNREADABLE: diag_error(ev->diags, (Span){0}, "'%s' cannot be read", path); break;
-    case SOURCE_TOO_LARGE: diag_error(ev->diags, (Span){0}, "'%s' is too large for a scene", path); break;
-    case SOURCE_BINARY:
-        diag_error(ev->diags, (Span){0}, "'%s' is not a text: it holds zero bytes", path);
-        break;
-    }
-    return false;
+    return loaded == SOURCE_OK;
 }
 
 static void say(Eval *ev, StrBuf *text) {

@@ -6,19 +6,21 @@
 #include <math.h>
 #include <time.h>
 
+Diagnostic *eval_argument_count(Eval *ev, Span span, const char *what, size_t least, size_t most, size_t given) {
+    if (given < least)
+        return diag_error(ev->diags, span, "too few arguments for %s: expected %s%zu, found %zu", what,
+                          least == most ? "" : "at least ", least, given);
+    if (given > most)
+        return diag_error(ev->diags, span, "too many arguments for %s: expected %s%zu, found %zu", what,
+                          least == most ? "" : "at most ", most, given);
+    return NULL;
+}
+
 bool builtin_argument_count(Eval *ev, const Node *node, size_t least, size_t most) {
     size_t count = node->as.list.count;
     if (count >= least && count <= most) return true;
-    const char *name = keyword_text((Keyword)node->op);
-    if (least == most)
-        diag_error(ev->diags, node->span, "%s() takes %zu argument%s, %zu given", name, least,
-                   least == 1 ? "" : "s", count);
-    else if (count < least)
-        diag_error(ev->diags, node->span, "%s() takes at least %zu argument%s, %zu given", name, least, least == 1 ? "" : "s",
-                   count);
-    else
-        diag_error(ev->diags, node->span, "%s() takes at most %zu argument%s, %zu given", name, most, most == 1 ? "" : "s",
-                   count);
+    const char *what = arena_printf(&ev->temp, "'%s'", keyword_text((Keyword)node->op));
+    eval_argument_count(ev, node->span, what, least, most, count);
     return false;
 }
 

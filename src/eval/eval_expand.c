@@ -482,7 +482,7 @@ static uint32_t recover(const TokenList *list, uint32_t begin, uint32_t at, uint
             if (t->match && t->match < end)
                 at = t->match;
             else
-                depth++;
+                depth += t->kind == '{';
         } else if (t->kind == ';' || (t->kind == '}' && depth-- <= 0)) {
             return at + 1;
         } else if (t->kind == TOKEN_DIRECTIVE && depth <= 0 && t->keyword != KW_end &&

@@ -2,17 +2,29 @@
 
 #include <math.h>
 
-void eval_undeclared(Eval *ev, Name name, Span span) {
-    Diagnostic *d = diag_error(ev->diags, span, "'%s' is not declared", name->text);
-    if (!d) return;
-    const char *candidates[512];
-    size_t count = 0;
-    for (uint32_t i = 0; i < ev->names->slot_count && count < VTS_ARRAY_COUNT(candidates); i++) {
+bool eval_is_keyword(const BuildContext *context, Name word) {
+    const Eval *ev = context->eval;
+    return ev && keyword_of(&ev->keywords, word) != KW_NONE;
+}
+
+const char *eval_suggest_name(const BuildContext *context, const char *text, const char *const *words,
+                              size_t word_count) {
+    const Eval *ev = context->eval;
+    size_t count = word_count;
+    const char **candidates =
+        arena_new_array(context->diags->arena, const char *, word_count + (ev ? ev->names->count : 0));
+    for (size_t i = 0; i < word_count; i++) candidates[i] = words[i];
+    for (uint32_t i = 0; ev && i < ev->names->slot_count; i++) {
         Name other = ev->names->slots[i];
         VarBinding *b = other ? scope_find(ev, other) : NULL;
-        if (b && b->slot->set) candidates[count++] = other->text;
+        if (b && b->slot->set && b->slot->value.kind != VALUE_ERROR) candidates[count++] = other->text;
     }
-    const char *closest = closest_word(name->text, candidates, count);
+    return closest_word(text, candidates, count);
+}
+
+void eval_undeclared(Eval *ev, Name name, Span span) {
+    Diagnostic *d = diag_error(ev->diags, span, "'%s' is not declared", name->text);
+    const char *closest = d ? eval_suggest_name(&ev->build, name->text, NULL, 0) : NULL;
     if (closest) diag_hint(ev->diags, d, "did you mean '%s'?", closest);
 }
 

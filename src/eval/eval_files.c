@@ -43,10 +43,7 @@ static bool open_for_reading(Eval *ev, UserFile *f, const char *name, Span span)
         }
         strbuf_free(&places);
         if (!path) return false;
-        if (source_load(ev->sources, path, NULL, &source) != SOURCE_OK) {
-            diag_error(ev->diags, span, "'%s' cannot be read as text", path);
-            return false;
-        }
+        if (eval_load_text(ev, path, span, &source) != SOURCE_OK) return false;
     }
     f->tokens = lexer_run(source, &ev->keywords, ev->parse);
     return true;
@@ -180,9 +177,13 @@ void run_read(Eval *ev, const Node *node) {
         Value v;
         if (!read_value(ev, f, &v)) {
             const Token *t = &f->tokens->items[f->at];
-            Diagnostic *d = diag_error(ev->diags, target->span, "'%s' has no further value to read", f->path);
-            if (t->kind != TOKEN_END)
-                diag_note(ev->diags, d, t->span, "this is not a number, vector or string");
+            if (t->kind == TOKEN_END) {
+                diag_error(ev->diags, target->span, "'%s' has no further value to read", f->path);
+            } else {
+                Diagnostic *d = diag_error(ev->diags, target->span,
+                                           "the next value of '%s' is no number, vector or string", f->path);
+                diag_note(ev->diags, d, t->span, "it stands here");
+            }
             return;
         }
         take(f, ',');
@@ -220,7 +221,8 @@ void run_write(Eval *ev, const Node *node) {
     if (f && f->mode == KW_read)
         diag_error(ev->diags, node->as.list.items[0]->span, "this file is open for reading");
     else if (f && f->memory && f->memory->size + text.size > ev->options->limits.string_bytes)
-        diag_error(ev->diags, node->span, "the scene writes more than the limit");
+        diag_error(ev->diags, node->span, "the scene writes more than %llu bytes",
+                   (unsigned long long)ev->options->limits.string_bytes);
     else if (f && f->memory)
         strbuf_add(f->memory, text.data ? text.data : "", text.size);
     else if (f && text.size && fwrite(text.data, 1, text.size, f->stream) != text.size)

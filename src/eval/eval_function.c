@@ -59,7 +59,7 @@ static TapeRef compile_constant(Compiler *c, const Node *n) {
         if (find_parameter(c, c->ev->keywords.name_of[k], &parameter)) return parameter;
         Keyword same = k == KW_u ? KW_x : k == KW_v ? KW_y : k;
         if (find_parameter(c, c->ev->keywords.name_of[same], &parameter)) return parameter;
-        return compiler_fail(c, n->span, "this is no parameter of the function");
+        return compiler_fail(c, n->span, "'%s' is no parameter of this function", keyword_text(k));
     }
     Value v = eval_constant(c->ev, n);
     return captured(c, &v, n->span);
@@ -88,7 +88,7 @@ static TapeRef compile_binary(Compiler *c, const Node *n) {
     TapeRef a = compile(c, n->as.operand.a), b = compile(c, n->as.operand.b);
     for (size_t i = 0; i < VTS_ARRAY_COUNT(ops); i++)
         if (ops[i].op == n->op) return tape_binary(c->tape, ops[i].tape, a, b, n->span);
-    return compiler_fail(c, n->span, "this operator is not for functions");
+    return compiler_fail(c, n->span, "this cannot be part of a function");
 }
 
 static TapeRef compile_unary(Compiler *c, const Node *n) {
@@ -222,8 +222,8 @@ static TapeRef inline_function(Compiler *c, const UserFunction *f, const NodeLis
                                int output) {
     TapeRef inputs[FUNCTION_INPUTS], outputs[TAPE_CALL_MAX] = {0};
     if ((size_t)f->parameter_count != list->count) {
-        diag_error(c->ev->diags, span, "the function takes %d argument%s, %zu given", f->parameter_count,
-                   f->parameter_count == 1 ? "" : "s", list->count);
+        size_t takes = (size_t)f->parameter_count;
+        eval_argument_count(c->ev, span, "the function", takes, takes, list->count);
         c->failed = true;
         return number(c, 0);
     }
@@ -321,7 +321,7 @@ static Value pigment_function(Eval *ev, const Node *node, const Pigment *pigment
     TapeExternal *external = arena_new(ev->build.arena, TapeExternal);
     if (make && make(g->context, ev->build.arena, pigment, external))
         return external_function(ev, node, external);
-    diag_error(ev->diags, node->span, "pigments and patterns as functions are not available here");
+    diag_error(ev->diags, node->span, "this pigment cannot be a function here");
     return value_error();
 }
 
@@ -405,8 +405,8 @@ Value call_function(Eval *ev, const UserFunction *function, const NodeList *argu
     }
     if (!ok) return value_error();
     if (!vector && arguments->count != (size_t)function->parameter_count) {
-        diag_error(ev->diags, span, "the function takes %d argument%s, %zu given", function->parameter_count,
-                   function->parameter_count == 1 ? "" : "s", arguments->count);
+        size_t takes = (size_t)function->parameter_count;
+        eval_argument_count(ev, span, "the function", takes, takes, arguments->count);
         return value_error();
     }
     tape_eval_once(function->tape, in, out);

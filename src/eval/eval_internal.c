@@ -153,7 +153,8 @@ static bool compile_fbm(Eval *ev, TapeBuilder *tape, const Node *call, const Tap
         !constant_argument(ev, call, 6, &gain))
         return false;
     if (!(octaves >= 1 && octaves <= 64)) {
-        diag_error(ev->diags, call->as.apply.list.items[4]->span, "fbm() takes 1 to 64 octaves");
+        diag_error(ev->diags, call->as.apply.list.items[4]->span, "fbm() takes 1 to 64 octaves, found %g",
+                   octaves);
         return false;
     }
     Span s = call->span;
@@ -185,7 +186,8 @@ const KnownFunction *known_function_find(Name name) {
 bool known_function_takes(Eval *ev, const Node *call, const KnownFunction *f) {
     size_t count = call->as.apply.list.count;
     if (count == f->arguments) return true;
-    diag_error(ev->diags, call->span, "%s() takes %zu arguments, %zu given", f->name, f->arguments, count);
+    eval_argument_count(ev, call->span, arena_printf(&ev->temp, "'%s'", f->name), f->arguments, f->arguments,
+                        count);
     return false;
 }
 

@@ -3,6 +3,7 @@
 void run_define_macro(Eval *ev, const Node *node) {
     Macro *m = arena_new(ev->parse, Macro);
     m->name = node->as.macro.name;
+    m->name_span = node->as.macro.name_span;
     m->parameter_count = node->as.macro.count;
     m->parameters = arena_copy(ev->parse, node->as.macro.parameters,
                                m->parameter_count * sizeof(Name)); /* the tree may be a passing one */
@@ -189,8 +190,9 @@ static bool pass(Eval *ev, const Node *argument, Passed *out) {
 
 static bool count_matches(Eval *ev, const Macro *m, size_t given, Span span) {
     if (given == m->parameter_count) return true;
-    diag_error(ev->diags, span, "macro '%s' takes %zu argument%s, %zu given", m->name->text,
-               m->parameter_count, m->parameter_count == 1 ? "" : "s", given);
+    const char *what = arena_printf(&ev->temp, "macro '%s'", m->name->text);
+    Diagnostic *d = eval_argument_count(ev, span, what, m->parameter_count, m->parameter_count, given);
+    diag_note(ev->diags, d, m->name_span, "'%s' is defined here", m->name->text);
     return false;
 }
 

@@ -25,13 +25,13 @@ static bool name_operand(Eval *ev, const Node *node, double *number, Value *othe
 /* Where an operand is no float: apart, so that the fast road has no Values on its stack. */
 static VTS_NOINLINE bool mixed_left(Eval *ev, const Node *node, double *number, Value *other) {
     Value b = eval_node(ev, node->as.operand.b);
-    *other = value_binary(ev, node->op, *other, b, node->span);
+    *other = value_binary(ev, node->op, *other, b, node);
     *number = other->as.number;
     return other->kind == VALUE_FLOAT;
 }
 
 static VTS_NOINLINE bool mixed_right(Eval *ev, const Node *node, double *number, Value *other) {
-    *other = value_binary(ev, node->op, value_float(*number), *other, node->span);
+    *other = value_binary(ev, node->op, value_float(*number), *other, node);
     *number = other->as.number;
     return other->kind == VALUE_FLOAT;
 }

@@ -324,7 +324,8 @@ static void run_message(Eval *ev, const Node *node) {
     EvalStream stream = EVAL_STREAM_DEBUG;
     switch (node->op) {
     case KW_error:
-        diag_error(ev->diags, node->span, "#error: %s", text);
+        while (length && (unsigned char)text[length - 1] <= ' ') length--;
+        diag_error(ev->diags, node->span, "#error: %.*s", (int)size_min(length, 10000), text);
         ev->stopped = true;
         return;
     case KW_warning: stream = EVAL_STREAM_WARNING; break;

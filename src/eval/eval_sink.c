@@ -99,7 +99,9 @@ static void add_particles(Eval *ev, Sink *sink, const Node *node, BlockItem item
                        ? item.arguments[0].value.as.number
                        : -1;
     if (!(count >= 0) || count != (double)(uint64_t)count || count > (double)ev->options->limits.loops) {
-        diag_error(ev->diags, node->span, "count takes a whole number of particles");
+        diag_error(ev->diags, item.argument_count ? item.arguments[0].span : node->span,
+                   "'count' takes a whole number of particles, up to %llu",
+                   (unsigned long long)ev->options->limits.loops);
         return;
     }
     Scope scope;
@@ -124,21 +126,26 @@ static void add_particles(Eval *ev, Sink *sink, const Node *node, BlockItem item
     scope_leave(ev, &scope);
 }
 
-static void unknown_word(Eval *ev, const Node *node) {
+/* A word among statements or elements: half of a block, part of another one, or a name that nobody declared. */
+static void misplaced_word(Eval *ev, const Sink *sink, const Node *node) {
     Name word = node->as.word.word;
-    const char *suggestion = block_word_suggest(word->text);
-    Diagnostic *d = diag_error(
-        ev->diags, node->as.word.word_span,
-        keyword_of(&ev->keywords, word) ? "'%s' has no meaning here" : "unknown word '%s'", word->text);
-    if (suggestion) diag_hint(ev->diags, d, "did you mean '%s'?", suggestion);
+    Span span = node->as.word.word_span;
+    bool block;
+    block_builder_find(&ev->build, word, &block);
+    if (block)
+        diag_error(ev->diags, (Span){span.file, span.end, span.end}, "expected '{' after '%s'", word->text);
+    else if (!keyword_of(&ev->keywords, word))
+        eval_undeclared(ev, word, span);
+    else if (sink->kind == SINK_SCENE)
+        diag_error(ev->diags, span, "'%s' cannot stand at top level: it belongs into another block",
+                   word->text);
+    else
+        diag_error(ev->diags, span, "'%s' has no meaning here", word->text);
 }
 
 void sink_word(Eval *ev, Sink *sink, const Node *node) {
     if (sink->kind != SINK_ITEMS) {
-        if (sink->kind != SINK_SCENE && !keyword_of(&ev->keywords, node->as.word.word))
-            eval_undeclared(ev, node->as.word.word, node->as.word.word_span);
-        else
-            unknown_word(ev, node);
+        misplaced_word(ev, sink, node);
         sink->filled = sink->filled || sink->kind == SINK_SINGLE;
         return;
     }

@@ -41,6 +41,7 @@ typedef struct Scope {
 
 struct Macro {
     Name name;
+    Span name_span; /* in its definition */
     const Name *parameters;
     size_t parameter_count;
     Body body;
@@ -197,7 +198,8 @@ static inline double value_to_int(double a) {
     return a > -2147483649.0 && a < 2147483648.0 ? trunc(a) + 0.0 : -2147483648.0;
 }
 Value value_unary(Eval *ev, int op, Value a, Span span);
-Value value_binary(Eval *ev, int op, Value a, Value b, Span span);
+/* For a node of two operands, which are blamed for themselves. */
+Value value_binary(Eval *ev, int op, Value a, Value b, const Node *node);
 double value_float_binary(Eval *ev, int op, double a, double b, Span span);
 /* As a float, reporting anything else; false after an error. */
 bool value_to_float(Eval *ev, const Value *v, Span span, double *out);
@@ -278,6 +280,9 @@ Value eval_extent(Eval *ev, const Node *node);
 /* trace, inside: by way of EvalOptions.geometry. */
 Value eval_geometry(Eval *ev, const Node *node);
 bool builtin_argument_count(Eval *ev, const Node *node, size_t least, size_t most);
+/* Reports too few or too many arguments at `span`; `what` is what is called, "'sin'". NULL when the number is right. */
+Diagnostic *eval_argument_count(Eval *ev, Span span, const char *what, size_t least, size_t most,
+                                size_t given);
 
 /* ---- eval_array.c ---- */
 Value eval_array(Eval *ev, const Node *node);
@@ -300,6 +305,8 @@ bool eval_deeper(Eval *ev, Span span);
 void run_assign(Eval *ev, const Node *node);
 void run_define_macro(Eval *ev, const Node *node);
 Flow run_include(Eval *ev, const Node *node, Sink *sink);
+/* Reads a text file; anything but SOURCE_OK is reported at `span`. */
+SourceStatus eval_load_text(Eval *ev, const char *path, Span span, const SourceFile **out);
 /* Loads and lexes what an #include names; NULL after a report. */
 TokenList *eval_load_include(Eval *ev, const Node *node, Span *path_span);
 /* At the end of `last`, a branch or pass of `group`: FLOW_STOP after a report if the group has no #end, or if (reached: the text up to

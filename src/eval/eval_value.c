@@ -124,11 +124,12 @@ static Value compare_strings(Eval *ev, int op, const Value *a, const Value *b, S
     return value_float(value_float_binary(ev, op, order, 0, span));
 }
 
-static Value vector_binary(Eval *ev, int op, Value a, Value b, Span span) {
+static Value vector_binary(Eval *ev, int op, Value a, Value b, const Node *node) {
+    Span span = node->span;
     if (a.kind == VALUE_ERROR || b.kind == VALUE_ERROR) return value_error();
     if (a.kind == VALUE_STRING && b.kind == VALUE_STRING) return compare_strings(ev, op, &a, &b, span);
-    if (!value_is_numeric(&a)) return mismatch(ev, span, "a float or a vector", &a);
-    if (!value_is_numeric(&b)) return mismatch(ev, span, "a float or a vector", &b);
+    if (!value_is_numeric(&a)) return mismatch(ev, node->as.operand.a->span, "a float or a vector", &a);
+    if (!value_is_numeric(&b)) return mismatch(ev, node->as.operand.b->span, "a float or a vector", &b);
     int size = a.kind == VALUE_FLOAT ? b.size : b.kind == VALUE_FLOAT ? a.size : int_max(a.size, b.size);
     double out[UINT8_MAX];
     for (int i = 0; i < size; i++)
@@ -138,10 +139,10 @@ static Value vector_binary(Eval *ev, int op, Value a, Value b, Span span) {
     return v;
 }
 
-Value value_binary(Eval *ev, int op, Value a, Value b, Span span) {
+Value value_binary(Eval *ev, int op, Value a, Value b, const Node *node) {
     if (a.kind == VALUE_FLOAT && b.kind == VALUE_FLOAT)
-        return value_float(value_float_binary(ev, op, a.as.number, b.as.number, span));
-    return vector_binary(ev, op, a, b, span);
+        return value_float(value_float_binary(ev, op, a.as.number, b.as.number, node->span));
+    return vector_binary(ev, op, a, b, node);
 }
 
 bool value_to_float(Eval *ev, const Value *v, Span span, double *out) {

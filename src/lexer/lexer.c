@@ -1,5 +1,6 @@
 #include "lexer/lexer.h"
 
+#include "base/utf8.h"
 #include "lexer/match.h"
 
 #include <ctype.h>
@@ -20,6 +21,7 @@ typedef struct Lexer {
     TokenBuffer tokens;
     BrokenKind mistake; /* the first one in the string that is being read */
     Span mistake_span;
+    uint32_t long_string; /* 1 + the offset of the first string that goes over several lines; 0: none */
 } Lexer;
 
 static Span span_from(const Lexer *lx, uint32_t begin) { return (Span){lx->file->id, begin, lx->at}; }
@@ -45,9 +47,17 @@ void token_report_broken(DiagList *diags, const Token *token) {
         diag_error(diags, token->span, "the comment that begins after this, in line %g, has no end",
                    token->as.number);
         break;
-    case BROKEN_STRING: diag_error(diags, token->span, "this string has no closing quote"); break;
+    case BROKEN_STRING:
+        d = diag_error(diags, token->span, "this string has no closing quote");
+        uint32_t other = (uint32_t)token->as.number;
+        if (other)
+            diag_note(diags, d, (Span){token->span.file, other - 1, other},
+                      "perhaps this one lacks it, which goes over several lines");
+        break;
     case BROKEN_UNICODE: diag_error(diags, token->span, "\\u needs hexadecimal digits"); break;
-    case BROKEN_DIRECTIVE: diag_error(diags, token->span, "a directive's word must follow '#'"); break;
+    case BROKEN_DIRECTIVE:
+        diag_error(diags, token->span, "expected the word of a directive after '#'");
+        break;
     case BROKEN_ESCAPE:
         d = diag_error(diags, token->span, "unknown escape in a string");
         diag_hint(diags, d, "a backslash itself is written \\\\");
@@ -176,6 +186,11 @@ static void lex_escape(Lexer *lx, StrBuf *out) {
     }
 }
 
+/* A string over several lines may be what is left of two with a forgotten quote. */
+static void note_long_string(Lexer *lx, uint32_t begin) {
+    if (memchr(lx->text + begin, '\n', lx->at - begin)) lx->long_string = begin + 1;
+}
+
 /* string = '"' { character | escape } '"': may go over several lines, but one that never ends is blamed on its start. */
 static void lex_string(Lexer *lx) {
     uint32_t begin = lx->at++;
@@ -194,10 +209,12 @@ static void lex_string(Lexer *lx) {
         string_mistake(lx, BROKEN_STRING, (Span){lx->file->id, begin, end});
     } else {
         lx->at++;
+        if (lx->long_string == 0) note_long_string(lx, begin);
     }
     if (lx->mistake) {
         strbuf_free(&decoded);
-        push_broken(lx, lx->mistake, lx->mistake_span);
+        Token *t = push_broken(lx, lx->mistake, lx->mistake_span);
+        if (lx->mistake == BROKEN_STRING) t->as.number = lx->long_string;
         return;
     }
     TokenString *string = arena_new(lx->arena, TokenString);
@@ -301,19 +318,32 @@ TokenList *lexer_run(const SourceFile *file, const KeywordTable *keywords, Arena
     return list;
 }
 
-const char *token_describe(const Token *token, Arena *arena) {
+/* The text of a token as the file has it; what cannot be shown by its number. */
+static const char *token_text(const Token *token, SourceSet *sources, Arena *arena) {
+    SourcePlace place = source_locate(sources, token->span);
+    if (!place.file || token->span.end > place.file->size) return "a value";
+    const char *text = place.file->text + token->span.begin;
+    size_t size = token->span.end - token->span.begin;
+    if (token->kind == TOKEN_VALUE) return arena_printf(arena, "'%.*s'", (int)size_min(size, 100), text);
+    size = utf8_size(text, size);
+    if (size == 0 || (unsigned char)*text < 0x20 || *text == 0x7F)
+        return arena_printf(arena, "the byte 0x%02X", (unsigned)(unsigned char)*text);
+    return arena_printf(arena, "the character '%.*s'", (int)size, text);
+}
+
+const char *token_describe(const Token *token, SourceSet *sources, Arena *arena) {
     switch (token->kind) {
     case TOKEN_END: return "the end";
     case TOKEN_NUMBER: return arena_printf(arena, "the number %g", token->as.number);
     case TOKEN_STRING: return "a string";
     case TOKEN_WORD: return arena_printf(arena, "'%s'", token->as.name->text);
     case TOKEN_DIRECTIVE: return arena_printf(arena, "'#%s'", token->as.name->text);
-    case TOKEN_VALUE: return "a value";
     case TOKEN_BROKEN: return "text that cannot be read";
+    case '$':
+    case TOKEN_VALUE: return token_text(token, sources, arena);
     case TOKEN_LESS_EQUAL: return "'<='";
     case TOKEN_GREATER_EQUAL: return "'>='";
     case TOKEN_NOT_EQUAL: return "'!='";
-    case '$': return "a character that the language does not use";
     default: return arena_printf(arena, "'%c'", token->kind);
     }
 }

@@ -32,6 +32,6 @@ void token_report_broken(DiagList *diags, const Token *token);
 /* One token a line: place, kind, text. */
 void lexer_print(const TokenList *tokens, SourceSet *sources, StrBuf *out);
 /* What a token is called in messages: "'+'", "the number 3", "'sphere'", "the end of the file". */
-const char *token_describe(const Token *token, Arena *arena);
+const char *token_describe(const Token *token, SourceSet *sources, Arena *arena);
 
 #endif

@@ -65,7 +65,8 @@ static Node *color_parts(Parser *p, Span begin, ColorPartList parts) {
         if (!e) return NULL;
         *list_push(p->arena, &parts) = (ColorPart){(uint16_t)keyword, e};
     }
-    if (parts.count == 0 && !named) return parser_fail(p, n->span, "expected a colour");
+    if (parts.count == 0 && !named)
+        return parser_fail(p, parser_peek(p)->span, "expected a colour, found %s", parser_found(p, parser_peek(p)));
     n->as.color.parts = parts.items;
     n->as.color.count = parts.count;
     n->span = span_join(n->span, p->last.span);

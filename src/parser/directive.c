@@ -96,6 +96,25 @@ static Node *declared_test(Parser *p) {
     return never;
 }
 
+/* A parser of the text from `at` on, as it stands: heads in the middle of a group. */
+static Parser head_parser(const Parser *p, TokenList *list, uint32_t at, uint32_t end) {
+    Parser inner = *p;
+    inner.reports = p->slow;
+    inner.slow = false;
+    inner.has_window = false;
+    inner.list = list;
+    inner.at = at;
+    inner.end = end;
+    return inner;
+}
+
+/* After a head that failed: what it said itself, or (half macros and the like, which give up silently) that it cannot be read. */
+static Node *head_failed(Parser *p, const Token *head, size_t failures) {
+    if (p->diags->failures != failures) return parser_give_up(p);
+    return parser_fail(p, head->span, "this #%s must be readable without expanding macros",
+                       head->as.name->text);
+}
+
 /* if = "#if" "(" full ")" | "#ifdef" "(" target ")" | "#ifndef" "(" target ")" */
 static Node *condition(Parser *p, int keyword) {
     if (keyword == KW_if || keyword == KW_elseif) return in_parentheses(p);
@@ -138,16 +157,12 @@ static Node *if_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *
         Node *other = NULL;
         if (t->keyword == KW_elseif) {
             /* On both roads the condition is read as it stands. */
-            Parser inner = *p;
-            inner.slow = false;
-            inner.has_window = false;
-            inner.list = list;
-            inner.at = g.at;
-            inner.end = t->match;
+            size_t failures = p->diags->failures;
+            Parser inner = head_parser(p, list, g.at, t->match);
             other = in_parentheses(&inner);
             g.at = inner.at;
             if (!p->slow) p->assumptions = inner.assumptions;
-            if (!other) return parser_fail(p, t->span, "the condition of #elseif cannot be read");
+            if (!other) return head_failed(p, t, failures);
         }
         g.end = t->match;
         *list_push(p->arena, &branches) = (Branch){other, group_body(&g)};
@@ -215,15 +230,11 @@ static Node *switch_directive(Parser *p, TokenList *list, uint32_t index, uint32
         bool is_else = t->keyword == KW_else && cases.count > 0;
         if (t->keyword != KW_case && t->keyword != KW_range && !is_else) break;
         SwitchCase one = {0};
-        Parser inner = *p;
-        inner.slow = false;
-        inner.has_window = false;
-        inner.list = list;
-        inner.at = g.end + 1;
-        inner.end = t->match;
+        size_t failures = p->diags->failures;
+        Parser inner = head_parser(p, list, g.end + 1, t->match);
         bool ok = case_head(&inner, t, &one);
         if (!p->slow) p->assumptions = inner.assumptions;
-        if (!ok) return parser_fail(p, t->span, "this #%s cannot be read", t->as.name->text);
+        if (!ok) return head_failed(p, t, failures);
         g.at = inner.at;
         g.end = t->match;
         one.body = group_body(&g);
@@ -241,8 +252,7 @@ static Node *macro_directive(Parser *p, TokenList *list, uint32_t index, uint32_
     p->raw = true;
     const Token *word = parser_peek(p);
     if (word->kind != TOKEN_WORD)
-        return parser_fail(p, word->span, "expected the macro's name, found %s",
-                           token_describe(word, p->arena));
+        return parser_fail(p, word->span, "expected the macro's name, found %s", parser_found(p, word));
     if (word->keyword)
         return parser_fail(p, word->span, "'%s' is a word of the language: it cannot be a name",
                            word->as.name->text);
@@ -364,7 +374,7 @@ static Node *declare_directive(Parser *p, Token head) {
                            "expected ';' after the value of '%s', found %s",
                            n->as.declare.target->kind == NODE_NAME ? n->as.declare.target->as.name->text
                                                                    : "an array's element",
-                           token_describe(t, p->arena));
+                           parser_found(p, t));
     }
     return n;
 }
@@ -399,7 +409,7 @@ static Node *fopen_directive(Parser *p, Token head) {
     Token mode = parser_take(p);
     if (mode.kind != TOKEN_WORD ||
         (mode.keyword != KW_read && mode.keyword != KW_write && mode.keyword != KW_append))
-        return parser_fail(p, mode.span, "expected read, write or append");
+        return parser_fail(p, mode.span, "expected read, write or append, found %s", parser_found(p, &mode));
     n->op = mode.keyword;
     n->span = span_join(head.span, mode.span);
     return n;

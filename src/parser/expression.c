@@ -122,7 +122,8 @@ static Node *builtin(Parser *p) {
         ok = parser_expect(p, '(', "'('");
         Token name = parser_take(p);
         if (ok && name.kind != TOKEN_WORD)
-            parser_fail(p, name.span, "expected the name of the running index");
+            parser_fail(p, name.span, "expected the name of the running index, found %s",
+                        parser_found(p, &name));
         Node *index = parser_node(p, NODE_NAME, name.span);
         index->as.name = name.as.name;
         *list_push(p->arena, &n->as.list) = index;
@@ -246,7 +247,7 @@ static Node *primary(Parser *p) {
     default:
         return parser_fail(
             p, t->kind == TOKEN_END ? (Span){p->last.span.file, p->last.span.end, p->last.span.end} : t->span,
-            "expected a value, found %s", token_describe(t, p->arena));
+            "expected a value, found %s", parser_found(p, t));
     }
     if (t->keyword == KW_NONE) return name_or_call(p);
     if (is_parameter(p, t->as.name)) return constant(p);
@@ -262,7 +263,7 @@ static Node *primary(Parser *p) {
     if (t->keyword == KW_linear_spline || t->keyword == KW_quadratic_spline ||
         t->keyword == KW_cubic_spline || t->keyword == KW_natural_spline)
         return constant(p);
-    return parser_fail(p, t->span, "expected a value, found %s", token_describe(t, p->arena));
+    return parser_fail(p, t->span, "expected a value, found %s", parser_found(p, t));
 }
 
 static int dot_component(const Token *t) {
@@ -309,7 +310,11 @@ static Node *dot(Parser *p, Node *n) {
     Token part = parser_take(p);
     int component = part.kind == TOKEN_WORD ? dot_component(&part) : -1;
     if (component < 0)
-        return parser_fail(p, part.span, "expected a component (x, y, z, red, filter …) after '.'");
+        return parser_fail(
+            p, part.span,
+            "expected a component after '.', found %s: they are x y z t, u v, red green blue filter "
+            "transmit gray",
+            parser_found(p, &part));
     require(n, BIND_PRIMARY);
     Node *result = parser_node(p, NODE_DOT, span_join(n->span, part.span));
     result->op = (uint16_t)component;

@@ -15,7 +15,9 @@ Node *parser_function(Parser *p) {
             p->raw = true;
             if (parser_peek(p)->kind == ')') break;
             Token name = parser_take(p);
-            if (name.kind != TOKEN_WORD) return parser_fail(p, name.span, "expected the name of a parameter");
+            if (name.kind != TOKEN_WORD)
+                return parser_fail(p, name.span, "expected the name of a parameter, found %s",
+                                   parser_found(p, &name));
             *list_push(p->arena, &names) = name.as.name;
             if (!parser_accept(p, ',')) break;
         }

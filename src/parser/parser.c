@@ -64,12 +64,12 @@ static Span here(Parser *p) {
 bool parser_expect(Parser *p, int kind, const char *what) {
     if (parser_accept(p, kind)) return true;
     const Token *t = parser_peek(p);
-    parser_fail(p, here(p), "expected %s, found %s", what, token_describe(t, p->arena));
+    parser_fail(p, here(p), "expected %s, found %s", what, parser_found(p, t));
     return false;
 }
 
 Node *parser_fail(Parser *p, Span span, const char *format, ...) {
-    if (p->slow && !p->failed) {
+    if ((p->slow || p->reports) && !p->failed) {
         va_list args;
         va_start(args, format);
         diag_error_va(p->diags, span, format, args);
@@ -77,6 +77,10 @@ Node *parser_fail(Parser *p, Span span, const char *format, ...) {
     }
     p->failed = true;
     return NULL;
+}
+
+const char *parser_found(Parser *p, const Token *token) {
+    return token_describe(token, p->diags->sources, p->arena);
 }
 
 Node *parser_give_up(Parser *p) {
@@ -155,7 +159,7 @@ Node *parser_target(Parser *p) {
     p->raw = true;
     const Token *t = parser_peek(p);
     if (t->kind != TOKEN_WORD)
-        return parser_fail(p, here(p), "expected a name, found %s", token_describe(t, p->arena));
+        return parser_fail(p, here(p), "expected a name, found %s", parser_found(p, t));
     if (t->keyword)
         return parser_fail(p, t->span, "'%s' is a word of the language: it cannot be a name",
                            t->as.name->text);

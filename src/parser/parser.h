@@ -58,6 +58,7 @@ struct Parser {
     const KeywordTable *keywords;
     const ParserHost *host;
     bool slow;
+    bool reports;    /* fast road: report mistakes all the same, no slow road follows */
     bool failed;     /* fast road: not understood; slow road: an error was reported */
     TokenList *list; /* fast road: tokens [at, end) of it */
     uint32_t at, end;
@@ -114,6 +115,8 @@ Node *parser_give_up(Parser *parser);
 Node *parser_fail(Parser *parser, Span span, const char *format, ...) VTS_PRINTF(3, 4);
 /* Slow road, outside of brackets: whether a directive comes next, which looking at the next token would run. */
 bool parser_directive_follows(Parser *parser);
+/* The token in words, for "expected …, found …". */
+const char *parser_found(Parser *parser, const Token *token);
 Node *parser_node(Parser *parser, NodeKind kind, Span begin);
 bool parser_enter(Parser *parser);
 static inline void parser_leave(Parser *parser) { parser->depth--; }

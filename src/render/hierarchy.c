@@ -43,8 +43,6 @@ typedef struct Builder {
 
 /* Once for each place in the text. */
 static void warn_once(Builder *b, Span span, const char *what) {
-    for (const Diagnostic *d = b->diags->first; d; d = d->next)
-        if (d->span.file == span.file && d->span.begin == span.begin && d->severity == SEVERITY_WARNING) return;
     diag_warning(b->diags, span, "%s not drawn in this version: this is opaque and does not mirror", what);
 }
 

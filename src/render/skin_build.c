@@ -236,7 +236,7 @@ static void make_cells(const Skin *skin, const SurfaceMesh *mesh, Arena *arena, 
         folded += cell_folds(cell);
     }
     if (folded)
-        diag_warning(diags, skin->span, "the skin folds over %zu of %zu boxes: its height vectors cross; shorten `height` or smooth the surface",
+        diag_warning(diags, skin->span, "the skin folds over %zu of %zu boxes: its height vectors cross; shorten 'height' or smooth the surface",
                      folded, mesh->cell_count);
 }
 

@@ -15,7 +15,7 @@ typedef struct Emitter {
     int format; /* 1: the first argument; 0: emits no message of its own (notes, hints, texts) */
 } Emitter;
 static const Emitter emitters[] = {
-    {"diag_error", 3},   {"diag_warning", 3}, {"reader_error", 3}, {"parser_fail", 3}, {"eval_fail", 3},
+    {"diag_error", 3},    {"diag_warning", 3}, {"reader_error", 3}, {"parser_fail", 3}, {"eval_fail", 3},
     {"compiler_fail", 3}, {"diag_note", 0},    {"diag_hint", 0},    {"strbuf_addf", 0}, {"arena_printf", 0},
 };
 
@@ -124,7 +124,7 @@ static const char *read_argument(Reading *r, const char *p, bool is_format) {
             p = past;
             continue;
         }
-        depth += (*p == '(') - (*p == ')');
+        depth += (*p == '(' || *p == '{' || *p == '[') - (*p == ')' || *p == '}' || *p == ']');
         p++;
     }
     bool passes_on = strncmp(begin, "const char", 10) == 0 || strncmp(begin, "format", 6) == 0;
@@ -144,7 +144,8 @@ static void read_call(Reading *r, const char *p, int format) {
 
 static const Emitter *emitter_at(const char *word, size_t length) {
     for (size_t i = 0; i < VTS_ARRAY_COUNT(emitters); i++)
-        if (strlen(emitters[i].name) == length && strncmp(emitters[i].name, word, length) == 0) return &emitters[i];
+        if (strlen(emitters[i].name) == length && strncmp(emitters[i].name, word, length) == 0)
+            return &emitters[i];
     return NULL;
 }
 
@@ -166,8 +167,8 @@ static void check_marked(Reading *r, const char *mark) {
     }
     for (p = end; p > r->text && (isalnum((unsigned char)p[-1]) || p[-1] == '_');) p--;
     if (strstr(mark, ", 0)") == strchr(mark, ',') || emitter_at(p, (size_t)(end - p))) return;
-    printf("%s:%u: %.*s() takes a format: name it in the table `emitters` of tests/diagnostics/catalogue.c\n", r->name,
-           line_of(r, mark), (int)(end - p), p);
+    printf("%s:%u: %.*s() takes a format: name it in the table `emitters` of tests/diagnostics/catalogue.c\n",
+           r->name, line_of(r, mark), (int)(end - p), p);
     r->ok = false;
 }
 
@@ -240,5 +241,9 @@ static bool read_texts(Arena *arena, const char *path, Catalogue *out, bool rows
     return true;
 }
 
-bool catalogue_read_page(Arena *arena, const char *path, Catalogue *out) { return read_texts(arena, path, out, true); }
-bool catalogue_read_lines(Arena *arena, const char *path, Catalogue *out) { return read_texts(arena, path, out, false); }
+bool catalogue_read_page(Arena *arena, const char *path, Catalogue *out) {
+    return read_texts(arena, path, out, true);
+}
+bool catalogue_read_lines(Arena *arena, const char *path, Catalogue *out) {
+    return read_texts(arena, path, out, false);
+}

@@ -1,11 +1,14 @@
 /* diagnostics_runner ROOT PROGRAM.vts…
  *
- * Compares the diagnostics of each program with PROGRAM.expected (BLESS=1 in the environment writes it), and sees that all messages are
- * known, explained and provoked. When this test fails on your new message:
+ * Compares the diagnostics of each program with PROGRAM.expected. Where they differ because messages got better:
+ * `BLESS=1 ctest -R diagnostics` writes the .expected files anew; read what changed: is it what a user needs?
+ *
+ * diagnostics_runner --messages ROOT PROGRAM.vts…
+ *
+ * Sees that all messages of the sources are explained and provoked. When it fails on your new message:
  *   1. add a row to the fitting table of doc/diagnostics.md: | `the message` | what it means | what to do |
  *      with … for each %s, %g and the like, exactly as the test prints it;
- *   2. provoke it: add a mistake to a program in this folder, or a new program;
- *   3. run `BLESS=1 ctest -R diagnostics` in the build folder and read what changed in the .expected files: is it what a user needs?
+ *   2. provoke it: add a mistake to a program in this folder, or a new program, and bless it as above.
  * A message that no program can provoke (a full disk, say) stands in unprovoked.txt, with the reason.
  *
  * A program's first line may be a comment of words that say how it runs, `// how: run --limit loops=10`:
@@ -23,6 +26,8 @@ typedef struct Test {
     Arena arena;
     Catalogue seen;
 } Test;
+
+#define ADVICE "What to do is said at the top of tests/diagnostics/diagnostics_runner.c.\n"
 
 enum { MOST_PAIRS = 8 };
 
@@ -70,7 +75,8 @@ static void how_to_run(const char *path, char *line, size_t size, How *how) {
     o->width = 4;
     o->height = 3;
     o->stdlib_dir = "";
-    for (size_t i = 0; i < VTS_ARRAY_COUNT(small_limits); i++) how->limits[o->limit_count++] = small_limits[i];
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(small_limits); i++)
+        how->limits[o->limit_count++] = small_limits[i];
     if (line[0]) read_how(how, line + 8);
     o->limits = how->limits;
     o->settings = how->settings;
@@ -118,23 +124,25 @@ static bool bless(const char *path, const StrBuf *got) {
     return fclose(f) == 0 && ok;
 }
 
-static int compare_programs(Test *test, int count, char **programs) {
+static int run_programs(Test *test, int count, char **programs, bool compare) {
     int failed = 0;
     for (int i = 0; i < count; i++) {
         StrBuf got = {0};
         const char *expected = arena_printf(&test->arena, "%.*s.expected",
                                             (int)(strrchr(programs[i], '.') - programs[i]), programs[i]);
         diagnose(test, programs[i], &got);
-        failed += !(getenv("BLESS") ? bless(expected, &got) : matches(expected, &got));
+        if (compare) failed += !(getenv("BLESS") ? bless(expected, &got) : matches(expected, &got));
         strbuf_free(&got);
     }
-    printf("%d of %d programs differ\n", failed, count);
+    if (compare) printf("%d of %d programs differ\n", failed, count);
+    if (failed) printf(ADVICE);
     return failed;
 }
 
 /* ---- the catalogue ---- */
 
-static int report_missing(const Catalogue *from, const Catalogue *in, const Catalogue *or_in, const char *what) {
+static int report_missing(const Catalogue *from, const Catalogue *in, const Catalogue *or_in,
+                          const char *what) {
     int missing = 0;
     for (size_t i = 0; i < from->count; i++) {
         const CatalogueEntry *e = &from->items[i];
@@ -152,23 +160,27 @@ static int check_catalogue(Test *test, const char *root) {
     failed += !catalogue_read_page(a, arena_printf(a, "%s/doc/diagnostics.md", root), &page);
     failed += !catalogue_read_lines(a, "unprovoked.txt", &unprovoked);
     failed += report_missing(&sources, &page, NULL, "has no row in doc/diagnostics.md");
-    failed += report_missing(&page, &sources, NULL, "stands in doc/diagnostics.md, but nothing says so any more");
-    failed += report_missing(&sources, &test->seen, &unprovoked, "is provoked by no program of tests/diagnostics");
-    failed += report_missing(&unprovoked, &sources, NULL, "stands in unprovoked.txt, but nothing says so any more");
+    failed +=
+        report_missing(&page, &sources, NULL, "stands in doc/diagnostics.md, but nothing says so any more");
+    failed +=
+        report_missing(&sources, &test->seen, &unprovoked, "is provoked by no program of tests/diagnostics");
+    failed +=
+        report_missing(&unprovoked, &sources, NULL, "stands in unprovoked.txt, but nothing says so any more");
     for (size_t i = 0; i < unprovoked.count; i++)
         if (catalogue_find(&test->seen, unprovoked.items[i].message))
             printf("unprovoked.txt: \"%s\" is provoked\n", unprovoked.items[i].message), failed++;
     printf("%zu messages, %zu explained, %zu provoked\n", sources.count, page.count, test->seen.count);
-    if (failed) printf("What to do is said at the top of tests/diagnostics/diagnostics_runner.c.\n");
+    if (failed) printf(ADVICE);
     return failed;
 }
 
 int main(int argc, char **argv) {
-    if (argc < 3) return 2;
+    bool messages = argc > 1 && strcmp(argv[1], "--messages") == 0;
+    if (argc < 3 + messages) return 2;
     Test test = {0};
     arena_init(&test.arena, NULL, 0);
-    int failed = compare_programs(&test, argc - 2, argv + 2);
-    failed += check_catalogue(&test, argv[1]);
+    int failed = run_programs(&test, argc - 2 - messages, argv + 2 + messages, !messages);
+    if (messages) failed = check_catalogue(&test, argv[2]);
     arena_destroy(&test.arena);
     return failed ? 1 : 0;
 }

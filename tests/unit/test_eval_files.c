@@ -155,7 +155,7 @@ static void test_files_that_are_no_scenes(void **state) {
     Run run;
     begin(&run);
     evaluate(&run, "#include \"binary.inc\"\n", (EvalOptions){0});
-    assert_true(has_error(&run, "no include file"));
+    assert_true(has_error(&run, "there is no file"));
     end(&run);
     begin(&run);
     write_file(&run, "binary.inc", "\0\1\2\0sphere", 10);

@@ -282,7 +282,7 @@ void run_assign(Eval *ev, const Node *node) {
         v = eval_block(ev, source, target->as.name);
     else
         is_float = eval_operand(ev, source, &number, &v);
-    if (v.kind == VALUE_VECTOR && v.size > 5)
+    if (!is_float && v.kind == VALUE_VECTOR && v.size > 5)
         v = eval_fail(ev, source->span, "a vector has 2 to 5 components, this one %d", v.size);
     if (target->kind == NODE_NAME) {
         Slot *slot = scope_declare(ev, target->as.name, node->as.declare.local);

@@ -114,6 +114,7 @@ typedef struct TextureDraft {
     const Texture *texture; /* in the space before `transform`; NULL: nothing said yet */
     const InertNote *inert;
     Transform transform;
+    bool begun;     /* something was read */
     bool mapped; /* a texture_map was read */
     bool
         patterned; /* a pattern chooses among textures: which is not modelled, the first one is seen everywhere */
@@ -123,6 +124,8 @@ static const Texture *texture_read(Reader *reader);
 
 static bool on_value(Reader *reader, const Argument *value, void *target) {
     TextureDraft *draft = target;
+    bool begun = draft->begun;
+    draft->begun = true;
     switch (value->value.kind) {
     case VALUE_FUNCTION:
         if (draft->patterned) return false;
@@ -132,7 +135,7 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
     case VALUE_TEXTURE: /* a declared one comes first, those of a pattern's list after it */
         if (draft->patterned && !draft->texture) draft->texture = value->value.as.texture;
         if (draft->patterned) return true;
-        if (reader->next > 1 && !reader->block->declared_as)
+        if (begun && !reader->block->declared_as)
             return false; /* #declare L = texture … texture … */
         break;
     case VALUE_PIGMENT:
@@ -237,10 +240,6 @@ bool build_inert_value(BuildContext *context, const EvalBlock *block, Value *out
     const InertNote *note = NULL;
     Reader reader = reader_begin(context, block);
     if (!grammar_read(&reader, block->word->text)) return false;
-    if (block->count == 0 && strcmp(block->word->text, "normal") == 0) {
-        reader_error(&reader, block->word_span, "'normal' without a pattern");
-        return false;
-    }
     if (block->count) inert_add(context, &note, block->word->text, block->word_span);
     for (size_t i = 0; i < VTS_ARRAY_COUNT(kinds); i++)
         if (strcmp(kinds[i].word, block->word->text) == 0)

@@ -157,10 +157,14 @@ static size_t match(Reader *reader, const char *name, Span span, const char *ope
 }
 
 static void check_body(Reader *parent, const Word *word, const char *name, bool optional) {
+    bool filled = *name == '+';
+    if (filled) name++;
     size_t length = (size_t)(word_end(name) - name);
     const Grammar *grammar = length ? find_grammar(name, length) : NULL;
     if (!word->body && !optional)
         reader_error(parent, word->span, "'%s' needs its block { … }", word->text);
+    else if (filled && word->body->count == 0)
+        reader_error(parent, word->span, "'%s' is empty", word->text);
     else if (word->body && grammar) {
         Reader reader = reader_nested(parent, word->body);
         grammar_read(&reader, grammar->block);

@@ -18,6 +18,19 @@ static void read_uv_vectors(Reader *reader, const Word *word, void *target) {
     draft->uvs = uvs;
 }
 
+/* A texture for each corner; which is not blended: the first one is seen. */
+static void read_corner_textures(Reader *reader, const Word *word, void *target) {
+    TriangleDraft *draft = target;
+    size_t count = word->body ? word->body->count : 0;
+    for (size_t i = 0; i < count; i++)
+        if (word->body->items[i].kind != ITEM_VALUE || word->body->items[i].value.kind != VALUE_TEXTURE)
+            count = 0;
+    if (count != 3)
+        reader_error(reader, word->span, "'texture_list' of a triangle holds three textures");
+    else
+        draft->object.texture = word->body->items[0].value.as.texture;
+}
+
 static bool is_degenerate(const Vec3 *v) {
     Vec3 area = vec3_cross(vec3_sub(v[1], v[0]), vec3_sub(v[2], v[0]));
     return vec3_length_squared(area) == 0;
@@ -37,7 +50,8 @@ static MeshData *one_triangle(Arena *arena, const Vec3 *vertices, const Vec3 *no
 }
 
 bool build_triangle(BuildContext *context, const EvalBlock *block, Value *out) {
-    static const WordRule uv_rules[] = {{"uv_vectors", WORD_CUSTOM, 0, read_uv_vectors, false}};
+    static const WordRule uv_rules[] = {{"uv_vectors", WORD_CUSTOM, 0, read_uv_vectors, false},
+                                        {"texture_list", WORD_CUSTOM, 0, read_corner_textures, false}};
     if (object_is_copy(block)) return build_object(context, block, out);
     bool smooth = strcmp(block->word->text, "smooth_triangle") == 0;
     Reader reader = reader_begin(context, block);
@@ -147,7 +161,8 @@ static const MeshData *join_triangles(const BuildContext *context, const MeshDra
     return mesh;
 }
 
-static const WordRule mesh_rules[] = {{"inside_vector", WORD_VECTOR, offsetof(MeshDraft, inside_vector), NULL, false}};
+static const WordRule mesh_rules[] = {
+    {"inside_vector", WORD_VECTOR, offsetof(MeshDraft, inside_vector), NULL, false}};
 
 bool build_mesh(BuildContext *context, const EvalBlock *block, Value *out) {
     if (block->count == 0) {

@@ -29,7 +29,8 @@ static void read_objects(Reader *reader, const Word *word, const Object *object,
     for (size_t i = 0; i < list->count; i++) items[i] = list->items[i];
     for (size_t i = 0; i < body->count; i++) {
         const Argument value = {body->items[i].value, body->items[i].span};
-        const Object *part = body->items[i].kind == ITEM_VALUE ? object_from_value(reader->context, &value) : NULL;
+        const Object *part =
+            body->items[i].kind == ITEM_VALUE ? object_from_value(reader->context, &value) : NULL;
         if (part) items[list->count++] = in_object_space(reader->context, part, object);
     }
     list->items = items;
@@ -38,7 +39,8 @@ static void read_objects(Reader *reader, const Word *word, const Object *object,
 /* `bounded_by { clipped_by }` and the other way round: the one is the other. */
 static bool says(const Word *word, const char *text) {
     const EvalBlock *body = word->body;
-    return body && body->count == 1 && body->items[0].kind == ITEM_WORD && strcmp(body->items[0].word->text, text) == 0;
+    return body && body->count == 1 && body->items[0].kind == ITEM_WORD &&
+           strcmp(body->items[0].word->text, text) == 0;
 }
 
 static void read_bounded_by(Reader *reader, const Word *word, void *target) {
@@ -54,30 +56,53 @@ static void read_clipped_by(Reader *reader, const Word *word, void *target) {
     read_objects(reader, word, object, &object->clipped_by);
 }
 
+/* Modifiers without effect here that only some objects take. */
+static void read_restricted(Reader *reader, const Word *word, void *target) {
+    static const struct {
+        const char *word, *objects;
+    } restricted[] = {
+        {"sturm",
+         " torus blob cubic quartic poly polynomial lathe prism sor sphere_sweep julia_fractal object "},
+        {"split_union", " union object "},
+        {"cutaway_textures", " intersection difference object "},
+        {"inside_vector", " mesh mesh2 object "},
+    };
+    const char *kind = ((Object *)target)->word;
+    grammar_word(reader, word);
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(restricted); i++)
+        if (strcmp(restricted[i].word, word->text) == 0 &&
+            !strstr(restricted[i].objects, arena_printf(reader->context->arena, " %s ", kind)))
+            reader_error(reader, word->span, "'%s' has no meaning for '%s'", word->text, kind);
+}
+
 static const WordRule rules[] = {
-    {"no_shadow", WORD_FLAG, FIELD(no_shadow), NULL, false},
+    {"no_shadow", WORD_MARK, FIELD(no_shadow), NULL, false},
     {"no_image", WORD_FLAG, FIELD(no_image), NULL, false},
-    {"inverse", WORD_FLAG, FIELD(inverse), NULL, false},
+    {"inverse", WORD_MARK, FIELD(inverse), NULL, false},
     {"hollow", WORD_FLAG, FIELD(hollow), NULL, false},
     {"bounded_by", WORD_CUSTOM, 0, read_bounded_by, false},
     {"clipped_by", WORD_CUSTOM, 0, read_clipped_by, false},
     IGNORED("no_reflection"),
     IGNORED("double_illuminate"),
     IGNORED("hierarchy"),
-    IGNORED("sturm"),
+    {"sturm", WORD_CUSTOM, 0, read_restricted, false},
+    {"split_union", WORD_CUSTOM, 0, read_restricted, false},
+    {"cutaway_textures", WORD_CUSTOM, 0, read_restricted, false},
+    {"inside_vector", WORD_CUSTOM, 0, read_restricted, false},
     IGNORED("photons"),
     IGNORED("radiosity"),
     IGNORED("no_radiosity"),
-    IGNORED("split_union"),
-    IGNORED("cutaway_textures"),
-    IGNORED("no_bump_scale"),
-    IGNORED("inside_vector"),
     INERT("uv_mapping"),
     INERT("interior_texture"),
 };
 
 static bool on_value(Reader *reader, const Argument *value, void *target) {
     Object *object = target;
+    if (value->value.kind == VALUE_COLOR) {
+        diag_warning(reader->context->diags, value->span,
+                     "a colour belongs into a pigment: it is ignored here");
+        return true;
+    }
     return take_looks(reader->context, value, &object->texture, &object->inert, &object->transform) ||
            take_transform(value, &object->transform);
 }

@@ -334,6 +334,9 @@ static void apply_rule(Reader *reader, const Word *word, const WordRule *rule, v
     bool scalar = rule->shape >= WORD_FLOAT && rule->shape <= WORD_COLOR;
     if (scalar && !word_arguments(reader, word, 1, 1)) return;
     switch (rule->shape) {
+    case WORD_MARK:
+        if (word_arguments(reader, word, 0, 0)) *(bool *)field = true;
+        break;
     case WORD_FLAG: read_flag(reader, word, field); break;
     case WORD_FLOAT: word_float(reader, word, 0, field); break;
     case WORD_POSITIVE: read_positive(reader, word, field); break;

@@ -21,6 +21,7 @@ typedef struct Word {
 typedef void WordHandler(Reader *reader, const Word *word, void *target);
 
 typedef enum WordShape {
+    WORD_MARK,     /* bool: true; takes no argument */
     WORD_FLAG,     /* bool: true; an optional float argument decides */
     WORD_FLOAT,    /* double */
     WORD_POSITIVE, /* double, > 0 */

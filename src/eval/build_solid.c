@@ -1,5 +1,7 @@
 #include "eval/build_parts.h"
 
+#include <string.h>
+
 /* POV-Ray squares radii, so a negative one draws what its absolute value does. */
 static double radius(Reader *reader, const char *what, double value, Span span) {
     if (value < 0)
@@ -21,6 +23,7 @@ static bool read_radius(Reader *reader, const char *what, double *out) {
 /* The strength of a component of a blob, which is not drawn: the solid stands alone nowhere. */
 static bool skip_strength(Reader *reader) {
     Argument strength;
+    if (!reader->block->outer || strcmp(reader->block->outer->text, "blob") != 0) return true;
     reader_take_value(reader, VALUE_FLOAT, &strength);
     return true;
 }

@@ -57,6 +57,30 @@ static void a_ball_casts_an_ellipse(void **state) {
     picture_free(&p);
 }
 
+/* A wavy mesh with smooth normals under a high sun: no face hides another, so every place has the light of its normal. */
+static void smooth_meshes_do_not_shade_themselves(void **state) {
+    VtsOptions o = options_of_size(160, 120);
+    Picture p = bench_render(*state, &o,
+        "camera { location <0, 1.2, -4> look_at 0 right x*4/3 angle 50 }\n"
+        "light_source { <-300, 500, -100> rgb 1 parallel point_at 0 }\n"
+        "#declare H = function(x, z) { 0.15*sin(2*x)*cos(2*z) }\n"
+        "#macro At(X, Z) <X, H(X, Z), Z> #end\n"
+        "#macro Up(X, Z) vnormalize(<-0.3*cos(2*X)*cos(2*Z), 1, 0.3*sin(2*X)*sin(2*Z)>) #end\n"
+        "mesh { #for (I, -30, 29) #for (J, -20, 39) #local A = I*0.2; #local B = A + 0.2; #local C = J*0.2; #local D = C + 0.2;\n"
+        "  smooth_triangle { At(A, C), Up(A, C), At(B, C), Up(B, C), At(B, D), Up(B, D) }\n"
+        "  smooth_triangle { At(A, C), Up(A, C), At(B, D), Up(B, D), At(A, D), Up(A, D) }\n"
+        "#end #end pigment { rgb 1 } finish { ambient 0 diffuse 1 } }\n");
+    int hit = 0, dark = 0;
+    for (int y = 50; y < 120; y++)
+        for (int x = 0; x < 160; x++) {
+            hit++;
+            dark += pixel_at(&p, x, y)[0] < .45f; /* the least cosine of any normal is above .6 */
+        }
+    printf("smooth mesh: %d of %d pixels dark\n", dark, hit);
+    assert_int_equal(dark, 0);
+    picture_free(&p);
+}
+
 /* ---- light ---- */
 
 static void parallel_light_on_a_plane(void **state) {
@@ -192,6 +216,7 @@ static void place_and_scale_do_not_matter(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ball_covers_its_disc),    cmocka_unit_test(a_ball_casts_an_ellipse),
+cmocka_unit_test(a_ball_covers_its_disc),    cmocka_unit_test(smooth_meshes_do_not_shade_themselves),
         cmocka_unit_test(parallel_light_on_a_plane), cmocka_unit_test(point_light_fades),
         cmocka_unit_test(spotlights_have_cones),     cmocka_unit_test(fog_takes_exponentially),
         cmocka_unit_test(a_region_is_a_crop),        cmocka_unit_test(exposure_multiplies),

@@ -72,9 +72,10 @@ static void smooth_meshes_do_not_shade_themselves(void **state) {
         "#end #end pigment { rgb 1 } finish { ambient 0 diffuse 1 } }\n");
     int hit = 0, dark = 0;
     for (int y = 50; y < 120; y++)
-        for (int x = 0; x < 160; x++) {
+        for (int x = 1; x < 159; x++) {
+            float neighbours = (pixel_at(&p, x - 1, y)[0] + pixel_at(&p, x + 1, y)[0]) / 2;
             hit++;
-            dark += pixel_at(&p, x, y)[0] < .45f; /* the least cosine of any normal is above .6 */
+            dark += pixel_at(&p, x, y)[0] < neighbours - .03f; /* the light is smooth */
         }
     printf("smooth mesh: %d of %d pixels dark\n", dark, hit);
     assert_int_equal(dark, 0);

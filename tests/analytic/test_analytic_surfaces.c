@@ -62,7 +62,7 @@ static void smooth_meshes_do_not_shade_themselves(void **state) {
     VtsOptions o = options_of_size(160, 120);
     Picture p = bench_render(*state, &o,
         "camera { location <0, 1.2, -4> look_at 0 right x*4/3 angle 50 }\n"
-        "light_source { <-300, 500, -100> rgb 1 parallel point_at 0 }\n"
+        "light_source { <-300, 210, -40> rgb 1 parallel point_at 0 }\n"
         "#declare H = function(x, z) { 0.15*sin(2*x)*cos(2*z) }\n"
         "#macro At(X, Z) <X, H(X, Z), Z> #end\n"
         "#macro Up(X, Z) vnormalize(<-0.3*cos(2*X)*cos(2*Z), 1, 0.3*sin(2*X)*sin(2*Z)>) #end\n"

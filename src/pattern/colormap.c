@@ -33,6 +33,7 @@ static ColorMap own_map(PatternKind kind) {
     case PATTERN_MARBLE: return MAP(marble_map);
     case PATTERN_WOOD: return MAP(wood_map);
     case PATTERN_RADIAL: return MAP(radial_map);
+    case PATTERN_OBJECT:
     case PATTERN_CHECKER: return MAP(checker_colors);
     case PATTERN_BRICK: return MAP(brick_colors);
     case PATTERN_HEXAGON: return MAP(hexagon_colors);

@@ -126,14 +126,18 @@ Body *parser_body(Parser *p, Name block) {
         parser_take(p);
         return body;
     }
-    if (p->host->take_body(p->host->context, body)) {
+    /* Within a block that is read as it is expanded, a body kept for later would see what its text's loops and macros
+     * have left behind. */
+    if (!p->expanding && p->host->take_body(p->host->context, body)) {
         if (body->tokens) p->last = body->tokens->items[body->end];
         return body;
     }
     Name outer = p->block;
     int brackets = p->brackets;
+    bool expanding = p->expanding;
     p->block = block;
     p->brackets = 1;
+    p->expanding = true;
     int close = open.kind == '[' ? ']' : '}';
     if (!parser_enter(p)) return NULL;
     while (!p->failed && parser_peek(p)->kind != close && !parser_at_end(p)) {
@@ -143,6 +147,7 @@ Body *parser_body(Parser *p, Name block) {
     parser_leave(p);
     p->block = outer;
     p->brackets = brackets;
+    p->expanding = expanding;
     if (!p->failed && !parser_accept(p, close)) {
         const char *name = block ? block->text : "it";
         const Token *t = parser_peek(p);

@@ -78,6 +78,7 @@ struct Parser {
     bool closed;  /* the last operand was a block, a function, an array or a text: no operator follows */
     int depth;    /* nesting, against the C stack */
     int brackets; /* open ( < [ of the expression being read */
+    bool expanding; /* within a block whose text is expanded as it is read */
     AssumptionList assumptions;
 };
 

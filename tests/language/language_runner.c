@@ -36,6 +36,8 @@ static char *read_whole(const char *path) {
 }
 
 static const char *const include_dirs[] = {"/usr/share/povray-3.7/include", "/usr/share/povray/include"};
+/* The programs stdlib_*.vts are about our own include files. */
+static const char *const stdlib_dirs[] = {VTS_STDLIB_DIR};
 
 static void check_diagnostics(Run *run, const char *text, SourceSet *sources, const DiagList *diags) {
     size_t expected = 0;
@@ -93,9 +95,10 @@ static void run_program(Run *run, const char *path, const char *text, bool show,
     diag_init(&diags, &session, &sources);
     interner_init(&names, &session);
     EvalGeometry geometry = hooks_geometry(&session);
+    bool ours = strstr(path, "/stdlib_") != NULL;
     EvalOptions o = {.geometry = &geometry,
-                     .include_dirs = include_dirs,
-                     .include_dir_count = 2,
+                     .include_dirs = ours ? stdlib_dirs : include_dirs,
+                     .include_dir_count = ours ? 1 : 2,
                      .image_width = 4,
                      .image_height = 4,
                      .limits = eval_limits_default(),

@@ -2,7 +2,7 @@
 # words.sh ROOT: no word of the language is missing in the reference. Tables and headings of doc/scene.md and doc/reference name
 # every reserved word, every word of vts's own blocks and their items, in code (`word`). doc/reference/functions.md has each
 # function and constant, doc/reference/directives.md each directive, in a table and in an example; doc/reference/words.md names
-# no word that is not there. Prints what is missing; status 1 then.
+# no word that is not there; doc/reference/stdlib.md has the macros and functions of the files that it describes. Prints what is missing; status 1 then.
 set -u -o pipefail
 export LC_ALL=C
 cd "$1" || exit 2
@@ -42,6 +42,18 @@ example_words doc/reference/directives.md > "$folder/directive_examples"
 { keywords 'FUNCTION|CONSTANT'; known_functions; } | grep -vx internal | require "example" "$folder/function_examples" doc/reference/functions.md
 { keywords DIRECTIVE; echo version; } | sed 's/^/#/' | require "table" "$folder/directives" doc/reference/directives.md
 { keywords DIRECTIVE; echo version; } | sed 's/^/#/' | require "example" "$folder/directive_examples" doc/reference/directives.md
+
+# Macros and functions of the standard library's files that the page describes; Math_…, Arrays_… are a file's own.
+library_names() {
+  local file
+  for file in stdlib/*.inc; do
+    grep -qx "## $(basename "$file")" doc/reference/stdlib.md || continue
+    sed -nE 's/^ *#macro +([A-Za-z0-9_]+).*/\1/p; s/^#declare +([A-Za-z0-9_]+) *= *function.*/\1/p' "$file" |
+      grep -vE '^(__|Arrays_|Math_|Trans_)'
+  done
+}
+table_words doc/reference/stdlib.md > "$folder/library"
+library_names | require table "$folder/library" doc/reference/stdlib.md
 
 # And the index names no word that is not there: the first word of each code span in a first cell.
 { keywords '[A-Z]*'; context_words; } | sort -u > "$folder/words"

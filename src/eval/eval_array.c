@@ -83,7 +83,7 @@ static bool read_sizes(Eval *ev, const Node *node, size_t *sizes) {
 }
 
 static void check_filled(Eval *ev, const Array *a, size_t given, Span span) {
-    if (given && given < a->count)
+    if (given < a->count)
         diag_error(ev->diags, span, "an array of %zu elements gets only %zu", a->count, given);
 }
 

@@ -177,7 +177,7 @@ static void begin_for(Source *s, const Node *n) {
     double from, to, step = 1;
     if (!eval_float(ev, n->as.for_loop.from, &from) || !eval_float(ev, n->as.for_loop.to, &to)) return;
     if (n->as.for_loop.step && !eval_float(ev, n->as.for_loop.step, &step)) return;
-    if (!value_is_true(step)) {
+    if (fabs(step) <= VALUE_TOLERANCE) {
         diag_error(ev->diags, n->as.for_loop.step->span, "the step of #for is 0");
         return;
     }

@@ -4,7 +4,7 @@
 #include <string.h>
 
 bool file_is_open(const UserFile *file) {
-    return file->open && !(file->mode == KW_read && file->tokens->items[file->at].kind == TOKEN_END);
+    return file->open && !file->ended;
 }
 
 MemoryFile *files_in_memory(const Eval *ev, const char *name) {
@@ -115,6 +115,11 @@ static UserFile *handle_of(Eval *ev, const Node *node) {
 
 void run_fclose(Eval *ev, const Node *node) {
     const Node *handle = node->as.list.items[0];
+    const VarBinding *b = handle->kind == NODE_NAME ? scope_find(ev, handle->as.name) : NULL;
+    if (handle->kind == NODE_NAME && (!b || !b->slot->set)) { /* closing twice does no harm */
+        diag_warning(ev->diags, handle->span, "'%s' is no open file", handle->as.name->text);
+        return;
+    }
     UserFile *f = handle_of(ev, handle);
     if (!f) return;
     close_file(ev, f);
@@ -165,6 +170,19 @@ static bool read_value(Eval *ev, UserFile *f, Value *out) {
     return true;
 }
 
+/* One token separates values, whatever it is; the file ends where there is none. As in POV-Ray a comma behind the last value promises
+ * another: only the #read that misses it finds the end. */
+static void take_separator(Eval *ev, UserFile *f) {
+    const Token *t = &f->tokens->items[f->at];
+    f->ended = t->kind == TOKEN_END;
+    if (f->ended) return;
+    if (t->kind != ',')
+        diag_warning(ev->diags, t->span, "%s is skipped: a comma is needed between values",
+                     token_describe(t, ev->sources, &ev->temp));
+    f->at++;
+}
+
+/* At the end of the file the variables stay as they are. */
 void run_read(Eval *ev, const Node *node) {
     UserFile *f = handle_of(ev, node->as.list.items[0]);
     if (!f) return;
@@ -175,18 +193,18 @@ void run_read(Eval *ev, const Node *node) {
     for (size_t i = 1; i < node->as.list.count; i++) {
         const Node *target = node->as.list.items[i];
         Value v;
-        if (!read_value(ev, f, &v)) {
-            const Token *t = &f->tokens->items[f->at];
-            if (t->kind == TOKEN_END) {
-                diag_error(ev->diags, target->span, "'%s' has no further value to read", f->path);
-            } else {
-                Diagnostic *d = diag_error(ev->diags, target->span,
-                                           "the next value of '%s' is no number, vector or string", f->path);
-                diag_note(ev->diags, d, t->span, "it stands here");
-            }
+        const Token *t = &f->tokens->items[f->at];
+        if (t->kind == TOKEN_END) {
+            f->ended = true;
             return;
         }
-        take(f, ',');
+        if (!read_value(ev, f, &v)) {
+            Diagnostic *d = diag_error(ev->diags, target->span,
+                                       "the next value of '%s' is no number, vector or string", f->path);
+            diag_note(ev->diags, d, t->span, "it stands here");
+            return;
+        }
+        take_separator(ev, f);
         bool failed = false;
         Slot *slot = target->kind == NODE_NAME ? scope_declare(ev, target->as.name, false)
                                                : eval_target(ev, target, &failed);

@@ -15,6 +15,7 @@ struct UserFile {
     StrBuf *memory;    /* writing to memory */
     TokenList *tokens; /* reading */
     uint32_t at;
+    bool ended; /* reading: the end was reached */
 };
 
 /* Text that was written and is kept in memory: an entry outlives its handles. */

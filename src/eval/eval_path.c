@@ -55,7 +55,7 @@ bool path_may_write(Eval *ev, const char *path) {
 
 static bool is_file(const char *path) {
     struct stat info;
-    return stat(path, &info) == 0 && !S_ISDIR(info.st_mode);
+    return stat(path, &info) == 0 && S_ISREG(info.st_mode); /* reading others may never end */
 }
 
 static const char *join(Eval *ev, const char *folder, const char *name) {

@@ -217,7 +217,7 @@ static Flow run_for(Eval *ev, const Node *node, Sink *sink) {
     bool ok = eval_float(ev, node->as.for_loop.from, &from);
     if (!eval_float(ev, node->as.for_loop.to, &to) || !ok) return FLOW_NEXT;
     if (node->as.for_loop.step && !eval_float(ev, node->as.for_loop.step, &step)) return FLOW_NEXT;
-    if (!value_is_true(step)) {
+    if (fabs(step) <= VALUE_TOLERANCE) {
         diag_error(ev->diags, node->as.for_loop.step->span, "the step of #for is 0");
         return FLOW_NEXT;
     }
@@ -252,7 +252,7 @@ bool run_case_matches(Eval *ev, const SwitchCase *c, double subject) {
     double low, high;
     if (!c->low) return true;
     if (!eval_float(ev, c->low, &low)) return false;
-    if (!c->high) return !value_is_true(subject - low);
+    if (!c->high) return fabs(subject - low) <= VALUE_TOLERANCE;
     return eval_float(ev, c->high, &high) && subject >= low && subject <= high;
 }
 

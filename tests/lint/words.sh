@@ -37,26 +37,35 @@ table_words doc/reference/directives.md > "$folder/directives"
 example_words doc/reference/functions.md > "$folder/function_examples"
 example_words doc/reference/directives.md > "$folder/directive_examples"
 
-{ keywords 'CONSTANT|COLOR|WORD'; context_words; } | require "table or heading" "$folder/all" "doc/scene.md, doc/reference"
-{ keywords 'FUNCTION|CONSTANT'; known_functions; } | require "table" "$folder/functions" doc/reference/functions.md
+# Words of blocks that are no keywords (POV-Ray 3.8's), and operations of functions that are no operators.
+block_words() { sed -n 's/^    {"\([a-z0-9_]*\)", [a-zA-Z_]*},$/\1/p' src/eval/build_table.c; }
+tape_operations() {
+  sed -nE 's/^TAPE_OP\([A-Z0-9_]+, [1-9], "([a-z0-9_]+)".*/\1/p' src/tape/tape_ops.def |
+    grep -vxE 'add|sub|mul|div|idiv|neg|lt|le|gt|ge|eq|ne|and|or'
+}
+
+{ keywords 'CONSTANT|COLOR|WORD'; context_words; block_words; } | require "table or heading" "$folder/all" "doc/scene.md, doc/reference"
+{ keywords 'FUNCTION|CONSTANT'; known_functions; } | require table "$folder/functions" doc/reference/functions.md
 { keywords 'FUNCTION|CONSTANT'; known_functions; } | grep -vx internal | require "example" "$folder/function_examples" doc/reference/functions.md
 { keywords DIRECTIVE; echo version; } | sed 's/^/#/' | require "table" "$folder/directives" doc/reference/directives.md
 { keywords DIRECTIVE; echo version; } | sed 's/^/#/' | require "example" "$folder/directive_examples" doc/reference/directives.md
 
-# Macros and functions of the standard library's files that the page describes; Math_…, Arrays_… are a file's own.
+# Macros and functions of the standard library's files that the page describes; Math_…, Arrays_…, Shapes_… are a file's own.
 library_names() {
   local file
   for file in stdlib/*.inc; do
     grep -qx "## $(basename "$file")" doc/reference/stdlib.md || continue
     sed -nE 's/^ *#macro +([A-Za-z0-9_]+).*/\1/p; s/^#declare +([A-Za-z0-9_]+) *= *function.*/\1/p' "$file" |
-      grep -vE '^(__|Arrays_|Math_|Trans_)'
+      grep -vE '^(__|Arrays_|Math_|Trans_|Shapes_)'
   done
 }
 table_words doc/reference/stdlib.md > "$folder/library"
+cat "$folder/functions" "$folder/library" > "$folder/callable"
+tape_operations | require table "$folder/callable" "doc/reference/functions.md, doc/reference/stdlib.md"
 library_names | require table "$folder/library" doc/reference/stdlib.md
 
 # And the index names no word that is not there: the first word of each code span in a first cell.
-{ keywords '[A-Z]*'; context_words; } | sort -u > "$folder/words"
+{ keywords '[A-Z]*'; context_words; block_words; } | sort -u > "$folder/words"
 sed -n 's/^| \(`[^|]*\) |.*/\1/p' doc/reference/words.md | grep -oE '`[a-z][a-z0-9_]*' | tr -d '`' | sort -u > "$folder/indexed"
 comm -23 "$folder/indexed" "$folder/words" > "$folder/stale"
 [ -s "$folder/stale" ] && { sed "s|.*|doc/reference/words.md: there is no word '&'|" "$folder/stale"; failed=1; }

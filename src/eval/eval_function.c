@@ -12,6 +12,8 @@ typedef struct Compiler {
     bool failed;
 } Compiler;
 
+enum { WHOLE_VALUE = -1 }; /* of a call without .x, .red … */
+
 static TapeRef compile(Compiler *c, const Node *n);
 
 static TapeRef VTS_PRINTF(3, 4) compiler_fail(Compiler *c, Span span, const char *format, ...) {
@@ -228,6 +230,10 @@ static TapeRef inline_function(Compiler *c, const UserFunction *f, const NodeLis
         return number(c, 0);
     }
     for (size_t i = 0; i < list->count; i++) inputs[i] = compile(c, list->items[i]);
+    if (output == WHOLE_VALUE && tape_output_count(f->tape) > 1)
+        return compiler_fail(c, span, "the function gives %d numbers: one of them is wanted here, as in F(x).red",
+                             tape_output_count(f->tape));
+    if (output == WHOLE_VALUE) output = 0;
     bool gray = output == DOT_GRAY && tape_output_count(f->tape) >= 3;
     if (!gray && (output >= tape_output_count(f->tape) || output < 0))
         return compiler_fail(c, span, "the function's value has no such component");
@@ -295,7 +301,7 @@ static TapeRef compile(Compiler *c, const Node *n) {
     case NODE_BINARY: return compile_binary(c, n);
     case NODE_CONDITION: return compile_condition(c, n);
     case NODE_BUILTIN: return compile_builtin(c, n);
-    case NODE_CALL: return compile_call(c, n, 0);
+    case NODE_CALL: return compile_call(c, n, WHOLE_VALUE);
     case NODE_DOT:
         return n->as.operand.a->kind == NODE_CALL ? compile_call(c, n->as.operand.a, n->op)
                                                   : compile_value(c, n);

@@ -286,7 +286,10 @@ void run_assign(Eval *ev, const Node *node) {
         v = eval_fail(ev, source->span, "a vector has 2 to 5 components, this one %d", v.size);
     if (target->kind == NODE_NAME) {
         Slot *slot = scope_declare(ev, target->as.name, node->as.declare.local);
-        if (is_float)
+        if (slot->set && slot->value.kind == VALUE_FUNCTION)
+            eval_fail(ev, target->span, "'%s' is a function: #undef comes before another declaration",
+                      target->as.name->text);
+        else if (is_float)
             slot_set_float(ev, slot, number);
         else
             slot_set(ev, slot, &v);

@@ -107,6 +107,20 @@ VTS_API VtsStatus vts_render(VtsSession *session, const char *scene_path, const 
 /* Evaluates (as vts_check) and passes the printed form of one stage to on_text(VTS_STREAM_STATISTICS). */
 VTS_API VtsStatus vts_dump(VtsSession *session, const char *scene_path, VtsDump stage);
 
+typedef struct VtsDifference {
+    int width, height;
+    double rmse;       /* over pixels and channels, linear light clamped to [0,1] */
+    double psnr;       /* dB, after the sRGB curve; infinite for equal pictures */
+    double flip;       /* mean of FLIP (Andersson et al. 2020) at 67 pixels per degree, in [0,1] */
+    double largest;    /* largest difference of a sample, linear and clamped */
+    int x, y;          /* where that is */
+    size_t not_finite; /* samples that are infinite or NaN in either picture */
+} VtsDifference;
+/* Compares two pictures; VTS_ERROR_USAGE when their sizes differ. `map_path`, if not NULL, gets the map of FLIP's errors: as numbers in .exr and .pfm, else in
+ * colours. When it fails, `error` (if not NULL) holds one line of text. */
+VTS_API VtsStatus vts_compare(const char *reference_path, const char *test_path, const char *map_path, VtsDifference *out,
+                              char *error, size_t error_size);
+
 /* All diagnostics so far as text; "" when none. Valid until the next call with this session. */
 VTS_API const char *vts_diagnostics(const VtsSession *session);
 /* The report of the last vts_render() as JSON (cli.md, --report); "" before. Valid until the next call. */

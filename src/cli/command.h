@@ -9,6 +9,10 @@
 int command_render(Settings *settings);
 int command_check(Settings *settings);
 int command_run(Settings *settings);
+int command_compare(Settings *settings);
+
+/* Whether all of these comma-separated metrics are known to compare. */
+bool compare_metrics_valid(const char *names);
 
 /* Shared by them: one call of a session, from its creation to the last word on stderr. */
 typedef VtsStatus SessionCall(VtsSession *session, const void *context);

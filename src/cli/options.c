@@ -1,5 +1,6 @@
 #include "cli/options.h"
 
+#include "cli/command.h"
 #include "cli/complaint.h"
 #include "cli/povray_options.h"
 #include "cli/spelling.h"
@@ -119,6 +120,19 @@ static const char *apply_verbose(Settings *s, const char *value) {
     s->verbose = true;
     return NULL;
 }
+static const char *apply_metric(Settings *s, const char *value) {
+    s->metrics = value;
+    return compare_metrics_valid(value) ? NULL : "some of rmse,psnr,flip,max";
+}
+static const char *apply_diff(Settings *s, const char *value) {
+    s->diff = value;
+    return *value ? NULL : "a file name";
+}
+static const char *apply_json(Settings *s, const char *value) {
+    (void)value;
+    s->json = true;
+    return NULL;
+}
 static const char *apply_help(Settings *s, const char *value) {
     (void)value;
     s->help = true;
@@ -159,7 +173,7 @@ static const Option OPTIONS[] = {
     {"dump", 0, "tokens|ast|scene|tape|compiled", COMMAND_RUN, apply_dump,
      "prints one stage of the program instead"},
     {"verbose", 'v', NULL, COMMAND_ALL, apply_verbose, "says more about what is done"},
-    {"help", 'h', NULL, COMMAND_ALL, apply_help, "this text"},
+    {"help", 'h', NULL, COMMAND_ALL | COMMAND_COMPARE, apply_help, "this text"},
     {"frames", 'f', "A-B", COMMAND_ALL, NULL, NULL},
     {"resume", 0, NULL, COMMAND_ALL, NULL, NULL},
     {"aov", 0, "NAMES", COMMAND_ALL, NULL, NULL},
@@ -167,8 +181,10 @@ static const Option OPTIONS[] = {
     {"cache", 0, "DIR", COMMAND_ALL, NULL, NULL},
     {"sweep", 0, "KNOB=VALUES", COMMAND_ALL, NULL, NULL},
     {"methods", 0, "NAMES", COMMAND_ALL, NULL, NULL},
-    {"metric", 0, "NAMES", COMMAND_ALL, NULL, NULL},
-    {"diff", 0, "F", COMMAND_ALL, NULL, NULL},
+    {"metric", 0, "NAMES", COMMAND_COMPARE, apply_metric, "of rmse,psnr,flip,max; default rmse,psnr,flip"},
+    {"diff", 0, "F", COMMAND_COMPARE, apply_diff,
+     "a picture of FLIP's errors; numbers in .exr and .pfm, else colours"},
+    {"json", 0, NULL, COMMAND_COMPARE, apply_json, "prints JSON"},
     {"save", 0, "F", COMMAND_ALL, NULL, NULL},
 };
 enum { OPTION_COUNT = sizeof OPTIONS / sizeof *OPTIONS };
@@ -277,7 +293,8 @@ void options_print_help(FILE *stream, unsigned command) {
         else
             fprintf(stream, "%-*s %s\n", COLUMN, left, option->help);
     }
-    fputs("POV-Ray's spelling (+W640 +H480 +Ofile +Lfolder +K0.5 Declare=n=1 Width=640 scene.ini) is "
+    if (command & COMMAND_ALL)
+        fputs("POV-Ray's spelling (+W640 +H480 +Ofile +Lfolder +K0.5 Declare=n=1 Width=640 scene.ini) is "
           "understood too.\n",
           stream);
 }

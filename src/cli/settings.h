@@ -32,6 +32,8 @@ typedef struct Settings {
     const char *output; /* NULL: by the scene's name */
     const char *suffix; /* of pictures whose name has none; ".png" */
     const char *report; /* file, "-" for stdout, or NULL */
+    const char *metrics, *diff; /* of compare; NULL: the usual ones, no picture */
+    bool json;
     ProgressStyle progress;
     bool verbose;
     bool help;

@@ -49,6 +49,7 @@ S
 
 case_help() {
   run; want_status 2; want_empty out; want_in err Usage
+  run help compare; want_status 0; want_in out --diff
   local command
   for command in render check run; do
     run $command --help; want_status 0; want_empty err; want_in out "Usage: vts $command"; want_in out --include
@@ -82,7 +83,7 @@ case_usage() {
   refused check scene.vts --alpha
   refused render scene.vts --alpha=1
   local word
-  for word in chart farm texel reference compare info stitch; do refused $word scene.vts; want_in err 'not available in this version'; done
+  for word in chart farm texel reference info stitch; do refused $word scene.vts; want_in err 'not available in this version'; done
   for word in --resume --preview=h:1 --aov=depth --frames=1-3 -f1-3 --cache=off; do refused render scene.vts $word; want_in err 'not available in this version'; done
   want_only scene.vts
 }
@@ -170,6 +171,27 @@ case_unknown_word() {
   grep -q "$(printf '\033')" err && fail "colours without a terminal"
   run scene.vts; want_status 1
   want_only scene.vts
+}
+
+case_compare() {
+  scene
+  run render scene.vts -s 24x18 -o a.png; want_status 0
+  run render scene.vts -s 24x18 -o b.exr --exposure 1; want_status 0
+  run render scene.vts -s 25x18 -o wide.png; want_status 0
+  run compare a.png a.png; want_status 0; want_empty err
+  printf 'rmse 0\npsnr inf\nflip 0\n' | cmp -s - out || fail "equal pictures: $(cat out)"
+  run compare a.png b.exr --diff map.png --metric flip,max; want_status 0; want_file map.png
+  grep -qE '^flip 0\.[0-9]+$' out && grep -qE '^max 0\.[0-9]+ at [0-9]+,[0-9]+$' out || fail "metrics: $(cat out)"
+  run compare a.png b.exr --diff map.exr --json; want_status 0; want_file map.exr
+  "$json_check" <out || fail "no JSON: $(cat out)"
+  run compare a.png wide.png; want_status 2; want_in err 'different size'
+  run compare a.png none.png; want_status 3; want_in err none.png
+  run compare a.png scene.vts; want_status 3
+  run compare a.png a.png --diff nowhere/map.png; want_status 3
+  run compare a.png a.png --diff map.xyz; want_status 3
+  refused compare a.png; refused compare a.png a.png a.png; refused compare a.png a.png --metric ssim; want_in err rmse
+  refused compare a.png a.png -s 3x3
+  want_only scene.vts a.png b.exr wide.png map.png map.exr
 }
 
 case_streams() {

@@ -9,8 +9,10 @@ EvalLimits eval_limits_default(void) {
     return (EvalLimits){.loops = 100000000,
                         .recursion = 200,
                         .include_depth = 32,
+                        .steps = 1000000000,
                         .array_elements = 64000000,
-                        .string_bytes = 64u << 20};
+                        .string_bytes = 64u << 20,
+                        .written_bytes = 256u << 20};
 }
 
 /* ---- notes of the include and macro stack ---- */
@@ -268,6 +270,8 @@ EvalStatus eval_file(const char *path, const EvalOptions *options, SourceSet *so
     Scope global;
     EvalOptions filled = *options;
     if (filled.limits.loops == 0) filled.limits = eval_limits_default();
+    if (filled.limits.written_bytes == 0) filled.limits.written_bytes = eval_limits_default().written_bytes;
+    if (filled.limits.steps == 0) filled.limits.steps = eval_limits_default().steps;
     *scene = NULL;
     init(&ev, &filled, sources, diags, names, parse_arena, scene_arena);
     watch_memory(&ev);

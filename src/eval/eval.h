@@ -11,8 +11,10 @@ typedef struct EvalLimits {
     uint64_t loops;          /* passes of one loop: 100 million */
     uint32_t recursion;      /* nested macro calls: 200 */
     uint32_t include_depth;  /* 32 */
-    uint64_t array_elements; /* 64 million */
+    uint64_t steps;          /* passes of all loops and calls of all macros together: 1000 million */
+    uint64_t array_elements; /* of all arrays together, their copies counted: 64 million */
     uint64_t string_bytes;   /* 64 MiB */
+    uint64_t written_bytes;  /* by #write, to all files together: 256 MiB */
 } EvalLimits;
 
 /* What the evaluator cannot know by itself, supplied by whoever links the folders that can. */

@@ -28,12 +28,22 @@ const Value *array_element(const Array *array, const size_t *indices, int count)
     return NULL;
 }
 
+bool array_take(Eval *ev, uint64_t count, Span span) {
+    if (ev->stopped) return false;
+    uint64_t limit = ev->options->limits.array_elements;
+    if (count <= limit && (ev->elements += count) <= limit) return true;
+    diag_error(ev->diags, span, "the scene's arrays would hold more than %llu elements", (unsigned long long)limit);
+    ev->stopped = true;
+    return false;
+}
+
 Array *array_copy(Eval *ev, const Array *from) {
+    if (!array_take(ev, from->count, ev->at)) return NULL;
     Array *to = arena_new(ev->parse, Array);
     *to = *from;
     to->capacity = from->count;
     to->items = arena_new_array(ev->parse, Slot, from->count);
-    for (size_t i = 0; i < from->count; i++)
+    for (size_t i = 0; i < from->count && !ev->stopped; i++)
         if (from->items[i].set) slot_set(ev, &to->items[i], &from->items[i].value);
     return to;
 }
@@ -63,7 +73,7 @@ static Array *make(Eval *ev, const size_t *sizes, size_t rank) {
 enum { LARGEST_RANK = 16 };
 
 static bool read_sizes(Eval *ev, const Node *node, size_t *sizes) {
-    uint64_t total = 1, limit = ev->options->limits.array_elements;
+    uint64_t total = 1, all = 0 /* rows are elements too */, limit = ev->options->limits.array_elements;
     for (size_t i = 0; i < node->as.array.dimensions.count; i++) {
         const Node *d = node->as.array.dimensions.items[i];
         double size;
@@ -72,14 +82,16 @@ static bool read_sizes(Eval *ev, const Node *node, size_t *sizes) {
             diag_error(ev->diags, d->span, "an array needs at least one element, %g asked for", size);
             return false;
         }
-        if (size > (double)limit || (total *= (uint64_t)size) > limit) {
-            diag_error(ev->diags, d->span, "the array would have more than %llu elements",
+        if ((double)total * size > (double)limit) {
+            diag_error(ev->diags, d->span, "the scene's arrays would hold more than %llu elements",
                        (unsigned long long)limit);
             return false;
         }
         sizes[i] = (size_t)size;
+        total *= (uint64_t)size;
+        all += total;
     }
-    return true;
+    return array_take(ev, all, node->span);
 }
 
 static void check_filled(Eval *ev, const Array *a, size_t given, Span span) {

@@ -238,9 +238,9 @@ void run_write(Eval *ev, const Node *node) {
     }
     if (f && f->mode == KW_read)
         diag_error(ev->diags, node->as.list.items[0]->span, "this file is open for reading");
-    else if (f && f->memory && f->memory->size + text.size > ev->options->limits.string_bytes)
+    else if (f && (ev->written += text.size) > ev->options->limits.written_bytes)
         diag_error(ev->diags, node->span, "the scene writes more than %llu bytes",
-                   (unsigned long long)ev->options->limits.string_bytes);
+                   (unsigned long long)ev->options->limits.written_bytes);
     else if (f && f->memory)
         strbuf_add(f->memory, text.data ? text.data : "", text.size);
     else if (f && text.size && fwrite(text.data, 1, text.size, f->stream) != text.size)

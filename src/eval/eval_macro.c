@@ -207,10 +207,8 @@ bool macro_enter(Eval *ev, const Macro *m, const NodeList *arguments, Span span,
         ev->stopped = true; /* what called itself this often would go on to do so on every level */
         return false;
     }
-    if (ev->options->interrupted && *ev->options->interrupted) {
-        ev->interrupted = ev->stopped = true;
-        return false;
-    }
+    if (!eval_step(ev, span)) return false;
+    ev->at = span;
     Passed few[FEW_ARGUMENTS];
     Passed *passed =
         arguments->count <= FEW_ARGUMENTS ? few : arena_new_array(&ev->temp, Passed, arguments->count);

@@ -175,6 +175,17 @@ static Flow run_if(Eval *ev, const Node *node, Sink *sink) {
     return run_group_end(ev, node, &node->as.branches.branches[count - 1].body, true);
 }
 
+bool eval_step(Eval *ev, Span span) {
+    if (++ev->steps > ev->options->limits.steps) {
+        diag_error(ev->diags, span, "the scene has made %llu passes of loops and calls of macros without ending",
+                   (unsigned long long)ev->options->limits.steps);
+        ev->stopped = true;
+    } else if (ev->options->interrupted && *ev->options->interrupted) {
+        ev->interrupted = ev->stopped = true;
+    }
+    return !ev->stopped;
+}
+
 /* Called before each pass. A loop whose pass met an error ends: its condition may depend on what failed. */
 Flow run_loop_guard(Eval *ev, uint64_t *passes, size_t errors, Span span) {
     if (ev->diags->failures != errors) return FLOW_BREAK;
@@ -183,11 +194,7 @@ Flow run_loop_guard(Eval *ev, uint64_t *passes, size_t errors, Span span) {
                    (unsigned long long)ev->options->limits.loops);
         return FLOW_BREAK;
     }
-    if (ev->options->interrupted && *ev->options->interrupted) {
-        ev->interrupted = ev->stopped = true;
-        return FLOW_STOP;
-    }
-    return FLOW_NEXT;
+    return eval_step(ev, span) ? FLOW_NEXT : FLOW_STOP;
 }
 
 /* One pass of a loop; a loop that is left must have an #end too. */
@@ -275,6 +282,7 @@ static Flow run_switch(Eval *ev, const Node *node, Sink *sink) {
 
 void run_assign(Eval *ev, const Node *node) {
     const Node *target = node->as.declare.target, *source = node->as.declare.value;
+    ev->at = node->span;
     Value v;
     double number;
     bool is_float = false;

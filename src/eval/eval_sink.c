@@ -50,7 +50,10 @@ static void grow_array(Eval *ev, Array *a) {
 }
 
 static void add_element(Eval *ev, Sink *sink, Value v, Span span) {
-    if (sink->array->growing && sink->next == sink->array->count) grow_array(ev, sink->array);
+    if (sink->array->growing && sink->next == sink->array->count) {
+        if (!array_take(ev, 1, span)) return;
+        grow_array(ev, sink->array);
+    }
     if (sink->next >= sink->array->count && !sink->filled) {
         diag_error(ev->diags, span, "one element too many for an array of %zu", sink->array->count);
         sink->filled = true;

@@ -166,6 +166,10 @@ struct Eval {
     size_t stream_count, stream_capacity;
     UserFile *files;
     struct MemoryFile *memory;
+    uint64_t steps;    /* passes of loops and calls of macros so far */
+    uint64_t elements; /* of arrays, made so far */
+    uint64_t written;  /* bytes of #write so far */
+    Span at;           /* the statement that is running: for what has no place of its own */
     double version;
     size_t silent_errors; /* erroneous values that were left out of blocks */
     bool stopped, interrupted;
@@ -286,7 +290,10 @@ Diagnostic *eval_argument_count(Eval *ev, Span span, const char *what, size_t le
 
 /* ---- eval_array.c ---- */
 Value eval_array(Eval *ev, const Node *node);
+/* NULL when the limit of elements is reached (reported; the program stops). */
 Array *array_copy(Eval *ev, const Array *from);
+/* Counts elements that are about to be made; false when the limit is reached (reported; the program stops). */
+bool array_take(Eval *ev, uint64_t count, Span span);
 Slot *array_slot(Eval *ev, const Array *array, double index, Span span);
 
 /* ---- eval_run.c ---- */
@@ -317,6 +324,9 @@ void run_break_leaves(Eval *ev, const Body *branch);
 /* Whether #else or #elseif may follow the branch. */
 bool run_branch_goes_on(const Branch *b);
 bool run_case_matches(Eval *ev, const SwitchCase *c, double subject);
+/* Before each pass of a loop and each call of a macro: false when the limit of steps is reached (reported) or the session is
+ * interrupted. The program then stops. */
+bool eval_step(Eval *ev, Span span);
 Flow run_loop_guard(Eval *ev, uint64_t *passes, size_t errors, Span span);
 
 /* ---- eval_sink.c ---- */

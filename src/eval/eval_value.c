@@ -199,6 +199,7 @@ void slot_set(Eval *ev, Slot *slot, const Value *value) {
         v.as.string.text = text;
     } else if (v.kind == VALUE_ARRAY) {
         v.as.array = array_copy(ev, v.as.array);
+        if (!v.as.array) v = value_error();
     }
     slot->value = v;
     slot->set = true;

@@ -17,7 +17,7 @@ struct VtsSession {
     jmp_buf out_of_memory;      /* valid while `guarded` */
     Pool *pool;
     Progress progress;
-    volatile bool interrupted;
+    atomic_bool interrupted; /* set from signal handlers and other threads */
     /* of the session */
     Arena arena;
     SourceSet sources;

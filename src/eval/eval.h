@@ -51,7 +51,7 @@ typedef struct EvalOptions {
     const struct EvalGeometry *geometry;
     void (*on_text)(void *context, EvalStream stream, const char *text);
     void *context;
-    const volatile bool *interrupted; /* polled in loops; may be NULL */
+    const atomic_bool *interrupted; /* polled in loops; may be NULL */
     bool expand_always;               /* for tests: every statement takes the road of those that must be expanded first */
     bool print_tokens, print_ast;     /* dump to on_text(STATISTICS) instead of evaluating */
 } EvalOptions;

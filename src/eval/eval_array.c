@@ -32,7 +32,8 @@ bool array_take(Eval *ev, uint64_t count, Span span) {
     if (ev->stopped) return false;
     uint64_t limit = ev->options->limits.array_elements;
     if (count <= limit && (ev->elements += count) <= limit) return true;
-    diag_error(ev->diags, span, "the scene's arrays would hold more than %llu elements", (unsigned long long)limit);
+    diag_error(ev->diags, span, "the scene's arrays would hold more than %llu elements",
+               (unsigned long long)limit);
     ev->stopped = true;
     return false;
 }

@@ -177,7 +177,8 @@ static Flow run_if(Eval *ev, const Node *node, Sink *sink) {
 
 bool eval_step(Eval *ev, Span span) {
     if (++ev->steps > ev->options->limits.steps) {
-        diag_error(ev->diags, span, "the scene has made %llu passes of loops and calls of macros without ending",
+        diag_error(ev->diags, span,
+                   "the scene has made %llu passes of loops and calls of macros without ending",
                    (unsigned long long)ev->options->limits.steps);
         ev->stopped = true;
     } else if (ev->options->interrupted && *ev->options->interrupted) {

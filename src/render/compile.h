@@ -21,7 +21,7 @@ typedef struct CompileOptions {
     MemoryBudget *memory;
     const Progress *progress;
     int width, height;
-    const volatile bool *interrupted;
+    const atomic_bool *interrupted;
 } CompileOptions;
 
 typedef struct CompiledScene {

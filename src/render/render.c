@@ -40,7 +40,7 @@ static bool surfaces_vary(const CompiledScene *compiled, double x, double y, boo
 }
 
 /* Explicit edges narrower than a pixel: an n × n grid of thinner cones, one cone for each. */
-static Radiance trace_split(Tracer *tracer, double x, double y, int n, const volatile bool *interrupted) {
+static Radiance trace_split(Tracer *tracer, double x, double y, int n, const atomic_bool *interrupted) {
     Radiance sum = {{0, 0, 0}, 0};
     uint64_t seed = tracer->seed;
     for (int j = 0; j < n && !(interrupted && *interrupted); j++)

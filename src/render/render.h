@@ -9,7 +9,7 @@
 typedef struct RenderOptions {
     Pool *pool;
     const Progress *progress;
-    const volatile bool *interrupted; /* may be NULL; pixels after it became true stay black */
+    const atomic_bool *interrupted; /* may be NULL; pixels after it became true stay black */
     int region[4];   /* x0, y0, x1, y1 in pixels, x1 and y1 exclusive */
     int samples;     /* cones per pixel side where one is not enough; 0: by max_error */
     uint64_t seed;   /* of what is sampled */

@@ -177,7 +177,7 @@ static void test_files_that_are_no_scenes(void **state) {
 static void test_interruption(void **state) {
     (void)state;
     Run run;
-    bool now = true;
+    atomic_bool now = true;
     begin(&run);
     evaluate(&run, "#while (true) #end", (EvalOptions){.interrupted = &now});
     assert_int_equal(run.status, EVAL_INTERRUPTED);

@@ -21,6 +21,15 @@ static bool is_block(void *context, const void *macro) {
     return ((Name)macro)->size % 2;
 }
 
+/* As the evaluator goes on after a mistake: trying at each token would take the square of the text's length. */
+static uint32_t next_statement(const TokenList *list, uint32_t at) {
+    for (at++; at + 1 < list->count; at++) {
+        if (list->items[at].kind == TOKEN_DIRECTIVE) return at;
+        if (list->items[at].kind == ';' || list->items[at].kind == '{') return at + 1;
+    }
+    return at;
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     Arena arena;
     SourceSet sources;
@@ -49,7 +58,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         if (diags.error_count != errors) abort(); /* the fast road is silent */
         if (n && p.at <= at) abort();
         if (n && out.size < 100000) ast_print(n, &out, 0);
-        at = n ? p.at : at + 1;
+        at = n ? p.at : next_statement(list, at);
     }
     strbuf_free(&out);
     arena_destroy(&arena);

@@ -96,7 +96,7 @@ static const WordRule rules[] = {
     INERT("interior_texture"),
 };
 
-static bool on_value(Reader *reader, const Argument *value, void *target) {
+bool object_on_value(Reader *reader, const Argument *value, void *target) {
     Object *object = target;
     if (value->value.kind == VALUE_COLOR) {
         diag_warning(reader->context->diags, value->span,
@@ -111,7 +111,7 @@ bool object_finish(Reader *reader, Object *object, Value *out) {
     reader_add_table(reader, rules, VTS_ARRAY_COUNT(rules), object);
     reader_add_table(reader, transform_rules, transform_rule_count, &object->transform);
     if (!reader->on_value) {
-        reader->on_value = on_value;
+        reader->on_value = object_on_value;
         reader->value_target = object;
     }
     if (reader->failed || !reader_run(reader)) return false;
@@ -219,7 +219,7 @@ static bool on_csg_value(Reader *reader, const Argument *value, void *target) {
     else if (value->value.kind == VALUE_LIGHT)
         *list_push(reader->context->arena, &draft->lights) = value->value.as.light;
     else
-        return on_value(reader, value, &draft->object);
+        return object_on_value(reader, value, &draft->object);
     return true;
 }
 

@@ -46,6 +46,8 @@ bool take_looks(const BuildContext *context, const Argument *value, const Textur
                 const InertNote **inert, const Transform *place);
 
 /* ---- build_object.c ---- */
+/* Takes looks and transforms; target: an Object. */
+bool object_on_value(Reader *reader, const Argument *value, void *target);
 /* Modifiers of all objects; target: an Object. Reads to the end of the block, stores the object in *out. */
 bool object_finish(Reader *reader, Object *object, Value *out);
 Object object_begin(const EvalBlock *block, ObjectKind kind);
@@ -57,6 +59,9 @@ const Object *object_from_value(const BuildContext *context, const Argument *val
 
 BlockBuilder build_sphere, build_box, build_cone, build_plane, build_disc, build_torus; /* build_solid.c */
 BlockBuilder build_triangle, build_mesh, build_mesh2;                                   /* build_mesh.c */
+BlockBuilder build_quadric, build_polynomial, build_superellipsoid, build_ovus, build_polygon, build_lathe, build_sor, build_prism,
+    build_sweep, build_patch, build_blob, build_isosurface, build_parametric, build_julia, build_text,
+    build_height_field; /* build_rare_kinds.c */
 BlockBuilder build_camera;                                                              /* build_camera.c */
 BlockBuilder build_light;                                                               /* build_light.c */
 const Light *light_placed(const BuildContext *context, const Light *light, const Transform *t);

@@ -20,12 +20,14 @@ static bool read_radius(Reader *reader, const char *what, double *out) {
     return true;
 }
 
-/* The strength of a component of a blob, which is not drawn: the solid stands alone nowhere. */
-static bool skip_strength(Reader *reader) {
+/* The strength of a component of a blob, with or without its word. */
+static bool read_strength(Reader *reader, double *out) {
     Argument strength;
+    Word word;
     if (!reader->block->outer || strcmp(reader->block->outer->text, "blob") != 0) return true;
-    reader_take_value(reader, VALUE_FLOAT, &strength);
-    return true;
+    if (reader_take_word(reader, "strength", &word)) return word_float(reader, &word, 0, out);
+    return !reader_take_value(reader, VALUE_FLOAT, &strength) ||
+           argument_float(reader, &strength, "the strength", out);
 }
 
 bool build_sphere(BuildContext *context, const EvalBlock *block, Value *out) {
@@ -33,7 +35,7 @@ bool build_sphere(BuildContext *context, const EvalBlock *block, Value *out) {
     Reader reader = reader_begin(context, block);
     Object object = object_begin(block, OBJECT_SPHERE);
     return reader_vector(&reader, "the center", &object.as.sphere.center, NULL) &&
-           read_radius(&reader, "the radius", &object.as.sphere.radius) && skip_strength(&reader) &&
+           read_radius(&reader, "the radius", &object.as.sphere.radius) && read_strength(&reader, &object.as.sphere.strength) &&
            object_finish(&reader, &object, out);
 }
 
@@ -80,7 +82,7 @@ bool build_cone(BuildContext *context, const EvalBlock *block, Value *out) {
     if (object_is_copy(block)) return build_object(context, block, out);
     Reader reader = reader_begin(context, block);
     Object object = object_begin(block, block->word->text[1] == 'o' ? OBJECT_CONE : OBJECT_CYLINDER);
-    if (!read_cone_ends(&reader, &object) || !skip_strength(&reader)) return false;
+    if (!read_cone_ends(&reader, &object) || !read_strength(&reader, &object.as.cone.strength)) return false;
     reader_add_table(&reader, cone_rules, VTS_ARRAY_COUNT(cone_rules), &object);
     return object_finish(&reader, &object, out);
 }

@@ -54,7 +54,7 @@ static void read_bounds(Reader *reader, const Word *word, void *target) {
         return;
     }
     const Object *object = object_from_value(reader->context, &value);
-    if (object && object->kind == OBJECT_UNMODELLED)
+    if (object && (object->kind == OBJECT_UNMODELLED || object->kind == OBJECT_SOLID))
         note_unmodelled(reader, target, object); /* the unit cube stays */
     else if (object)
         set_bounds(reader, target, object_bounds(object), value.span);
@@ -109,7 +109,7 @@ static bool on_layer_value(Reader *reader, const Argument *value, void *target) 
                                ? NULL
                                : object_from_value(reader->context, value);
     if (!object) return take_looks(reader->context, value, &draft->layer.texture, &ignored, &draft->place);
-    if (object->kind == OBJECT_UNMODELLED) {
+    if (object->kind == OBJECT_UNMODELLED || object->kind == OBJECT_SOLID) {
         note_unmodelled(reader, draft->texel, object);
         draft->unmodelled = true;
         return true;

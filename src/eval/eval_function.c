@@ -312,10 +312,16 @@ static TapeRef compile(Compiler *c, const Node *n) {
     }
 }
 
-static UserFunction *function_new(Eval *ev, const Node *node, int count) {
+UserFunction *function_new(Eval *ev, const Node *node, int count) {
     UserFunction *f = arena_new(ev->build.arena, UserFunction);
     f->span = node->span;
     f->parameter_count = count;
+    if (!node->as.function.columns) return f;
+    double columns, rows;
+    if (eval_float(ev, node->as.function.columns, &columns) && eval_float(ev, node->as.function.rows, &rows)) {
+        f->columns = (int)double_clamp(columns, 0, 1e6);
+        f->rows = (int)double_clamp(rows, 0, 1e6);
+    }
     return f;
 }
 
@@ -352,12 +358,14 @@ static Value block_function(Eval *ev, const Node *node, const Node *body) {
     return value_error();
 }
 
+/* x, y, z; those of a parametric surface say u, v for the first two. */
 static const Name *default_parameters(Eval *ev) {
-    Name *names = arena_new_array(ev->build.arena, Name, 3);
-    for (int i = 0; i < 3; i++) names[i] = ev->keywords.name_of[KW_x + 0];
+    Name *names = arena_new_array(ev->build.arena, Name, 5);
     names[0] = ev->keywords.name_of[KW_x];
     names[1] = ev->keywords.name_of[KW_y];
     names[2] = ev->keywords.name_of[KW_z];
+    names[3] = ev->keywords.name_of[KW_u];
+    names[4] = ev->keywords.name_of[KW_v];
     return names;
 }
 
@@ -387,8 +395,9 @@ Value eval_function(Eval *ev, const Node *node) {
                   .tape = tape_builder_create(ev->build.arena, (int)count),
                   .names = f->parameters,
                   .values = inputs,
-                  .count = count};
+                  .count = node->as.function.count ? count : 5};
     for (size_t i = 0; i < count; i++) inputs[i] = tape_input(c.tape, (int)i);
+    if (!node->as.function.count) inputs[3] = inputs[0], inputs[4] = inputs[1];
     for (size_t i = 0; i < outputs->count; i++) results[i] = compile(&c, outputs->items[i]);
     if (c.failed) return value_error();
     f->tape = tape_finish(c.tape, results, (int)outputs->count);

@@ -26,4 +26,7 @@ Value internal_function(Eval *ev, const Node *node, int id);
 Value spline_function(Eval *ev, const Node *node, const Spline *spline);
 Value transform_function(Eval *ev, const Node *node, const Transform *transform);
 
+/* A function of so many parameters, without its tape. */
+UserFunction *function_new(Eval *ev, const Node *node, int count);
+
 #endif

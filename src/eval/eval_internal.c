@@ -12,9 +12,7 @@ static void eval_internal(const void *data, const double *in, double *out) {
 
 static Value as_function(Eval *ev, const Node *node, int inputs, TapeBuilder *tape, TapeRef *out,
                          int outputs) {
-    UserFunction *f = arena_new(ev->build.arena, UserFunction);
-    f->span = node->span;
-    f->parameter_count = inputs;
+    UserFunction *f = function_new(ev, node, inputs);
     f->tape = tape_finish(tape, out, outputs);
     return (Value){.kind = VALUE_FUNCTION, .as.function = f};
 }

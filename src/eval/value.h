@@ -78,6 +78,7 @@ struct UserFunction {
     const Tape *tape; /* inputs: the parameters in order; outputs: 1, or 3 for a vector body */
     int parameter_count;
     const Name *parameters;
+    int columns, rows; /* function 300, 300 { … }: of the picture that it stands for; else 0 */
 };
 
 /* Arrays as seen by builders: rank 1 is a list; of a jagged array the extents of the first rows count. The element at `count`

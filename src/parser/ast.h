@@ -115,6 +115,7 @@ struct Node {
             Name *parameters;
             Span *spans;
             size_t count;
+            Node *columns, *rows; /* function 300, 300 { … }; else NULL */
             NodeList body;
         } function;
         struct {

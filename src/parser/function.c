@@ -27,7 +27,9 @@ Node *parser_function(Parser *p) {
     n->as.function.count = names.count;
     /* function 300, 300 { … }: a resolution, for pictures made of it */
     if (parser_peek(p)->kind != '{' && names.count == 0)
-        if (!parser_expression(p) || !parser_expect(p, ',', "'{'") || !parser_expression(p)) return NULL;
+        if (!(n->as.function.columns = parser_expression(p)) || !parser_expect(p, ',', "'{'") ||
+            !(n->as.function.rows = parser_expression(p)))
+            return NULL;
     Parser outer = *p;
     p->parameters = names.items;
     p->parameter_count = names.count;

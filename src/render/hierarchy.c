@@ -129,6 +129,7 @@ static void add_object(Builder *b, const Object *object, const Transform *parent
     case OBJECT_TEXEL: return; /* a skin of its own */
     case OBJECT_INTERSECTION:
     case OBJECT_DIFFERENCE:
+    case OBJECT_SOLID:
     case OBJECT_UNMODELLED:
         diag_warning(b->diags, object->span, "'%s' is not drawn in this version: it has no effect here", object->word);
         return;

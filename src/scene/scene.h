@@ -11,6 +11,7 @@
 #include "base/source.h"
 #include "base/strbuf.h"
 #include "base/vec.h"
+#include "scene/solids.h"
 #include "tape/tape.h"
 
 typedef struct Color {
@@ -168,6 +169,7 @@ typedef enum ObjectKind {
     OBJECT_INTERSECTION, OBJECT_DIFFERENCE, OBJECT_MERGE,
     OBJECT_PARTICLES, /* blades, hairs: swept trajectories */
     OBJECT_SURFACE,   /* the surface of a skin drawn itself */
+    OBJECT_SOLID,     /* the rarer shapes: solids.h */
     OBJECT_TEXEL,     /* a texel placed once, without a surface */
     OBJECT_UNMODELLED /* parses, is inert: `word` names it */
 } ObjectKind;
@@ -203,7 +205,6 @@ typedef struct Particle {
     double twist; /* degrees from foot to tip */
 } Particle;
 
-typedef struct Object Object;
 typedef struct Surface Surface;
 typedef struct TexelDef TexelDef;
 typedef struct Light Light;
@@ -225,13 +226,14 @@ struct Object {
     ObjectList clipped_by, bounded_by; /* in object space */
     const InertNote *inert;
     union {
-        struct { Vec3 center; double radius; } sphere;
+        struct { Vec3 center; double radius; double strength; /* in a blob */ } sphere;
         struct { Vec3 corner1, corner2; } box;
-        struct { Vec3 base, cap; double base_radius, cap_radius; bool open; } cone; /* OBJECT_CYLINDER too */
+        struct { Vec3 base, cap; double base_radius, cap_radius; bool open; double strength; } cone; /* OBJECT_CYLINDER too */
         struct { Vec3 normal; double distance; } plane;                            /* p · normal = distance, unit normal */
         struct { Vec3 center, normal; double radius, hole_radius; } disc;
         struct { double major_radius, minor_radius; } torus;
         const MeshData *mesh;
+        const Solid *solid;
         /* Lights of a union are copied to Scene.lights, transformed; here they only remember where they came from. */
         struct { const Object *const *items; size_t count; const Light *const *lights; size_t light_count; } children;
         struct { const Particle *items; size_t count; } particles;

@@ -135,6 +135,7 @@ static Box3 bounds_under(const Object *o, const Transform *outer) {
     case OBJECT_SURFACE: return surface_bounds(o->as.surface, &t);
     case OBJECT_TEXEL:
         return is_bounded(o->as.texel->bounds) ? box3_transform(&t, o->as.texel->bounds) : everything();
+    case OBJECT_SOLID:
     case OBJECT_UNMODELLED: return box3_empty();
     }
     return box3_empty();

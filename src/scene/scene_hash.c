@@ -223,6 +223,7 @@ static Hash128 shape_hash(const Object *o) {
     case OBJECT_PARTICLES: add_particles(&h, o->as.particles.items, o->as.particles.count); break;
     case OBJECT_SURFACE: hash_add_hash(&h, o->as.surface->hash); break;
     case OBJECT_TEXEL: hash_add_hash(&h, o->as.texel->hash); break;
+    case OBJECT_SOLID: hash_add_hash(&h, o->as.solid->hash); break;
     case OBJECT_UNMODELLED: add_text(&h, o->word); break;
     }
     return h;

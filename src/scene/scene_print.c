@@ -206,6 +206,7 @@ static void add_shape(const Printer *p, const Object *o) {
     case OBJECT_PARTICLES: strbuf_addf(p->out, " of %zu", o->as.particles.count); break;
     case OBJECT_TEXEL: strbuf_addf(p->out, " %s", o->as.texel->name); break;
     case OBJECT_SURFACE:
+    case OBJECT_SOLID:
     case OBJECT_UNMODELLED: break;
     }
 }

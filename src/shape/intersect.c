@@ -333,6 +333,7 @@ int shape_crossings(const Object *object, const Ray *ray, ShapeCrossing out[SHAP
     case OBJECT_PARTICLES:
     case OBJECT_SURFACE:
     case OBJECT_TEXEL:
+    case OBJECT_SOLID:
     case OBJECT_UNMODELLED: break;
     }
     return 0;

@@ -19,6 +19,7 @@ const SolidOps *solid_ops(const Object *object) {
     case OBJECT_PARTICLES:
     case OBJECT_SURFACE:
     case OBJECT_TEXEL:
+    case OBJECT_SOLID:
     case OBJECT_UNMODELLED: break;
     }
     return &nothing;

@@ -65,6 +65,7 @@ static bool push_shape(const Walk *walk, const Object *object, double tolerance)
         return refuse(walk, object, "intersections and differences have no triangles yet");
     case OBJECT_UNION:
     case OBJECT_MERGE:
+    case OBJECT_SOLID:
     case OBJECT_UNMODELLED: break;
     }
     return refuse(walk, object, "this object is not modelled yet");

@@ -1,0 +1,91 @@
+#include "shape/roots.h"
+
+#include <string.h>
+
+/* Between two neighbouring zeros of the derivative a polynomial is monotonic: one zero there, or none. The zeros of the
+ * derivative come from those of its own, and so on down to a line. Nothing is deflated, so no zero spoils another. */
+
+double roots_value(const double *c, int degree, double x) {
+    double value = c[degree];
+    for (int i = degree - 1; i >= 0; i--) value = value * x + c[i];
+    return value;
+}
+
+/* The zero between a and b, where the signs differ: Newton's steps while they stay between and shrink, halving else. */
+static double zero_between(const double *c, const double *slope, int degree, double a, double b) {
+    bool rising = roots_value(c, degree, a) < 0;
+    double x = a + (b - a) / 2, last = b - a;
+    for (int i = 0; i < 120; i++) {
+        double value = roots_value(c, degree, x);
+        if (value == 0) return x;
+        if ((value < 0) == rising)
+            a = x;
+        else
+            b = x;
+        double next = x - value / roots_value(slope, degree - 1, x);
+        bool slow = !(fabs(next - x) < fabs(last) / 2);
+        if (slow || !(next > a && next < b)) next = a + (b - a) / 2;
+        last = next - x;
+        x = next;
+        if (x <= a || x >= b || fabs(last) <= 1e-16 * fabs(x)) break;
+    }
+    return x;
+}
+
+/* Zeros of `c` in [lo, hi], where `stations` are those of its derivative. */
+static int zeros_among(const double *c, const double *slope, int degree, double lo, double hi, const double *stations,
+                       int station_count, double *out) {
+    int count = 0;
+    double a = lo, at_a = roots_value(c, degree, lo);
+    if (at_a == 0) out[count++] = lo;
+    for (int i = 0; i <= station_count; i++) {
+        double b = i < station_count ? stations[i] : hi, at_b = roots_value(c, degree, b);
+        if (b > a && at_b == 0)
+            out[count++] = b;
+        else if ((at_a < 0 && at_b > 0) || (at_a > 0 && at_b < 0))
+            out[count++] = zero_between(c, slope, degree, a, b);
+        a = b;
+        at_a = at_b;
+        if (count == degree) break;
+    }
+    return count;
+}
+
+int roots_in(const double *c, int degree, double lo, double hi, double *out) {
+    double slopes[ROOTS_HIGHEST_DEGREE + 1][ROOTS_HIGHEST_DEGREE + 1], stations[ROOTS_HIGHEST_DEGREE + 1];
+    while (degree > 0 && c[degree] == 0) degree--;
+    for (int i = 0; i <= degree; i++)
+        if (!isfinite(c[i])) return 0;
+    if (degree < 1 || degree > ROOTS_HIGHEST_DEGREE || !(lo <= hi)) return 0;
+    memcpy(slopes[0], c, sizeof *c * (size_t)(degree + 1));
+    for (int k = 1; k <= degree; k++)
+        for (int i = 0; i <= degree - k; i++) slopes[k][i] = slopes[k - 1][i + 1] * (i + 1);
+    int count = 0;
+    for (int k = degree - 1; k >= 0; k--) {
+        memcpy(stations, out, sizeof *out * (size_t)count);
+        count = zeros_among(slopes[k], slopes[k + 1], degree - k, lo, hi, stations, count, out);
+    }
+    return count;
+}
+
+/* Beyond [-1, 1] the reciprocals of the zeros are those of the polynomial read backwards. */
+int roots_real(const double *c, int degree, double *out) {
+    double backwards[ROOTS_HIGHEST_DEGREE + 1], far[ROOTS_HIGHEST_DEGREE];
+    while (degree > 0 && c[degree] == 0) degree--;
+    if (degree < 1 || degree > ROOTS_HIGHEST_DEGREE) return 0;
+    for (int i = 0; i <= degree; i++) backwards[i] = c[degree - i];
+    int count = 0, low = roots_in(backwards, degree, -1, 0, far);
+    for (int i = low - 1; i >= 0; i--)
+        if (far[i] > -1 && far[i] < 0) out[count++] = 1 / far[i];
+    count += roots_in(c, degree, -1, 1, out + count);
+    int high = roots_in(backwards, degree, 0, 1, far);
+    for (int i = high - 1; i >= 0; i--)
+        if (far[i] > 0 && far[i] < 1 && count < degree) out[count++] = 1 / far[i];
+    return count;
+}
+
+void roots_multiply(const double *a, int a_degree, const double *b, int b_degree, double *out) {
+    for (int i = 0; i <= a_degree + b_degree; i++) out[i] = 0;
+    for (int i = 0; i <= a_degree; i++)
+        for (int k = 0; k <= b_degree; k++) out[i + k] += a[i] * b[k];
+}

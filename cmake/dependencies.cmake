@@ -3,6 +3,7 @@ find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
 find_package(embree 3 REQUIRED)
 pkg_check_modules(CMOCKA IMPORTED_TARGET cmocka)
+pkg_check_modules(FREETYPE REQUIRED IMPORTED_TARGET freetype2)
 
 # GeographicLib: newer packages bring a config file, Debian 12 only a .pc file.
 find_package(GeographicLib CONFIG QUIET)

@@ -53,7 +53,9 @@ bool rare_vector(RareDraft *draft, const char *what, Vec3 *out) {
     return true;
 }
 
-bool rare_vector4(RareDraft *draft, const char *what, double out[4]) { return components(draft, what, out, 4); }
+bool rare_vector4(RareDraft *draft, const char *what, double out[4]) {
+    return components(draft, what, out, 4);
+}
 
 bool rare_point2(RareDraft *draft, const char *what, Point2 *out) {
     double c[2];
@@ -70,8 +72,9 @@ bool rare_count(RareDraft *draft, const char *what, size_t least, size_t *out) {
         return true;
     }
     draft->next--;
-    reader_error(draft->reader, draft->row.items[draft->next].span, "%s of '%s' must be at least %zu, found %g", what,
-                 draft->reader->block->word->text, least, number);
+    reader_error(draft->reader, draft->row.items[draft->next].span,
+                 "%s of '%s' must be at least %zu, found %g", what, draft->reader->block->word->text, least,
+                 number);
     return false;
 }
 
@@ -166,8 +169,9 @@ static void read_julia_algebra(Reader *reader, const Word *word, void *target) {
     draft_of(target)->hypercomplex = word->text[0] == 'h';
 }
 
-static const char *const julia_words[] = {"sqr", "cube", "exp",  "reciprocal", "sin", "asin", "sinh", "asinh", "cos",
-                                          "acos", "cosh", "acosh", "tan", "atan", "tanh", "atanh", "log", "pwr"};
+static const char *const julia_words[] = {"sqr",  "cube",  "exp",  "reciprocal", "sin",  "asin",
+                                          "sinh", "asinh", "cos",  "acos",       "cosh", "acosh",
+                                          "tan",  "atan",  "tanh", "atanh",      "log",  "pwr"};
 
 static void read_julia_function(Reader *reader, const Word *word, void *target) {
     (void)reader;
@@ -238,18 +242,22 @@ static const WordRule rules[] = {
 
 /* Words that only one kind of block knows, and that mean something else elsewhere. */
 static const WordRule julia_rules[] = {
-    CUSTOM("sqr", read_julia_function),   CUSTOM("cube", read_julia_function), CUSTOM("exp", read_julia_function),
-    CUSTOM("reciprocal", read_julia_function), CUSTOM("sin", read_julia_function), CUSTOM("asin", read_julia_function),
-    CUSTOM("sinh", read_julia_function),  CUSTOM("asinh", read_julia_function), CUSTOM("cos", read_julia_function),
-    CUSTOM("acos", read_julia_function),  CUSTOM("cosh", read_julia_function), CUSTOM("acosh", read_julia_function),
-    CUSTOM("tan", read_julia_function),   CUSTOM("atan", read_julia_function), CUSTOM("tanh", read_julia_function),
-    CUSTOM("atanh", read_julia_function), CUSTOM("log", read_julia_function),  CUSTOM("ln", read_julia_function),
+    CUSTOM("sqr", read_julia_function),  CUSTOM("cube", read_julia_function),
+    CUSTOM("exp", read_julia_function),  CUSTOM("reciprocal", read_julia_function),
+    CUSTOM("sin", read_julia_function),  CUSTOM("asin", read_julia_function),
+    CUSTOM("sinh", read_julia_function), CUSTOM("asinh", read_julia_function),
+    CUSTOM("cos", read_julia_function),  CUSTOM("acos", read_julia_function),
+    CUSTOM("cosh", read_julia_function), CUSTOM("acosh", read_julia_function),
+    CUSTOM("tan", read_julia_function),  CUSTOM("atan", read_julia_function),
+    CUSTOM("tanh", read_julia_function), CUSTOM("atanh", read_julia_function),
+    CUSTOM("log", read_julia_function),  CUSTOM("ln", read_julia_function),
     CUSTOM("pwr", read_julia_function),
 };
 static const WordRule picture_rules[] = {
-    CUSTOM("gif", read_picture), CUSTOM("tga", read_picture), CUSTOM("png", read_picture), CUSTOM("ppm", read_picture),
-    CUSTOM("pgm", read_picture), CUSTOM("jpeg", read_picture), CUSTOM("tiff", read_picture), CUSTOM("sys", read_picture),
-    CUSTOM("pot", read_picture), CUSTOM("exr", read_picture), CUSTOM("hdr", read_picture), CUSTOM("iff", read_picture),
+    CUSTOM("gif", read_picture),  CUSTOM("tga", read_picture), CUSTOM("png", read_picture),
+    CUSTOM("ppm", read_picture),  CUSTOM("pgm", read_picture), CUSTOM("jpeg", read_picture),
+    CUSTOM("tiff", read_picture), CUSTOM("sys", read_picture), CUSTOM("pot", read_picture),
+    CUSTOM("exr", read_picture),  CUSTOM("hdr", read_picture), CUSTOM("iff", read_picture),
 };
 
 /* ---- values ---- */
@@ -290,9 +298,12 @@ bool rare_begin(RareDraft *draft, Reader *reader, Value *out) {
     const char *word = reader->block->word->text;
     draft->reader = reader;
     draft->object = object_begin(reader->block, OBJECT_UNMODELLED);
+    if (vec3_length_squared(draft->turned) > 0) draft->object.transform = transform_rotate(draft->turned);
     reader_add_table(reader, rules, VTS_ARRAY_COUNT(rules), draft);
-    if (strcmp(word, "julia_fractal") == 0) reader_add_table(reader, julia_rules, VTS_ARRAY_COUNT(julia_rules), draft);
-    if (strcmp(word, "height_field") == 0) reader_add_table(reader, picture_rules, VTS_ARRAY_COUNT(picture_rules), draft);
+    if (strcmp(word, "julia_fractal") == 0)
+        reader_add_table(reader, julia_rules, VTS_ARRAY_COUNT(julia_rules), draft);
+    if (strcmp(word, "height_field") == 0)
+        reader_add_table(reader, picture_rules, VTS_ARRAY_COUNT(picture_rules), draft);
     reader->on_value = on_rare_value;
     reader->value_target = draft;
     inert_add(reader->context, &draft->object.inert, word, reader->block->word_span);

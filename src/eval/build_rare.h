@@ -12,7 +12,7 @@ typedef struct RareDraft {
     struct {
         Argument *items;
         size_t count, capacity;
-    } row; /* numbers, strings and functions in the order of the text */
+    } row;       /* numbers, strings and functions in the order of the text */
     size_t next; /* in the row */
     struct {
         BlobPart *items;
@@ -26,6 +26,7 @@ typedef struct RareDraft {
     JuliaFunction function;
     const char *picture;
     Span picture_span;
+    Vec3 turned; /* degrees, before all transforms of the text */
 } RareDraft;
 
 /* Reads the block with all modifiers of objects; then the row can be read; then rare_end() makes the object of

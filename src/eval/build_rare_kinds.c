@@ -6,7 +6,7 @@
 
 /* Blocks that hold nothing but a declared object are copies. */
 #define BEGIN(...)                                                                                           \
-    if (object_is_copy(block)) return build_object(context, block, out);                                    \
+    if (object_is_copy(block)) return build_object(context, block, out);                                     \
     Reader reader = reader_begin(context, block);                                                            \
     RareDraft draft = {__VA_ARGS__};                                                                         \
     if (!rare_begin(&draft, &reader, out)) return false
@@ -42,7 +42,8 @@ bool build_polynomial(BuildContext *context, const EvalBlock *block, Value *out)
         draft.next++;
     }
     if (count < wanted) {
-        reader_error(&reader, block->word_span, "'%s' of order %zu has %zu coefficients, found %zu", word, order, wanted, count);
+        reader_error(&reader, block->word_span, "'%s' of order %zu has %zu coefficients, found %zu", word,
+                     order, wanted, count);
         return false;
     }
     draft.solid.as.polynomial.order = (int)order;
@@ -67,7 +68,8 @@ bool build_superellipsoid(BuildContext *context, const EvalBlock *block, Value *
 bool build_ovus(BuildContext *context, const EvalBlock *block, Value *out) {
     BEGIN(.solid.kind = SOLID_OVUS);
     double *bottom = &draft.solid.as.ovus.bottom, *top = &draft.solid.as.ovus.top;
-    if (!rare_float(&draft, "the bottom radius", bottom) || !rare_float(&draft, "the top radius", top)) return false;
+    if (!rare_float(&draft, "the bottom radius", bottom) || !rare_float(&draft, "the top radius", top))
+        return false;
     if (!(*bottom >= 0 && *top >= 0)) {
         reader_error(&reader, block->word_span, "the radii of 'ovus' must not be negative");
         return false;
@@ -88,7 +90,8 @@ static bool read_points(RareDraft *draft, size_t least, const Point2 **points, s
 
 static bool bezier_fits(RareDraft *draft, size_t count) {
     if (draft->curve != CURVE_BEZIER || count % 4 == 0) return true;
-    reader_error(draft->reader, draft->reader->block->word_span, "a bezier_spline has four points for each piece, found %zu", count);
+    reader_error(draft->reader, draft->reader->block->word_span,
+                 "a bezier_spline has four points for each piece, found %zu", count);
     return false;
 }
 
@@ -105,7 +108,11 @@ bool build_polygon(BuildContext *context, const EvalBlock *block, Value *out) {
 }
 
 static size_t least_points(CurveKind curve) {
-    static const size_t least[] = {[CURVE_LINEAR] = 2, [CURVE_QUADRATIC] = 3, [CURVE_CUBIC] = 4, [CURVE_BEZIER] = 4, [CURVE_B_SPLINE] = 4};
+    static const size_t least[] = {[CURVE_LINEAR] = 2,
+                                   [CURVE_QUADRATIC] = 3,
+                                   [CURVE_CUBIC] = 4,
+                                   [CURVE_BEZIER] = 4,
+                                   [CURVE_B_SPLINE] = 4};
     return least[curve];
 }
 
@@ -113,7 +120,8 @@ bool build_lathe(BuildContext *context, const EvalBlock *block, Value *out) {
     BEGIN(.solid.kind = SOLID_LATHE);
     draft.solid.as.turned.curve = draft.curve;
     draft.solid.as.turned.open = draft.open;
-    return read_points(&draft, least_points(draft.curve), &draft.solid.as.turned.points, &draft.solid.as.turned.count) &&
+    return read_points(&draft, least_points(draft.curve), &draft.solid.as.turned.points,
+                       &draft.solid.as.turned.count) &&
            bezier_fits(&draft, draft.solid.as.turned.count) && rare_end(&draft, out);
 }
 
@@ -125,7 +133,8 @@ bool build_sor(BuildContext *context, const EvalBlock *block, Value *out) {
     const Point2 *p = draft.solid.as.turned.points;
     for (size_t i = 1; i + 2 < draft.solid.as.turned.count; i++)
         if (!(p[i + 1].y > p[i].y)) {
-            reader_error(&reader, block->word_span, "the heights of the points of 'sor' must grow from each to the next");
+            reader_error(&reader, block->word_span,
+                         "the heights of the points of 'sor' must grow from each to the next");
             return false;
         }
     return rare_end(&draft, out);
@@ -135,13 +144,15 @@ bool build_prism(BuildContext *context, const EvalBlock *block, Value *out) {
     BEGIN(.solid.kind = SOLID_PRISM);
     Solid *s = &draft.solid;
     double a, b;
-    if (!rare_float(&draft, "the first height", &a) || !rare_float(&draft, "the second height", &b)) return false;
+    if (!rare_float(&draft, "the first height", &a) || !rare_float(&draft, "the second height", &b))
+        return false;
     s->as.prism.curve = draft.curve;
     s->as.prism.conic = draft.conic;
     s->as.prism.open = draft.open;
     s->as.prism.low = double_min(a, b);
     s->as.prism.high = double_max(a, b);
-    return read_points(&draft, least_points(draft.curve) + (draft.curve == CURVE_LINEAR), &s->as.prism.points, &s->as.prism.count) &&
+    return read_points(&draft, least_points(draft.curve) + (draft.curve == CURVE_LINEAR), &s->as.prism.points,
+                       &s->as.prism.count) &&
            bezier_fits(&draft, s->as.prism.count) && rare_end(&draft, out);
 }
 
@@ -151,7 +162,8 @@ bool build_sweep(BuildContext *context, const EvalBlock *block, Value *out) {
     if (!rare_count(&draft, "the number of spheres", least_points(draft.curve), &count)) return false;
     SweepSphere *spheres = arena_new_array(context->arena, SweepSphere, count);
     for (size_t i = 0; i < count; i++) {
-        if (!rare_vector(&draft, "a centre", &spheres[i].center) || !rare_float(&draft, "a radius", &spheres[i].radius))
+        if (!rare_vector(&draft, "a centre", &spheres[i].center) ||
+            !rare_float(&draft, "a radius", &spheres[i].radius))
             return false;
     }
     draft.solid.as.sweep.curve = draft.curve;
@@ -195,8 +207,10 @@ static bool next_function(RareDraft *draft, int parameters, const Tape **out) {
     Argument none = {.span = draft->reader->block->word_span};
     const Argument *argument = rare_numbers_left(draft) ? &draft->row.items[draft->next++] : &none;
     /* Without parameters of its own a function has three. */
-    bool default_ones = argument->value.kind == VALUE_FUNCTION && argument->value.as.function->parameter_count == 3;
-    return argument_function(draft->reader, argument, draft->reader->block->word->text, default_ones ? 3 : parameters, 1, out);
+    bool default_ones =
+        argument->value.kind == VALUE_FUNCTION && argument->value.as.function->parameter_count == 3;
+    return argument_function(draft->reader, argument, draft->reader->block->word->text,
+                             default_ones ? 3 : parameters, 1, out);
 }
 
 bool build_isosurface(BuildContext *context, const EvalBlock *block, Value *out) {
@@ -217,7 +231,8 @@ bool build_parametric(BuildContext *context, const EvalBlock *block, Value *out)
     Point2 low, high;
     for (int i = 0; i < 3; i++)
         if (!next_function(&draft, 2, &s->as.parametric.functions[i])) return false;
-    if (!rare_point2(&draft, "the first corner of <u, v>", &low) || !rare_point2(&draft, "the second corner of <u, v>", &high))
+    if (!rare_point2(&draft, "the first corner of <u, v>", &low) ||
+        !rare_point2(&draft, "the second corner of <u, v>", &high))
         return false;
     s->as.parametric.u0 = low.x, s->as.parametric.v0 = low.y;
     s->as.parametric.u1 = high.x, s->as.parametric.v1 = high.y;
@@ -253,14 +268,16 @@ static const char *find_file(const BuildContext *context, const char *name, Span
 
 /* `internal N` are POV-Ray's own fonts: Times, Helvetica and Courier lookalikes, and its logo. */
 static const char *font_name(RareDraft *draft) {
-    static const char *const internal[] = {"timrom.ttf", "timrom.ttf", "cyrvetic.ttf", "crystal.ttf", "povlogo.ttf"};
+    static const char *const internal[] = {"timrom.ttf", "timrom.ttf", "cyrvetic.ttf", "crystal.ttf",
+                                           "povlogo.ttf"};
     const Value *v = &draft->row.items[draft->next++].value;
     if (v->kind == VALUE_STRING) return v->as.string.text;
     return v->kind == VALUE_FLOAT ? internal[(int)double_clamp(v->as.number, 0, 4)] : internal[0];
 }
 
 bool build_text(BuildContext *context, const EvalBlock *block, Value *out) {
-    BEGIN(.solid.kind = SOLID_TEXT);
+    /* POV-Ray turns every text by a thousandth of a degree, against rays that run along its walls. */
+    BEGIN(.solid.kind = SOLID_TEXT, .turned = vec3_splat(0.001));
     Solid *s = &draft.solid;
     if (draft.row.count < 2 || draft.row.items[1].value.kind != VALUE_STRING) {
         reader_error(&reader, block->word_span, "'text' takes ttf \"FONT\" \"TEXT\" thickness, offset");
@@ -288,12 +305,13 @@ static bool sample_heights(RareDraft *draft, const UserFunction *function) {
                      "the function of a 'height_field' needs a resolution from 2, 2 to 16384, 16384");
         return false;
     }
-    double *heights = arena_new_array(draft->reader->context->arena, double, (size_t)columns * (size_t)rows);
+    double *heights = arena_new_array(draft->reader->context->arena, double, (size_t)columns *(size_t)rows);
     double *out = heights;
     bool colored = tape_output_count(function->tape) >= 3; /* a pigment: its grey */
     for (int j = 0; j < rows; j++)
         for (int i = 0; i < columns; i++, out++) {
-            double place[3] = {(double)i / (columns - 1), 1 - (double)j / (rows - 1), 0}, value[TAPE_CALL_MAX] = {0};
+            double place[3] = {(double)i / (columns - 1), 1 - (double)j / (rows - 1), 0},
+                   value[TAPE_CALL_MAX] = {0};
             tape_eval_once(function->tape, place, value);
             double height = value[0];
             if (colored) height = 0.297 * value[0] + 0.589 * value[1] + 0.114 * value[2];

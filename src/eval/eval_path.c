@@ -31,13 +31,16 @@ static bool lies_in_any(const char *path, const char *const *folders, size_t cou
     return false;
 }
 
+/* The system's fonts are no secret, and POV-Ray's include folder only links to them. */
+static const char *const font_folders[] = {"/usr/share/fonts", "/usr/local/share/fonts"};
+
 bool path_may_read(const Eval *ev, const char *path) {
     const EvalOptions *o = ev->options;
     char *real = realpath(path, NULL);
     if (!real) return false;
     bool may = lies_in(real, ev->scene_folder) || lies_in_any(real, o->include_dirs, o->include_dir_count) ||
                lies_in_any(real, o->allow_read, o->allow_read_count) ||
-               (o->stdlib_dir && lies_in(real, o->stdlib_dir));
+               (o->stdlib_dir && lies_in(real, o->stdlib_dir)) || lies_in_any(real, font_folders, VTS_ARRAY_COUNT(font_folders));
     free(real);
     return may;
 }

@@ -58,7 +58,8 @@ static void add_sweep(Hash128 *h, const Solid *s) {
 }
 
 static void add_prism(Hash128 *h, const Solid *s) {
-    hash_add_u64(h, (uint64_t)s->as.prism.curve << 2 | (uint64_t)s->as.prism.conic << 1 | (uint64_t)s->as.prism.open);
+    hash_add_u64(h, (uint64_t)s->as.prism.curve << 2 | (uint64_t)s->as.prism.conic << 1 |
+                        (uint64_t)s->as.prism.open);
     add_doubles(h, (double[]){s->as.prism.low, s->as.prism.high}, 2);
     add_points(h, s->as.prism.points, s->as.prism.count);
 }
@@ -67,12 +68,16 @@ static void add_julia(Hash128 *h, const Solid *s) {
     add_doubles(h, s->as.julia.c, 4);
     add_doubles(h, s->as.julia.slice, 4);
     add_doubles(h, s->as.julia.exponent, 2);
-    add_doubles(h, (double[]){s->as.julia.distance, s->as.julia.hypercomplex, s->as.julia.function, s->as.julia.iterations}, 4);
+    add_doubles(h,
+                (double[]){s->as.julia.distance, s->as.julia.hypercomplex, s->as.julia.function,
+                           s->as.julia.iterations},
+                4);
 }
 
 static void add_parametric(Hash128 *h, const Solid *s) {
     for (int i = 0; i < 3; i++) hash_add_hash(h, tape_hash(s->as.parametric.functions[i]));
-    add_doubles(h, (double[]){s->as.parametric.u0, s->as.parametric.v0, s->as.parametric.u1, s->as.parametric.v1}, 4);
+    add_doubles(
+        h, (double[]){s->as.parametric.u0, s->as.parametric.v0, s->as.parametric.u1, s->as.parametric.v1}, 4);
     add_object(h, s->as.parametric.container);
 }
 
@@ -81,7 +86,8 @@ static void add_field(Hash128 *h, const Solid *s) {
     hash_add_double(h, s->as.field.water_level);
     hash_add_u64(h, s->as.field.smooth);
     hash_add_u64(h, (uint64_t)s->as.field.columns << 32 | (uint64_t)s->as.field.rows);
-    if (s->as.field.heights) add_doubles(h, s->as.field.heights, (size_t)s->as.field.columns * (size_t)s->as.field.rows);
+    if (s->as.field.heights)
+        add_doubles(h, s->as.field.heights, (size_t)s->as.field.columns * (size_t)s->as.field.rows);
 }
 
 void solid_rehash(Solid *s) {
@@ -120,7 +126,10 @@ void solid_rehash(Solid *s) {
     case SOLID_ISOSURFACE:
         hash_add_hash(&h, tape_hash(s->as.isosurface.function));
         add_object(&h, s->as.isosurface.container);
-        add_doubles(&h, (double[]){s->as.isosurface.threshold, s->as.isosurface.accuracy, s->as.isosurface.max_gradient}, 3);
+        add_doubles(
+            &h,
+            (double[]){s->as.isosurface.threshold, s->as.isosurface.accuracy, s->as.isosurface.max_gradient},
+            3);
         hash_add_u64(&h, s->as.isosurface.open);
         break;
     case SOLID_PARAMETRIC: add_parametric(&h, s); break;

@@ -47,8 +47,24 @@ typedef struct SweepSphere {
 } SweepSphere;
 
 typedef enum JuliaFunction {
-    JULIA_SQR, JULIA_CUBE, JULIA_EXP, JULIA_RECIPROCAL, JULIA_SIN, JULIA_ASIN, JULIA_SINH, JULIA_ASINH, JULIA_COS,
-    JULIA_ACOS, JULIA_COSH, JULIA_ACOSH, JULIA_TAN, JULIA_ATAN, JULIA_TANH, JULIA_ATANH, JULIA_LOG, JULIA_PWR
+    JULIA_SQR,
+    JULIA_CUBE,
+    JULIA_EXP,
+    JULIA_RECIPROCAL,
+    JULIA_SIN,
+    JULIA_ASIN,
+    JULIA_SINH,
+    JULIA_ASINH,
+    JULIA_COS,
+    JULIA_ACOS,
+    JULIA_COSH,
+    JULIA_ACOSH,
+    JULIA_TAN,
+    JULIA_ATAN,
+    JULIA_TANH,
+    JULIA_ATANH,
+    JULIA_LOG,
+    JULIA_PWR
 } JuliaFunction;
 
 typedef struct Solid {
@@ -56,17 +72,54 @@ typedef struct Solid {
     Hash128 hash;
     union {
         /* Σ c·xⁱyʲzᵏ, in POV-Ray's order: i from the order down, then j, then k */
-        struct { int order; const double *coefficients; size_t count; } polynomial;
+        struct {
+            int order;
+            const double *coefficients;
+            size_t count;
+        } polynomial;
         /* squares·<x²,y²,z²> + mixed·<xy,xz,yz> + linear·<x,y,z> + constant */
-        struct { Vec3 squares, mixed, linear; double constant; } quadric;
-        struct { const Vec3 *points; size_t count; } polygon; /* sub-polygons closed by repeating their first point */
-        struct { double east_west, north_south; } superellipsoid;
-        struct { Vec3 points[16]; } patch;
-        struct { double threshold; const BlobPart *parts; size_t count; } blob;
-        struct { CurveKind curve; const Point2 *points; size_t count; bool open; } turned; /* lathe, sor: <radius, y> */
-        struct { CurveKind curve; bool conic, open; double low, high; const Point2 *points; size_t count; } prism;
-        struct { CurveKind curve; const SweepSphere *spheres; size_t count; } sweep;
-        struct { const char *font_path, *text; double thickness; Vec3 offset; } text; /* path NULL: no font was found */
+        struct {
+            Vec3 squares, mixed, linear;
+            double constant;
+        } quadric;
+        struct {
+            const Vec3 *points;
+            size_t count;
+        } polygon; /* sub-polygons closed by repeating their first point */
+        struct {
+            double east_west, north_south;
+        } superellipsoid;
+        struct {
+            Vec3 points[16];
+        } patch;
+        struct {
+            double threshold;
+            const BlobPart *parts;
+            size_t count;
+        } blob;
+        struct {
+            CurveKind curve;
+            const Point2 *points;
+            size_t count;
+            bool open;
+        } turned; /* lathe, sor: <radius, y> */
+        struct {
+            CurveKind curve;
+            bool conic, open;
+            double low, high;
+            const Point2 *points;
+            size_t count;
+        } prism;
+        struct {
+            CurveKind curve;
+            const SweepSphere *spheres;
+            size_t count;
+        } sweep;
+        struct {
+            const char *font_path, *text;
+            double thickness;
+            Vec3 offset;
+        } text; /* path NULL: no font was found */
         struct {
             double c[4], slice[4], distance;
             bool hypercomplex;
@@ -74,7 +127,9 @@ typedef struct Solid {
             double exponent[2];
             int iterations;
         } julia;
-        struct { double bottom, top; } ovus;
+        struct {
+            double bottom, top;
+        } ovus;
         struct {
             const Tape *function;
             const Object *container; /* a sphere or box, without a transform of its own */

@@ -33,8 +33,8 @@ static double zero_between(const double *c, const double *slope, int degree, dou
 }
 
 /* Zeros of `c` in [lo, hi], where `stations` are those of its derivative. */
-static int zeros_among(const double *c, const double *slope, int degree, double lo, double hi, const double *stations,
-                       int station_count, double *out) {
+static int zeros_among(const double *c, const double *slope, int degree, double lo, double hi,
+                       const double *stations, int station_count, double *out) {
     int count = 0;
     double a = lo, at_a = roots_value(c, degree, lo);
     if (at_a == 0) out[count++] = lo;

@@ -2,6 +2,25 @@
 
 static const SolidOps nothing = {0};
 
+static const SolidOps *const rare[] = {
+    [SOLID_POLYNOMIAL] = &solid_polynomial_ops,
+    [SOLID_QUADRIC] = &solid_quadric_ops,
+    [SOLID_POLYGON] = &solid_polygon_ops,
+    [SOLID_SUPERELLIPSOID] = &solid_super_ops,
+    [SOLID_PATCH] = &solid_patch_ops,
+    [SOLID_BLOB] = &solid_blob_ops,
+    [SOLID_LATHE] = &solid_lathe_ops,
+    [SOLID_SOR] = &solid_sor_ops,
+    [SOLID_PRISM] = &solid_prism_ops,
+    [SOLID_SWEEP] = &solid_sweep_ops,
+    [SOLID_TEXT] = &solid_text_ops,
+    [SOLID_JULIA] = &solid_julia_ops,
+    [SOLID_OVUS] = &solid_ovus_ops,
+    [SOLID_ISOSURFACE] = &solid_isosurface_ops,
+    [SOLID_PARAMETRIC] = &solid_parametric_ops,
+    [SOLID_HEIGHT_FIELD] = &solid_height_ops,
+};
+
 const SolidOps *solid_ops(const Object *object) {
     switch (object->kind) {
     case OBJECT_SPHERE:
@@ -12,6 +31,7 @@ const SolidOps *solid_ops(const Object *object) {
     case OBJECT_DISC:
     case OBJECT_TORUS: return &solid_plain_ops;
     case OBJECT_TRIANGLES: return &solid_mesh_ops;
+    case OBJECT_SOLID: return rare[object->as.solid->kind];
     case OBJECT_UNION:
     case OBJECT_INTERSECTION:
     case OBJECT_DIFFERENCE:
@@ -19,7 +39,6 @@ const SolidOps *solid_ops(const Object *object) {
     case OBJECT_PARTICLES:
     case OBJECT_SURFACE:
     case OBJECT_TEXEL:
-    case OBJECT_SOLID:
     case OBJECT_UNMODELLED: break;
     }
     return &nothing;

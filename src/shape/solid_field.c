@@ -1,0 +1,108 @@
+/* Surfaces of functions of the place: isosurface. */
+#include "shape/intersect.h"
+#include "shape/solid.h"
+
+enum { PART_SURFACE, PART_CONTAINER_IN, PART_CONTAINER_OUT, MOST_STEPS = 200000, LEAST_STEPS = 32 };
+
+static const void *prepare(const Object *object, Arena *arena) {
+    const Solid *s = object->as.solid;
+    ObjectKind kind = s->as.isosurface.container->kind;
+    (void)arena;
+    return kind == OBJECT_SPHERE || kind == OBJECT_BOX ? s : NULL;
+}
+
+/* Negative inside. What is not a number is outside. */
+static double value_at(const Solid *s, Vec3 p) {
+    double out[TAPE_CALL_MAX] = {0};
+    tape_eval_once(s->as.isosurface.function, (double[]){p.x, p.y, p.z}, out);
+    double value = out[0] - s->as.isosurface.threshold;
+    return isnan(value) ? VTS_INFINITY : value;
+}
+
+static Ray container_ray(const Solid *s, const Ray *ray) {
+    const Transform *t = &s->as.isosurface.container->transform;
+    return (Ray){transform_point_back(t, ray->origin), transform_vector_back(t, ray->direction)};
+}
+
+static double value_on(const Solid *s, const Ray *ray, double t) {
+    return value_at(s, vec3_madd(ray->origin, ray->direction, t));
+}
+
+/* Where the sign changes between a and b, to rounding. */
+static double bisect(const Solid *s, const Ray *ray, double a, double b) {
+    bool inside = value_on(s, ray, a) <= 0;
+    for (int i = 0; i < 100; i++) {
+        double middle = a + (b - a) / 2;
+        if (middle <= a || middle >= b) break;
+        if ((value_on(s, ray, middle) <= 0) == inside)
+            a = middle;
+        else
+            b = middle;
+    }
+    return a + (b - a) / 2;
+}
+
+/* Steps that a function of at most this gradient cannot pass a zero in; no shorter ones than the accuracy. */
+static void march(const Solid *s, const Ray *ray, double from, double to, SolidSink *sink) {
+    double length = vec3_length(ray->direction), span = to - from;
+    double gradient = double_max(s->as.isosurface.max_gradient, 1e-9) * length;
+    double shortest = double_max(s->as.isosurface.accuracy / length / 2, span / MOST_STEPS),
+           longest = span / LEAST_STEPS;
+    double t = from, value = value_on(s, ray, t);
+    while (t < to && t < sink->t_max) {
+        double next = t + double_clamp(fabs(value) / gradient, shortest, double_max(longest, shortest));
+        if (!(next < to)) next = to;
+        double there = value_on(s, ray, next);
+        if ((value <= 0) != (there <= 0))
+            solid_offer(sink, bisect(s, ray, t, next), (SolidTag){PART_SURFACE, 0, 0});
+        t = next;
+        value = there;
+    }
+}
+
+static void cross(const void *data, const Ray *ray, SolidSink *sink) {
+    const Solid *s = data;
+    ShapeCrossing ends[SHAPE_MOST_CROSSINGS];
+    Ray local = container_ray(s, ray);
+    if (shape_crossings(s->as.isosurface.container, &local, ends) != 2) return;
+    if (!s->as.isosurface.open)
+        for (uint32_t i = 0; i < 2; i++)
+            if (ends[i].t > sink->t_min && ends[i].t < sink->t_max && value_on(s, ray, ends[i].t) < 0)
+                solid_offer(sink, ends[i].t, (SolidTag){PART_CONTAINER_IN + i, ends[i].part, 0});
+    double from = double_max(ends[0].t, sink->t_min), to = double_min(ends[1].t, sink->t_max);
+    if (from < to) march(s, ray, from, to, sink);
+}
+
+static double difference(const Solid *s, Vec3 p, Vec3 step, double h) {
+    return (value_at(s, vec3_madd(p, step, h)) - value_at(s, vec3_madd(p, step, -h))) / (2 * h);
+}
+
+static Vec3 normal(const void *data, Vec3 p, const SolidTag *tag) {
+    const Solid *s = data;
+    const Object *container = s->as.isosurface.container;
+    if (tag->part != PART_SURFACE) {
+        const Ray here = {transform_point_back(&container->transform, p), vec3_splat(0)};
+        const ShapeCrossing crossing = {0, (uint8_t)tag->u, false};
+        return vec3_normalize(
+            transform_normal(&container->transform, shape_hit_at(container, &here, &crossing).normal));
+    }
+    double h = 1e-6 * double_max(1, double_max(fabs(p.x), double_max(fabs(p.y), fabs(p.z))));
+    Vec3 g = {difference(s, p, vec3(1, 0, 0), h), difference(s, p, vec3(0, 1, 0), h),
+              difference(s, p, vec3(0, 0, 1), h)};
+    return vec3_is_finite(g) && vec3_length_squared(g) > 0 ? vec3_normalize(g) : vec3(0, 1, 0);
+}
+
+static bool inside(const void *data, Vec3 p) {
+    const Solid *s = data;
+    const Object *container = s->as.isosurface.container;
+    return shape_inside(container, transform_point_back(&container->transform, p)) != container->inverse &&
+           value_at(s, p) < 0;
+}
+
+static Box3 bounds(const void *data) {
+    const Object *container = ((const Solid *)data)->as.isosurface.container;
+    return box3_transform(&container->transform, shape_bounds(container));
+}
+
+const SolidOps solid_isosurface_ops = {
+    .prepare = prepare, .cross = cross, .normal = normal, .inside = inside, .bounds = bounds};

@@ -67,9 +67,20 @@ static bool matrix_numbers(Reader *reader, const Word *word, double m[12]) {
     return true;
 }
 
+/* POV-Ray's rule: where all three axes have lost a coordinate, its own axis gets it back. */
+static void fill_zero_columns(Reader *reader, const Word *word, double m[12]) {
+    for (int axis = 0; axis < 3; axis++) {
+        if (m[axis] != 0 || m[3 + axis] != 0 || m[6 + axis] != 0) continue;
+        m[4 * axis] = 1;
+        diag_warning(reader->context->diags, word->whole,
+                     "this matrix presses space flat along %c: 1 is taken there", "xyz"[axis]);
+    }
+}
+
 static void read_matrix(Reader *reader, const Word *word, void *target) {
     double m[12];
     if (!matrix_numbers(reader, word, m)) return;
+    fill_zero_columns(reader, word, m);
     Transform t = transform_matrix(m);
     if (transform_is_singular(&t))
         reader_error(reader, word->whole, "this matrix is singular: it presses space flat");

@@ -21,7 +21,7 @@ static const Case errors[] = {
     {"sphere { 0, 1 translate \"up\" }", "1:25: 'translate' takes a vector, found a string", NULL},
     {"sphere { 0, 1 translate }", "1:15: too few values for 'translate': expected 1, found 0", NULL},
     {"sphere { 0, 1 translate x y }", "1:27: too many values for 'translate': expected 1, found 2", NULL},
-    {"sphere { 0, 1 matrix <1,0,0, 0,0,0, 0,0,1, 0,0,0> }",
+    {"sphere { 0, 1 matrix <1,2,0, 1,2,0, 0,0,1, 0,0,0> }",
      "1:15: this matrix is singular: it presses space flat", NULL},
     {"sphere { 0, 1 matrix <1,0,0> }",
      "1:15: 'matrix' takes 12 numbers: the images of x, y and z, and the origin's", NULL},

@@ -163,6 +163,7 @@ static void init(Eval *ev, const EvalOptions *options, SourceSet *sources, DiagL
                  .version = 3.7,
                  .macro_stamp = 1};
     arena_init(&ev->temp, parse->budget, 0);
+    arena_init(&ev->passing, parse->budget, 0);
     arena_init(&ev->blocks, parse->budget, 0);
     keyword_table_init(&ev->keywords, names, parse);
     ev->build = (BuildContext){.arena = scene, .names = names, .diags = diags, .eval = ev};
@@ -189,6 +190,7 @@ static void release(Eval *ev) {
     ev->diags->add_context_notes = NULL;
     ev->diags->context = NULL;
     arena_destroy(&ev->temp);
+    arena_destroy(&ev->passing);
     arena_destroy(&ev->blocks);
 }
 

@@ -262,26 +262,40 @@ static const Node *slow_head(Source *outer, Frame *f, uint32_t at, uint32_t *nex
     return n;
 }
 
-/* The directive at `at`: its head parsed, *next the token after all of it. */
+/* The directive at `at`: its head parsed, *next the token after all of it. Heads are kept, since loops and macros come back to them. */
 static const Node *head_at(Source *s, Frame *f, uint32_t at, uint32_t *next) {
-    Parser p = {.arena = s->ev->parse,
-                .diags = s->ev->diags,
-                .keywords = &s->ev->keywords,
-                .host = &s->ev->fast_host,
-                .list = f->list,
-                .at = at,
-                .end = f->end,
-                .heads_only = true};
-    parser_take(&p);
-    Node *n = parser_directive(&p, f->list, at, next);
-    bool holds = n != NULL;
-    for (size_t i = 0; holds && i < p.assumptions.count; i++) {
-        const Assumption *a = &p.assumptions.items[i];
-        holds = a->class != NAME_MACRO || !a->call || macro_binding(s->ev, a->macro) >= a->call->need;
+    Eval *ev = s->ev;
+    Program *program = eval_program(ev, f->list);
+    if (!program->heads) program->heads = arena_new_array(ev->parse, Statement *, f->list->count);
+    Statement *head = program->heads[at];
+    if (!head || head->end != f->end || !statement_holds(ev, head)) {
+        if (!head) head = program->heads[at] = arena_new(ev->parse, Statement);
+        Parser p = {.arena = ev->parse,
+                    .diags = ev->diags,
+                    .keywords = &ev->keywords,
+                    .host = &ev->fast_host,
+                    .list = f->list,
+                    .at = at,
+                    .end = f->end,
+                    .heads_only = true};
+        parser_take(&p);
+        Node *n = parser_directive(&p, f->list, at, next);
+        bool holds = n != NULL;
+        for (size_t i = 0; holds && i < p.assumptions.count; i++) {
+            const Assumption *a = &p.assumptions.items[i];
+            holds = a->class != NAME_MACRO || !a->call || macro_binding(ev, a->macro) >= a->call->need;
+        }
+        *head = (Statement){.node = holds ? n : NULL,
+                            .next = p.at,
+                            .end = f->end,
+                            .assumptions = p.assumptions.items,
+                            .assumption_count = (uint32_t)p.assumptions.count,
+                            .stamp = ev->macro_stamp,
+                            .name_stamp = ev->name_stamp};
     }
-    if (!holds) return slow_head(s, f, at, next);
-    *next = p.at;
-    return n;
+    if (!head->node) return slow_head(s, f, at, next);
+    *next = head->next;
+    return head->node;
 }
 
 static void begin_directive(Source *s) {
@@ -519,6 +533,8 @@ Flow run_slow(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink
     uint32_t begin = *at;
     const Token *first = &program->tokens->items[begin];
     if (!eval_deeper(ev, first->span)) return FLOW_STOP;
+    bool repeats = ev->repeats;
+    ev->repeats = true; /* for all that macros and loops in the text hold */
     source_init(&s, ev, &p, &host, &frame, begin);
     p.block = sink->kind == SINK_ITEMS ? sink->block : NULL;
     Flow flow = FLOW_NEXT;
@@ -555,6 +571,7 @@ done:
     if (p.failed && sink->kind == SINK_SINGLE) sink->filled = true;
     if (*at <= begin) *at = begin + 1;
     ev->nesting--;
+    ev->repeats = repeats;
     if (ev->stopped) return FLOW_STOP;
     return flow == FLOW_NEXT ? s.flow : flow;
 }

@@ -240,7 +240,10 @@ Flow run_call(Eval *ev, const Node *node, Sink *sink) {
         return FLOW_NEXT;
     }
     const Macro *macro = b->slot->set && b->slot->value.kind == VALUE_MACRO ? b->slot->value.as.macro : NULL;
+    bool repeats = ev->repeats;
+    ev->repeats = true;
     Flow flow = macro ? run_body(ev, &macro->body, sink) : FLOW_NEXT;
+    ev->repeats = repeats;
     macro_leave(ev, &scope);
     return flow == FLOW_STOP ? FLOW_STOP : FLOW_NEXT;
 }

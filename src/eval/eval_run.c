@@ -31,7 +31,6 @@ Program *eval_program_new(Eval *ev, TokenList *tokens) {
     if (!ev->programs[id]) {
         Program *p = arena_new(ev->parse, Program);
         p->tokens = tokens;
-        p->memo = arena_new_array(ev->parse, Statement *, tokens->count);
         ev->programs[id] = p;
     }
     return ev->programs[id];
@@ -45,7 +44,7 @@ static bool calls_hold(Eval *ev, const Assumption *a, size_t count) {
     return true;
 }
 
-static bool still_holds(Eval *ev, Statement *s) {
+bool statement_holds(Eval *ev, Statement *s) {
     if (s->name_stamp == ev->name_stamp) return true;
     for (uint32_t i = 0; i < s->assumption_count; i++) {
         const Assumption *a = &s->assumptions[i];
@@ -72,10 +71,8 @@ static uint32_t drop_repetitions(Assumption *a, size_t count) {
     return (uint32_t)kept;
 }
 
-const Statement *statement_at(Eval *ev, Program *program, uint32_t at, uint32_t end, Name block) {
-    Statement *s = program->memo[at];
-    if (s && s->end == end && s->block == block && still_holds(ev, s)) return s;
-    Parser p = {.arena = ev->parse,
+static Statement parse_statement(Eval *ev, Arena *arena, const Program *program, uint32_t at, uint32_t end, Name block) {
+    Parser p = {.arena = arena,
                 .diags = ev->diags,
                 .keywords = &ev->keywords,
                 .host = &ev->fast_host,
@@ -85,22 +82,45 @@ const Statement *statement_at(Eval *ev, Program *program, uint32_t at, uint32_t 
                 .semicolons_optional = ev->version < 3.5,
                 .block = block};
     Node *n = ev->options->expand_always ? NULL : parser_statement(&p);
-    if (!s) s = program->memo[at] = arena_new(ev->parse, Statement);
     if (n && !calls_hold(ev, p.assumptions.items, p.assumptions.count)) n = NULL;
-    *s = (Statement){.node = n,
-                     .next = p.at,
-                     .end = end,
-                     .block = block,
-                     .assumptions = p.assumptions.items,
-                     .assumption_count = drop_repetitions(p.assumptions.items, p.assumptions.count),
-                     .stamp = ev->macro_stamp,
-                     .name_stamp = ev->name_stamp};
+    return (Statement){.node = n,
+                       .next = p.at,
+                       .end = end,
+                       .block = block,
+                       .assumptions = p.assumptions.items,
+                       .assumption_count = drop_repetitions(p.assumptions.items, p.assumptions.count),
+                       .stamp = ev->macro_stamp,
+                       .name_stamp = ev->name_stamp};
+}
+
+const Statement *statement_at(Eval *ev, Program *program, uint32_t at, uint32_t end, Name block) {
+    if (!program->memo) program->memo = arena_new_array(ev->parse, Statement *, program->tokens->count);
+    Statement *s = program->memo[at];
+    if (s && s->end == end && s->block == block && statement_holds(ev, s)) return s;
+    if (!s) s = program->memo[at] = arena_new(ev->parse, Statement);
+    *s = parse_statement(ev, ev->parse, program, at, end, block);
     return s;
+}
+
+/* Data files of many megabytes are made of statements that run once: their trees are not kept. */
+static Flow run_once(Eval *ev, Program *program, uint32_t *at, uint32_t end, Name block, Sink *sink) {
+    ArenaMark mark = arena_mark(&ev->passing);
+    Statement s = parse_statement(ev, &ev->passing, program, *at, end, block);
+    Flow flow;
+    if (s.node) {
+        *at = s.next;
+        flow = run_node(ev, s.node, sink);
+    } else {
+        flow = run_slow(ev, program, at, end, sink);
+    }
+    arena_reset_to(&ev->passing, mark);
+    return flow;
 }
 
 Flow run_statement(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink) {
     Name block = sink->kind == SINK_ITEMS ? sink->block : NULL;
-    const Statement *s = program->memo[*at];
+    if (!ev->repeats) return run_once(ev, program, at, end, block, sink);
+    const Statement *s = program->memo ? program->memo[*at] : NULL;
     if (!s || s->name_stamp != ev->name_stamp || s->end != end || s->block != block)
         s = statement_at(ev, program, *at, end, block);
     if (!s->node) return run_slow(ev, program, at, end, sink);
@@ -200,7 +220,10 @@ Flow run_loop_guard(Eval *ev, uint64_t *passes, size_t errors, Span span) {
 
 /* One pass of a loop; a loop that is left must have an #end too. */
 static Flow run_pass(Eval *ev, const Node *node, const Body *body, Sink *sink) {
+    bool repeats = ev->repeats;
+    ev->repeats = true;
     Flow flow = run_body(ev, body, sink);
+    ev->repeats = repeats;
     if (flow == FLOW_STOP || run_group_end(ev, node, body, flow == FLOW_NEXT) == FLOW_STOP) return FLOW_STOP;
     return flow;
 }

@@ -112,6 +112,8 @@ static void add_particles(Eval *ev, Sink *sink, const Node *node, BlockItem item
     Value v = value_float(0), n = value_float(count);
     Slot *index = scope_bind(ev, ev->index_name, NULL, &v);
     size_t errors = ev->diags->failures;
+    bool repeats = ev->repeats;
+    ev->repeats = true;
     for (double i = 0; i < count && !ev->stopped && errors == ev->diags->failures; i++) {
         v = value_float(i);
         slot_set(ev, index, &v);
@@ -126,6 +128,7 @@ static void add_particles(Eval *ev, Sink *sink, const Node *node, BlockItem item
         arena_reset_to(&ev->temp, mark);
         *list_push(&ev->blocks, sink->items) = one;
     }
+    ev->repeats = repeats;
     scope_leave(ev, &scope);
 }
 

@@ -128,7 +128,8 @@ typedef struct Statement {
 
 typedef struct Program {
     TokenList *tokens;
-    Statement **memo; /* by token */
+    Statement **memo;  /* by token; NULL: none yet */
+    Statement **heads; /* of directives on the slow road, by token; NULL: none yet */
     struct Program *next;
 } Program;
 
@@ -138,7 +139,8 @@ struct Eval {
     DiagList *diags;
     Interner *names;
     KeywordTable keywords;
-    Arena *parse; /* trees, memos, variables */
+    Arena *parse;  /* trees, memos, variables */
+    Arena passing; /* trees of statements that run once */
     Arena temp;   /* values of the statement that is running */
     Arena blocks; /* items of blocks that are being read */
     BuildContext build;
@@ -156,6 +158,7 @@ struct Eval {
     Macro *macros;
     uint32_t call_depth, include_depth;
     uint64_t body, body_count; /* the run of a body that is going on, and how many there were */
+    bool repeats;              /* what runs now may run again: within a loop or a macro */
     int nesting;               /* C stack: bodies and expressions within each other */
 
     Program **programs; /* by file id */
@@ -301,6 +304,7 @@ Flow run_body(Eval *ev, const Body *body, Sink *sink);
 Flow run_node(Eval *ev, const Node *node, Sink *sink);
 Flow run_statement(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink);
 /* The statement at a token, from the memo or parsed now; NULL node: slow road. */
+bool statement_holds(Eval *ev, Statement *s);
 const Statement *statement_at(Eval *ev, Program *program, uint32_t at, uint32_t end, Name block);
 Program *eval_program_new(Eval *ev, TokenList *tokens);
 static inline Program *eval_program(Eval *ev, TokenList *tokens) {

@@ -18,6 +18,7 @@ typedef struct BlockText {
     const SourceFile *file;
     const char *at;
     double index; /* of the particle */
+    Name outer;   /* the word of the block that is being read */
     struct {
         const char *name;
         Value value;
@@ -217,6 +218,8 @@ static inline void parse_word(BlockText *t, ItemList *list) {
 static EvalBlock *parse_items(BlockText *t, const char *word, Span word_span, char close) {
     ItemList list = {0};
     EvalBlock *block = arena_new(&t->arena, EvalBlock);
+    Name outer = t->outer;
+    t->outer = intern_cstr(&t->names, word);
     for (skip_space(t); *t->at && *t->at != close; skip_space(t)) {
         const char *begin = t->at;
         Argument argument;
@@ -234,7 +237,9 @@ static EvalBlock *parse_items(BlockText *t, const char *word, Span word_span, ch
             abort();
     }
     if (*t->at) t->at++;
+    t->outer = outer;
     *block = (EvalBlock){.word = intern_cstr(&t->names, word),
+                         .outer = outer,
                          .word_span = word_span,
                          .items = list.items,
                          .count = list.count};

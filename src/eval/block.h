@@ -74,6 +74,9 @@ typedef struct BuildContext {
     void *eval;          /* for the evaluator itself */
 } BuildContext;
 
+/* A copy with all its items that lives as long as `arena`: for what stays a block. */
+const EvalBlock *block_keep(Arena *arena, const EvalBlock *block);
+
 /* Makes the value of a block; false after a diagnostic (out is then VALUE_ERROR). */
 typedef bool BlockBuilder(BuildContext *context, const EvalBlock *block, Value *out);
 

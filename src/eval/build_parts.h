@@ -29,6 +29,16 @@ BlockBuilder build_pigment, build_pattern, build_color_map;
 /* Reads a pigment's items from the reader's position on, beginning with the default pigment. */
 const Pigment *pigment_read(Reader *reader);
 
+/* What the text of `block` makes of `base`, as POV-Ray reads pigment { … } over the pigment of a declared texture: what it does not
+ * say stays. A block that begins with a declared pigment replaces `base`. */
+const Pigment *pigment_over(BuildContext *context, const Pigment *base, const Pigment *block);
+
+/* image_map { … } and its like; NULL after a report. */
+const ImageMap *image_read(Reader *parent, const Word *word);
+/* The picture's file that the text at `span` names, with POV-Ray's endings of `format` (may be NULL) tried after the bare name
+ * (eval_path.c); NULL after a report. */
+const char *picture_find(const BuildContext *context, const char *name, const char *format, Span span);
+
 /* ---- build_finish.c ---- */
 BlockBuilder build_finish;
 /* `base` with what the finish block sets changed; a finish made from a declared one replaces it whole. */
@@ -42,7 +52,7 @@ const Texture *texture_placed(const BuildContext *context, const Texture *textur
 const Texture *texture_over(const BuildContext *context, const Texture *top, const Texture *bottom);
 /* Takes texture, pigment, finish, normal, interior and material onto *texture, which may be NULL (the default then).
  * `place`: transform so far of what carries the texture. */
-bool take_looks(const BuildContext *context, const Argument *value, const Texture **texture,
+bool take_looks(BuildContext *context, const Argument *value, const Texture **texture,
                 const InertNote **inert, const Transform *place);
 
 /* ---- build_object.c ---- */

@@ -200,9 +200,13 @@ static void read_list(Reader *reader, const Word *word, PigmentDraft *draft) {
 static void read_pattern(Reader *reader, const Word *word, void *target) {
     PigmentDraft *draft = target;
     Pigment *pigment = &draft->pigment;
+    bool had_list = pattern_block_count(pigment->kind) > 0;
     pigment->kind = find_pattern(word->text);
-    pigment->entries = NULL;
-    pigment->entry_count = draft->count = 0;
+    draft->count = 0;
+    if (had_list || pattern_block_count(pigment->kind) > 0) { /* a map stays, under another pattern */
+        pigment->entries = NULL;
+        pigment->entry_count = 0;
+    }
     switch (pigment->kind) {
     case PATTERN_GRADIENT:
         if (word_arguments(reader, word, 1, 1)) word_vector(reader, word, 0, &pigment->direction);

@@ -9,6 +9,11 @@ static void read_unmodelled(Reader *reader, const Word *word, void *target) {
     inert_add(reader->context, &draft->pigment.inert, word->text, word->span);
 }
 
+static void read_image(Reader *reader, const Word *word, void *target) {
+    read_unmodelled(reader, word, target);
+    ((PigmentDraft *)target)->pigment.image = image_read(reader, word);
+}
+
 #define FIELD(name) offsetof(PigmentDraft, pigment.name)
 #define UNMODELLED(word)                                                                                     \
     { word, WORD_CUSTOM, 0, read_unmodelled, false }
@@ -21,8 +26,8 @@ static const WordRule rules[] = {
     INERT("once"),
     UNMODELLED("aoi"),
     UNMODELLED("facets"),
-    UNMODELLED("image_map"),
-    UNMODELLED("image_pattern"),
+    {"image_map", WORD_CUSTOM, 0, read_image, false},
+    {"image_pattern", WORD_CUSTOM, 0, read_image, false},
     UNMODELLED("pavement"),
     UNMODELLED("potential"),
     UNMODELLED("proximity"),
@@ -70,6 +75,51 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
     }
 }
 
+/* Options of patterns that are not drawn. */
+static bool on_word(Reader *reader, const Word *word, void *target) {
+    (void)target;
+    return grammar_word(reader, word);
+}
+
+/* Whether the item says what kind of pigment this is: a pattern, a picture, a function, a colour. */
+static bool gives_kind(const BlockItem *item, Word *word) {
+    if (item_as_word(item, word))
+        return strcmp(word->text, "image_map") == 0 || grammar_has("pattern_types", word->text);
+    return item->kind == ITEM_VALUE &&
+           (item->value.kind == VALUE_FUNCTION || item->value.kind == VALUE_COLOR);
+}
+
+/* The colours that a pattern lists follow its kind. */
+static bool lists_colors(const Word *kind) {
+    static const char *const words[] = {"checker", "brick", "hexagon", "square", "triangular", "cubic"};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(words); i++)
+        if (strcmp(words[i], kind->text) == 0) return true;
+    return false;
+}
+
+/* What kind of pigment it is comes first, after a declared pigment and `uv_mapping`, and is said once. */
+static bool check_order(Reader *reader) {
+    bool begun = false, listing = false;
+    for (size_t i = reader->next; i < reader->block->count; i++) {
+        const BlockItem *item = &reader->block->items[i];
+        Word word = {.text = ""};
+        bool kind = gives_kind(item, &word);
+        bool color = item->kind == ITEM_VALUE && item->value.kind == VALUE_COLOR;
+        if (kind && begun && !(listing && color)) {
+            reader_error(reader, item->span, "the pattern or colour of a pigment comes first, and only once");
+            return false;
+        }
+        listing = kind ? listing || lists_colors(&word) : listing;
+        if (begun && strcmp(word.text, "uv_mapping") == 0) {
+            reader_error(reader, word.span, "'uv_mapping' stands before the pattern of a pigment");
+            return false;
+        }
+        begun |= kind ||
+                 (word.text[0] && strcmp(word.text, "uv_mapping") != 0 && strcmp(word.text, "magnet") != 0);
+    }
+    return true;
+}
+
 static const Pigment *read_from(Reader *reader, const Pigment *start) {
     PigmentDraft *draft = arena_new(reader->context->arena, PigmentDraft);
     draft->pigment = *start;
@@ -80,7 +130,8 @@ static const Pigment *read_from(Reader *reader, const Pigment *start) {
     reader_add_table(reader, transform_rules, transform_rule_count, &draft->pigment.transform);
     reader->on_value = on_value;
     reader->value_target = draft;
-    if (!reader_run(reader)) return NULL;
+    reader->on_word = on_word;
+    if (!check_order(reader) || !reader_run(reader)) return NULL;
     if (draft->count) {
         draft->pigment.entries = draft->items;
         draft->pigment.entry_count = draft->count;
@@ -102,9 +153,23 @@ bool build_pattern(BuildContext *context, const EvalBlock *block, Value *out) {
     return pigment != NULL;
 }
 
+const Pigment *pigment_over(BuildContext *context, const Pigment *base, const Pigment *block) {
+    if (!block->text || base == texture_default(context)->pigment) return block;
+    Reader reader = reader_begin(context, block->text);
+    const Pigment *made = read_from(&reader, base);
+    return made ? made : block;
+}
+
+static bool begins_declared(const EvalBlock *block) {
+    return block->count && block->items[0].kind == ITEM_VALUE && block->items[0].value.kind == VALUE_PIGMENT;
+}
+
 bool build_pigment(BuildContext *context, const EvalBlock *block, Value *out) {
     Reader reader = reader_begin(context, block);
     const Pigment *pigment = pigment_read(&reader);
-    if (pigment) *out = (Value){.kind = VALUE_PIGMENT, .as.pigment = pigment};
-    return pigment != NULL;
+    if (!pigment) return false;
+    Pigment *kept = arena_copy(context->arena, pigment, sizeof *pigment);
+    kept->text = begins_declared(block) ? NULL : block_keep(context->arena, block);
+    *out = (Value){.kind = VALUE_PIGMENT, .as.pigment = kept};
+    return true;
 }

@@ -38,18 +38,21 @@ const Texture *texture_over(const BuildContext *context, const Texture *top, con
     return copy;
 }
 
-/* A pigment given in the space in which the texture already has its transform: that is taken back first. */
-static const Texture *with_pigment(const BuildContext *context, const Texture *texture,
-                                   const Pigment *pigment) {
+static const Pigment *pigment_placed(const BuildContext *context, const Pigment *pigment,
+                                     const Transform *t) {
+    if (transform_is_identity(t)) return pigment;
+    Pigment *placed = arena_copy(context->arena, pigment, sizeof *pigment);
+    placed->transform = transform_then(&pigment->transform, t);
+    pigment_rehash(placed);
+    return placed;
+}
+
+/* A pigment given in the space in which the texture already has its transform: that is taken back last. */
+static const Texture *with_pigment(BuildContext *context, const Texture *texture, const Pigment *pigment) {
     Texture *copy = copy_texture(context, texture);
-    if (!transform_is_identity(&texture->transform)) {
-        Pigment *placed = arena_copy(context->arena, pigment, sizeof *pigment);
-        Transform back = transform_inverse(&texture->transform);
-        placed->transform = transform_then(&pigment->transform, &back);
-        pigment_rehash(placed);
-        pigment = placed;
-    }
-    copy->pigment = pigment;
+    Transform back = transform_inverse(&texture->transform);
+    const Pigment *base = pigment_placed(context, texture->pigment, &texture->transform);
+    copy->pigment = pigment_placed(context, pigment_over(context, base, pigment), &back);
     texture_rehash(copy);
     return copy;
 }
@@ -78,7 +81,7 @@ static const Texture *current(const BuildContext *context, const Texture *textur
     return texture ? texture_placed(context, texture, place) : texture_default(context);
 }
 
-bool take_looks(const BuildContext *context, const Argument *value, const Texture **texture,
+bool take_looks(BuildContext *context, const Argument *value, const Texture **texture,
                 const InertNote **inert, const Transform *place) {
     const Texture *made = NULL;
     switch (value->value.kind) {
@@ -114,7 +117,7 @@ typedef struct TextureDraft {
     const Texture *texture; /* in the space before `transform`; NULL: nothing said yet */
     const InertNote *inert;
     Transform transform;
-    bool begun;     /* something was read */
+    bool begun;  /* something was read */
     bool mapped; /* a texture_map was read */
     bool
         patterned; /* a pattern chooses among textures: which is not modelled, the first one is seen everywhere */
@@ -135,8 +138,7 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
     case VALUE_TEXTURE: /* a declared one comes first, those of a pattern's list after it */
         if (draft->patterned && !draft->texture) draft->texture = value->value.as.texture;
         if (draft->patterned) return true;
-        if (begun && !reader->block->declared_as)
-            return false; /* #declare L = texture … texture … */
+        if (begun && !reader->block->declared_as) return false; /* #declare L = texture … texture … */
         break;
     case VALUE_PIGMENT:
     case VALUE_NORMAL:

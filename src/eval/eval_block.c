@@ -18,16 +18,15 @@ static Value keep_value(Arena *arena, Value v) {
     return v;
 }
 
-/* A block that stays a value outlives the items' arena. */
-static const EvalBlock *keep_block(Arena *arena, const EvalBlock *from) {
+const EvalBlock *block_keep(Arena *arena, const EvalBlock *from) {
     if (!from) return NULL;
     EvalBlock *to = arena_copy(arena, from, sizeof *from);
     BlockItem *items = arena_new_array(arena, BlockItem, from->count);
     for (size_t i = 0; i < from->count; i++) {
         items[i] = from->items[i];
         items[i].value = keep_value(arena, items[i].value);
-        items[i].body = keep_block(arena, items[i].body);
-        items[i].entry = keep_block(arena, items[i].entry);
+        items[i].body = block_keep(arena, items[i].body);
+        items[i].entry = block_keep(arena, items[i].entry);
         if (items[i].argument_count == 0) continue;
         Argument *arguments =
             arena_copy(arena, items[i].arguments, items[i].argument_count * sizeof(Argument));
@@ -67,9 +66,9 @@ Value eval_block(Eval *ev, const Node *node, Name declared_as) {
         v = value_error(); /* what is missing inside was said already */
     } else if (builder) {
         if (!builder(&ev->build, block, &v)) v = value_error();
-        if (v.kind == VALUE_BLOCK) v.as.block = keep_block(ev->build.arena, block);
+        if (v.kind == VALUE_BLOCK) v.as.block = block_keep(ev->build.arena, block);
     } else {
-        v = (Value){.kind = VALUE_BLOCK, .as.block = keep_block(ev->build.arena, block)};
+        v = (Value){.kind = VALUE_BLOCK, .as.block = block_keep(ev->build.arena, block)};
     }
     arena_reset_to(&ev->blocks, mark);
     return v;

@@ -1,6 +1,7 @@
 /* Where files are looked for, and which a scene may touch: scenes come from strangers. */
 #define _XOPEN_SOURCE 700 /* realpath */
 
+#include "eval/build_parts.h"
 #include "eval/eval_files.h"
 
 #include <limits.h>
@@ -108,4 +109,36 @@ bool file_exists_for(Eval *ev, const char *name, Span span) {
 void eval_set_scene_path(Eval *ev, const char *path) {
     ev->scene_path = path;
     ev->scene_folder = folder_of(ev, path);
+}
+
+/* The endings that POV-Ray tries. */
+static const char *const endings[][3] = {
+    {"gif", ".gif", ".GIF"}, {"tga", ".tga", ".TGA"},   {"png", ".png", ".PNG"},   {"ppm", ".ppm", ".PPM"},
+    {"pgm", ".pgm", ".PGM"}, {"jpeg", ".jpg", ".jpeg"}, {"tiff", ".tif", ".tiff"}, {"iff", ".iff", ".IFF"},
+    {"exr", ".exr", ".EXR"}, {"hdr", ".hdr", ".HDR"},
+};
+
+static const char *with_ending(Eval *ev, const char *name, const char *format, Span span) {
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(endings); i++)
+        for (int k = 1; k < 3 && (!format || strcmp(endings[i][0], format) == 0); k++) {
+            const char *path =
+                path_find(ev, arena_printf(ev->build.arena, "%s%s", name, endings[i][k]), span, NULL, NULL);
+            if (path) return path;
+        }
+    return NULL;
+}
+
+const char *picture_find(const BuildContext *context, const char *name, const char *format, Span span) {
+    Eval *ev = context->eval;
+    StrBuf looked_in = {0};
+    Diagnostic *refused = NULL;
+    const char *path = ev ? path_find(ev, name, span, &refused, &looked_in) : name;
+    if (!path && !refused) path = with_ending(ev, name, format, span);
+    if (!path && !refused) {
+        Diagnostic *d = diag_error(context->diags, span, "there is no picture '%s'", name);
+        diag_hint(context->diags, d, "looked in %s", looked_in.data ? looked_in.data : "nowhere");
+    }
+    if (path) path = arena_strdup(context->arena, path);
+    strbuf_free(&looked_in);
+    return path;
 }

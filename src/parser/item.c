@@ -34,6 +34,15 @@ static bool argument_after_comma(Parser *p) {
     return parser_begins_expression(p, true);
 }
 
+/* `red 1 green 0.5` is a colour, but in a picture's block `filter 3, 0.5` is about the palette's entry 3. */
+static bool components_make_colors(const Parser *p) {
+    static const char *const pictures[] = {"image_map", "bump_map", "material_map", "image_pattern",
+                                           "texture"};
+    for (size_t i = 0; p->block && i < VTS_ARRAY_COUNT(pictures); i++)
+        if (strcmp(p->block->text, pictures[i]) == 0) return false;
+    return true;
+}
+
 /* word = keyword { [","] expression } [body] */
 static Node *word_item(Parser *p) {
     Token word = parser_take(p);
@@ -43,7 +52,7 @@ static Node *word_item(Parser *p) {
     NodeList *list = &n->as.word.list;
     bool comma = false;
     while (!p->failed &&
-           (argument_follows(p, list, comma) || (list->count == 0 && parser_begins_component(p)))) {
+           (argument_follows(p, list, comma) || (list->count == 0 && parser_begins_component(p) && components_make_colors(p)))) {
         Node *e = parser_begins_component(p) ? parser_color(p) : parser_expression(p);
         if (!e) return NULL;
         *list_push(p->arena, list) = e;
@@ -90,15 +99,6 @@ static Node *call_item(Parser *p, const void *macro) {
         return parser_give_up(p);
     *p = before;
     return parser_expression(p);
-}
-
-/* `red 1 green 0.5` is a colour, but in a picture's block `filter 3, 0.5` is about the palette's entry 3. */
-static bool components_make_colors(const Parser *p) {
-    static const char *const pictures[] = {"image_map", "bump_map", "material_map", "image_pattern",
-                                           "texture"};
-    for (size_t i = 0; p->block && i < VTS_ARRAY_COUNT(pictures); i++)
-        if (strcmp(p->block->text, pictures[i]) == 0) return false;
-    return true;
 }
 
 /* A declared colour with other components: `White filter 0.7`. */

@@ -93,6 +93,23 @@ typedef struct DensityGrid {
     const float *values;
 } DensityGrid;
 
+/* A picture in the unit square of pattern space, or wrapped about the origin. */
+typedef struct ImageMap {
+    Span span;
+    Hash128 hash;
+    const char *path;             /* of the file */
+    const char *format;           /* POV-Ray's word for it, "png"; NULL: as the file's name and content tell */
+    int map_type;                 /* 0 planar, 1 spherical, 2 cylindrical, 5 toroidal, 7 angular */
+    int interpolate;              /* 0 nearest, 2 bilinear, 3 bicubic, 4 normalized distance */
+    bool once;                    /* not repeated */
+    bool use_index;               /* an index into the palette counts, not its colour */
+    bool premultiplied, straight; /* alpha, if the text says so */
+    double gamma;                 /* of the file; 0: the format's own; -1: sRGB */
+    double filter_all, transmit_all;
+    const double *palette_filter; /* triples: index, filter, transmit */
+    size_t palette_count;
+} ImageMap;
+
 typedef struct Pigment Pigment;
 
 typedef struct ColorMapEntry {
@@ -134,6 +151,8 @@ struct Pigment {
     const Pigment *source;           /* PATTERN_PIGMENT */
     const DensityGrid *density;      /* PATTERN_DENSITY */
     int interpolation;               /* density: 0, 1 linear, 2 cubic */
+    const ImageMap *image;           /* image_map: stored, not drawn yet; else NULL */
+    const struct EvalBlock *text;    /* the evaluator's: its text, which changes the pigment of a declared texture; or NULL */
     const InertNote *inert;
     Transform transform;             /* pattern space → space of the textured object */
 };

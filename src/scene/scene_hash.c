@@ -126,6 +126,7 @@ void pigment_rehash(Pigment *p) {
     hash_add_vec3(&h, vec3(p->octaves, p->lambda, p->omega));
     hash_add_vec3(&h, p->brick_size);
     add_settings(&h, p);
+    if (p->image) hash_add_hash(&h, p->image->hash);
     hash_add_transform(&h, &p->transform);
     p->hash = h;
 }

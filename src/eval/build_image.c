@@ -1,0 +1,148 @@
+/* image_map { [format] "file" options }: everything that the text says about a picture, and where its file lies. */
+#include "eval/build_parts.h"
+
+#include <string.h>
+
+typedef struct ImageDraft {
+    ImageMap image;
+    struct {
+        double *items;
+        size_t count, capacity;
+    } palette;
+    bool made; /* by a function, not from a file */
+} ImageDraft;
+
+static void take_file(Reader *reader, ImageDraft *draft, const char *name, Span span) {
+    if (draft->image.path || draft->made) reader_error(reader, span, "a second picture");
+    draft->image.path = picture_find(reader->context, name, draft->image.format, span);
+    reader->failed |= draft->image.path == NULL;
+}
+
+static void read_format(Reader *reader, const Word *word, void *target) {
+    ImageDraft *draft = target;
+    const char *name;
+    if (!word_arguments(reader, word, 1, 1) || !word_string(reader, word, 0, &name)) return;
+    draft->image.format = arena_strdup(reader->context->arena, word->text);
+    take_file(reader, draft, name, word->arguments[0].span);
+}
+
+static void read_map_type(Reader *reader, const Word *word, void *target) {
+    int *type = &((ImageDraft *)target)->image.map_type;
+    if (!word_arguments(reader, word, 1, 1) || !word_int(reader, word, 0, type)) return;
+    if (*type < 0 || (*type > 2 && *type != 5 && *type != 7))
+        reader_error(reader, word->arguments[0].span, "'map_type' is 0, 1, 2, 5 or 7, found %d", *type);
+}
+
+static void read_gamma(Reader *reader, const Word *word, void *target) {
+    double *gamma = &((ImageDraft *)target)->image.gamma;
+    Word curve;
+    if (word->count == 0 && reader_take_word(reader, "srgb", &curve))
+        *gamma = -1;
+    else if (word_arguments(reader, word, 1, 1) && word_float(reader, word, 0, gamma) && !(*gamma > 0))
+        reader_error(reader, word->arguments[0].span, "'gamma' must be greater than 0, found %g", *gamma);
+}
+
+static void read_premultiplied(Reader *reader, const Word *word, void *target) {
+    ImageMap *image = &((ImageDraft *)target)->image;
+    double on = 1;
+    if (!word_arguments(reader, word, 0, 1) || (word->count && !word_float(reader, word, 0, &on))) return;
+    image->premultiplied = on != 0;
+    image->straight = on == 0;
+}
+
+/* `filter all 0.3`, `filter 5, 0.3` of palette entry 5; the same of transmit. */
+static void read_share(Reader *reader, const Word *word, void *target) {
+    ImageDraft *draft = target;
+    bool filter = word->text[0] == 'f';
+    Word all;
+    if (word->count == 0 && reader_take_word(reader, "all", &all)) {
+        if (word_arguments(reader, &all, 1, 1))
+            word_float(reader, &all, 0, filter ? &draft->image.filter_all : &draft->image.transmit_all);
+        return;
+    }
+    double entry[2];
+    if (!word_arguments(reader, word, 2, 2) || !word_float(reader, word, 0, &entry[0]) ||
+        !word_float(reader, word, 1, &entry[1]))
+        return;
+    *list_push(reader->context->arena, &draft->palette) = entry[0];
+    *list_push(reader->context->arena, &draft->palette) = filter ? entry[1] : 0;
+    *list_push(reader->context->arena, &draft->palette) = filter ? 0 : entry[1];
+}
+
+#define FORMAT(word)                                                                                         \
+    { word, WORD_CUSTOM, 0, read_format, false }
+#define FIELD(name) offsetof(ImageDraft, image.name)
+static const WordRule rules[] = {
+    FORMAT("gif"),
+    FORMAT("tga"),
+    FORMAT("png"),
+    FORMAT("ppm"),
+    FORMAT("pgm"),
+    FORMAT("jpeg"),
+    FORMAT("tiff"),
+    FORMAT("sys"),
+    FORMAT("iff"),
+    FORMAT("exr"),
+    FORMAT("hdr"),
+    {"map_type", WORD_CUSTOM, 0, read_map_type, false},
+    {"interpolate", WORD_INT, FIELD(interpolate), NULL, false},
+    {"once", WORD_MARK, FIELD(once), NULL, false},
+    {"use_index", WORD_MARK, FIELD(use_index), NULL, false},
+    {"use_color", WORD_IGNORED, 0, NULL, false},
+    {"use_colour", WORD_IGNORED, 0, NULL, false},
+    {"use_alpha", WORD_IGNORED, 0, NULL, false},
+    {"premultiplied", WORD_CUSTOM, 0, read_premultiplied, false},
+    {"gamma", WORD_CUSTOM, 0, read_gamma, false},
+    {"filter", WORD_CUSTOM, 0, read_share, false},
+    {"transmit", WORD_CUSTOM, 0, read_share, false},
+};
+
+static bool on_value(Reader *reader, const Argument *value, void *target) {
+    ImageDraft *draft = target;
+    Transform ignored = transform_identity();
+    switch (value->value.kind) {
+    case VALUE_STRING:
+        take_file(reader, draft,
+                  arena_printf(reader->context->arena, "%.*s", (int)value->value.as.string.length,
+                               value->value.as.string.text),
+                  value->span);
+        return true;
+    case VALUE_FLOAT: return true; /* function WIDTH, HEIGHT { … } */
+    case VALUE_FUNCTION:
+    case VALUE_PIGMENT: draft->made = true; return true;
+    default: return take_transform(value, &ignored);
+    }
+}
+
+static void rehash(ImageMap *image) {
+    Hash128 *h = &image->hash;
+    *h = hash_begin(0x696d61);
+    if (image->path) hash_add(h, image->path, strlen(image->path));
+    double numbers[] = {image->map_type,   image->interpolate,   image->once,
+                        image->use_index,  image->premultiplied, image->straight,
+                        image->filter_all, image->transmit_all,  image->gamma};
+    hash_add(h, numbers, sizeof numbers);
+    hash_add(h, image->palette_filter, 3 * image->palette_count * sizeof(double));
+}
+
+const ImageMap *image_read(Reader *parent, const Word *word) {
+    ImageDraft draft = {.image.span = word->whole};
+    Transform ignored = transform_identity();
+    if (!word->body) {
+        reader_error(parent, word->span, "'%s' needs its block { … }", word->text);
+        return NULL;
+    }
+    Reader reader = reader_nested(parent, word->body);
+    reader_add_table(&reader, rules, VTS_ARRAY_COUNT(rules), &draft);
+    reader_add_table(&reader, transform_rules, transform_rule_count, &ignored);
+    reader.on_value = on_value;
+    reader.value_target = &draft;
+    reader_run(&reader);
+    if (!reader.failed && !draft.image.path && !draft.made)
+        reader_error(&reader, word->span, "'%s' needs the name of a file", word->text);
+    if (!reader_end_nested(parent, &reader)) return NULL;
+    draft.image.palette_filter = draft.palette.items;
+    draft.image.palette_count = draft.palette.count / 3;
+    rehash(&draft.image);
+    return arena_copy(parent->context->arena, &draft.image, sizeof draft.image);
+}

@@ -38,6 +38,52 @@ bool array_take(Eval *ev, uint64_t count, Span span) {
     return false;
 }
 
+/* Kinds as POV-Ray tells them apart: vectors by size, those of five components being colours. */
+static uint16_t element_class(const Value *v) {
+    switch (v->kind) {
+    case VALUE_ERROR: return 0;
+    case VALUE_COLOR: return VALUE_COLOR << 4;
+    case VALUE_VECTOR: return (uint16_t)(v->size == 5 ? VALUE_COLOR << 4 : VALUE_VECTOR << 4 | v->size);
+    case VALUE_LIGHT:
+    case VALUE_TEXEL:
+    case VALUE_SURFACE:
+    case VALUE_SKIN: return VALUE_OBJECT << 4;
+    default: return (uint16_t)(v->kind << 4);
+    }
+}
+
+static const char *class_text(uint16_t class) {
+    switch (class & 15) {
+    case 2: return "a vector of 2 components";
+    case 4: return "a vector of 4 components";
+    default: return value_kind_text((ValueKind)(class >> 4));
+    }
+}
+
+bool array_accepts(Eval *ev, Array *array, const Value *v, Span span) {
+    uint16_t class = element_class(v);
+    if (!array->class || class == 0 || array->rows) return true;
+    if (*array->class == 0) *array->class = class;
+    if (*array->class == class) return true;
+    Diagnostic *d = diag_error(ev->diags, span, "the elements of this array are of another kind: %s, not %s",
+                               class_text(*array->class), class_text(class));
+    diag_hint(ev->diags, d, "'array mixed' holds anything");
+    return false;
+}
+
+bool array_is_partial(Eval *ev, const Array *array, const Value *v, Span span) {
+    if (!array->rows || v->kind != VALUE_ARRAY) return false;
+    diag_error(ev->diags, span, "the array has more dimensions than there are indices");
+    return true;
+}
+
+static void share_class(Array *array, uint16_t *class) {
+    array->class = class;
+    for (size_t i = 0; array->rows && i < array->count; i++)
+        if (array->items[i].set && array->items[i].value.kind == VALUE_ARRAY)
+            share_class(array->items[i].value.as.array, class);
+}
+
 Array *array_copy(Eval *ev, const Array *from) {
     if (!array_take(ev, from->count, ev->at)) return NULL;
     Array *to = arena_new(ev->parse, Array);
@@ -46,6 +92,7 @@ Array *array_copy(Eval *ev, const Array *from) {
     to->items = arena_new_array(ev->parse, Slot, from->count);
     for (size_t i = 0; i < from->count && !ev->stopped; i++)
         if (from->items[i].set) slot_set(ev, &to->items[i], &from->items[i].value);
+    share_class(to, from->class ? arena_copy(ev->parse, from->class, sizeof *from->class) : NULL);
     return to;
 }
 
@@ -60,14 +107,15 @@ Slot *array_slot(Eval *ev, const Array *array, double index, Span span) {
 }
 
 /* Rows are made at once, so that elements can be set in any order. */
-static Array *make(Eval *ev, const size_t *sizes, size_t rank) {
+static Array *make(Eval *ev, const size_t *sizes, size_t rank, uint16_t *class) {
     Array *a = arena_new(ev->parse, Array);
     a->count = sizes[0];
     a->rows = rank > 1;
+    a->class = class;
     a->items = arena_new_array(ev->parse, Slot, a->count);
     for (size_t i = 0; rank > 1 && i < a->count; i++)
-        a->items[i] =
-            (Slot){.value = {.kind = VALUE_ARRAY, .as.array = make(ev, sizes + 1, rank - 1)}, .set = true};
+        a->items[i] = (Slot){.value = {.kind = VALUE_ARRAY, .as.array = make(ev, sizes + 1, rank - 1, class)},
+                             .set = true};
     return a;
 }
 
@@ -111,7 +159,7 @@ Value eval_array(Eval *ev, const Node *node) {
         diag_error(ev->diags, node->span, "array needs its size: array[N]");
         return value_error();
     }
-    Array *a = make(ev, sizes, rank ? rank : 1);
+    Array *a = make(ev, sizes, rank ? rank : 1, node->op ? NULL : arena_new(ev->parse, uint16_t));
     a->growing = rank == 0;
     if (node->as.array.body) {
         Sink sink = {.kind = SINK_ARRAY, .array = a};

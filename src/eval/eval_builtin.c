@@ -161,7 +161,10 @@ static Value vector_function(Eval *ev, const Node *node) {
     Vec3 a = vec3(c[0][0], c[0][1], c[0][2]), b = vec3(c[1][0], c[1][1], c[1][2]);
     switch (node->op) {
     case KW_vlength: return value_float(vec3_length(a));
-    case KW_vnormalize: return vec3_value(ev, vec3_normalize(a));
+    case KW_vnormalize:
+        if (vec3_length(a) == 0)
+            diag_warning(ev->diags, node->span, "a vector without length has no direction");
+        return vec3_value(ev, vec3_normalize(a));
     case KW_vdot: return value_float(vec3_dot(a, b));
     case KW_vcross: return vec3_value(ev, vec3_cross(a, b));
     default: {
@@ -226,14 +229,24 @@ static Value defined_value(Eval *ev, const Node *node) {
     return failed ? value_error() : value_float(is);
 }
 
+/* Rows of an array have sizes too. */
+static Value array_argument(Eval *ev, const Node *node) {
+    if (node->kind != NODE_INDEX) return eval_node(ev, node);
+    bool failed = false;
+    const Slot *slot = eval_target(ev, node, &failed);
+    return slot && slot->set ? slot->value : failed ? value_error() : eval_node(ev, node);
+}
+
 static Value dimensions(Eval *ev, const Node *node) {
     bool sized = node->op == KW_dimension_size;
     if (!builtin_argument_count(ev, node, sized ? 2 : 1, sized ? 2 : 1)) return value_error();
-    Value v = eval_node(ev, node->as.list.items[0]);
+    Value v = array_argument(ev, node->as.list.items[0]);
     double which = 1;
     if (sized && !eval_float(ev, node->as.list.items[1], &which)) return value_error();
     if (v.kind == VALUE_ERROR) return v;
-    if (v.kind != VALUE_ARRAY) return eval_fail(ev, node->as.list.items[0]->span, "expected an array, found %s", value_kind_text(v.kind));
+    if (v.kind != VALUE_ARRAY)
+        return eval_fail(ev, node->as.list.items[0]->span, "expected an array, found %s",
+                         value_kind_text(v.kind));
     if (!sized) return value_float(array_rank(v.as.array));
     return value_float(!(which >= 1 && which <= 64) ? 0 : (double)array_extent(v.as.array, (int)which - 1));
 }

@@ -182,6 +182,7 @@ static void begin_for(Source *s, const Node *n) {
         return;
     }
     Value v = value_float(from);
+    if (!scope_may_declare(ev, n->as.for_loop.name, VALUE_FLOAT, n->span)) return;
     slot_set(ev, scope_declare(ev, n->as.for_loop.name, true), &v);
     Frame *f = push(s, FRAME_FOR, n->as.for_loop.body.tokens, 0, 0);
     f->node = n;
@@ -498,7 +499,7 @@ static uint32_t recover(const TokenList *list, uint32_t begin, uint32_t at, uint
             else
                 depth += t->kind == '{';
         } else if (t->kind == ';' || (t->kind == '}' && depth-- <= 0)) {
-            return at + 1;
+            return t->kind == '}' && at + 1 < end && list->items[at + 1].kind == ';' ? at + 2 : at + 1;
         } else if (t->kind == TOKEN_DIRECTIVE && depth <= 0 && t->keyword != KW_end &&
                    t->keyword != KW_else) {
             return at;
@@ -536,6 +537,7 @@ Flow run_slow(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink
     bool repeats = ev->repeats;
     ev->repeats = true; /* for all that macros and loops in the text hold */
     source_init(&s, ev, &p, &host, &frame, begin);
+    s.in_head = first->kind == TOKEN_DIRECTIVE && first->keyword == KW_macro;
     p.block = sink->kind == SINK_ITEMS ? sink->block : NULL;
     Flow flow = FLOW_NEXT;
     if (first->kind == TOKEN_DIRECTIVE && first->match && first->keyword != KW_macro) {

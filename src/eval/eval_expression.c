@@ -37,11 +37,14 @@ static Value eval_vector(Eval *ev, const Node *node) {
     return ok ? value_vector(ev, out, size) : value_error();
 }
 
-static Value eval_index(Eval *ev, const Node *node) {
+static Value eval_index(Eval *ev, const Node *node, bool whole) {
     const Node *base = node->as.apply.base;
     Value v;
     VarBinding *b = base->kind == NODE_NAME ? scope_find(ev, base->as.name) : NULL;
-    v = b && b->slot->set && b->slot->value.kind == VALUE_ARRAY ? b->slot->value : eval_node(ev, base);
+    if (b && b->slot->set && b->slot->value.kind == VALUE_ARRAY)
+        v = b->slot->value;
+    else
+        v = base->kind == NODE_INDEX ? eval_index(ev, base, false) : eval_node(ev, base);
     double index;
     if (!eval_float(ev, node->as.apply.list.items[0], &index) || v.kind == VALUE_ERROR) return value_error();
     if (v.kind != VALUE_ARRAY) {
@@ -54,6 +57,7 @@ static Value eval_index(Eval *ev, const Node *node) {
         diag_error(ev->diags, node->span, "this element of the array was never set");
         return value_error();
     }
+    if (whole && array_is_partial(ev, v.as.array, &slot->value, node->span)) return value_error();
     return slot_get(ev, slot);
 }
 
@@ -86,7 +90,7 @@ Value eval_compound(Eval *ev, const Node *node) {
         return (Value){.kind = VALUE_STRING, .as.string = {node->as.string->text, node->as.string->length}};
     case NODE_CONSTANT: return eval_constant(ev, node);
     case NODE_VECTOR: return eval_vector(ev, node);
-    case NODE_INDEX: return eval_index(ev, node);
+    case NODE_INDEX: return eval_index(ev, node, true);
     case NODE_DOT: return eval_dot(ev, node);
     case NODE_CONDITION: return eval_choice(ev, node);
     case NODE_CALL: return eval_call(ev, node);
@@ -105,12 +109,17 @@ bool eval_string(Eval *ev, const Node *node, const char **text, size_t *length) 
 }
 
 Slot *eval_target(Eval *ev, const Node *target, bool *failed) {
+    Array *array;
+    return eval_element(ev, target, &array, failed);
+}
+
+Slot *eval_element(Eval *ev, const Node *target, Array **array, bool *failed) {
     if (target->kind == NODE_NAME) {
         VarBinding *b = scope_find(ev, target->as.name);
         return b ? b->slot : NULL;
     }
     if (target->kind != NODE_INDEX) return NULL;
-    Slot *base = eval_target(ev, target->as.apply.base, failed);
+    Slot *base = eval_element(ev, target->as.apply.base, array, failed);
     double index;
     if (!eval_float(ev, target->as.apply.list.items[0], &index)) *failed = true;
     if (*failed || !base || !base->set) return NULL;
@@ -121,7 +130,8 @@ Slot *eval_target(Eval *ev, const Node *target, bool *failed) {
                        value_kind_text(base->value.kind));
         return NULL;
     }
-    Slot *slot = array_slot(ev, base->value.as.array, index, target->span);
+    *array = base->value.as.array;
+    Slot *slot = array_slot(ev, *array, index, target->span);
     *failed = slot == NULL;
     return slot;
 }

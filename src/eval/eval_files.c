@@ -86,6 +86,12 @@ void run_fopen(Eval *ev, const Node *node) {
         diag_error(ev->diags, handle->span, "a file handle is a plain name");
         return;
     }
+    VarBinding *b = scope_find(ev, handle->as.name);
+    if (b && b->slot->set && b->slot->value.kind != VALUE_ERROR) {
+        diag_error(ev->diags, handle->span, "'%s' is %s already: #undef it first", handle->as.name->text,
+                   value_kind_text(b->slot->value.kind));
+        return;
+    }
     if (!eval_string(ev, path, &name, NULL)) return;
     UserFile *f = arena_new(ev->parse, UserFile);
     *f = (UserFile){.path = arena_strdup(ev->parse, name), .mode = (Keyword)node->op};
@@ -199,9 +205,9 @@ void run_read(Eval *ev, const Node *node) {
             return;
         }
         if (!read_value(ev, f, &v)) {
-            Diagnostic *d = diag_error(ev->diags, target->span,
-                                       "the next value of '%s' is no number, vector or string", f->path);
-            diag_note(ev->diags, d, t->span, "it stands here");
+            Diagnostic *d =
+                diag_error(ev->diags, t->span, "the next value of '%s' is no number, vector or string", f->path);
+            diag_note(ev->diags, d, target->span, "read here");
             return;
         }
         take_separator(ev, f);

@@ -1,6 +1,13 @@
 #include "eval/eval_state.h"
 
 void run_define_macro(Eval *ev, const Node *node) {
+    VarBinding *b = scope_find(ev, node->as.macro.name);
+    ValueKind old = b && b->slot->set ? b->slot->value.kind : VALUE_ERROR;
+    if (old != VALUE_ERROR && old != VALUE_MACRO) {
+        diag_error(ev->diags, node->as.macro.name_span, "'%s' is %s already: #undef it first",
+                   node->as.macro.name->text, value_kind_text(old));
+        return;
+    }
     Macro *m = arena_new(ev->parse, Macro);
     m->name = node->as.macro.name;
     m->name_span = node->as.macro.name_span;
@@ -172,10 +179,17 @@ static bool pass(Eval *ev, const Node *argument, Passed *out) {
     out->reference = NULL;
     if (argument->kind == NODE_NAME || argument->kind == NODE_INDEX) {
         bool failed = false;
-        out->reference = eval_target(ev, argument, &failed);
+        Array *array = NULL;
+        out->reference = eval_element(ev, argument, &array, &failed);
         if (failed) return false;
+        if (array && out->reference && array_is_partial(ev, array, &out->reference->value, argument->span))
+            return false;
         if (argument->kind == NODE_NAME && (!out->reference || !out->reference->set)) {
             eval_undeclared(ev, argument->as.name, argument->span);
+            return false;
+        }
+        if (out->reference && !out->reference->set) {
+            diag_error(ev->diags, argument->span, "this element of the array was never set");
             return false;
         }
         if (out->reference) return true;

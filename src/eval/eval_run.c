@@ -254,6 +254,7 @@ static Flow run_for(Eval *ev, const Node *node, Sink *sink) {
     }
     Name name = node->as.for_loop.name;
     Value v = value_float(from);
+    if (!scope_may_declare(ev, name, VALUE_FLOAT, node->span)) return FLOW_NEXT;
     Slot *slot = scope_declare(ev, name, true);
     slot_set(ev, slot, &v);
     uint64_t passes = 0;
@@ -304,6 +305,22 @@ static Flow run_switch(Eval *ev, const Node *node, Sink *sink) {
     return FLOW_NEXT;
 }
 
+static bool may_set_element(Eval *ev, Array *array, const Slot *slot, const Value *v, Span span) {
+    if (slot->set && slot->value.kind == VALUE_FUNCTION && v->kind != VALUE_ERROR) {
+        diag_error(ev->diags, span, "this element is a function already: #undef it first");
+        return false;
+    }
+    return array_accepts(ev, array, v, span);
+}
+
+static void check_semicolon(Eval *ev, const Node *node, bool is_number) {
+    if (!is_number || !node->as.declare.unended) return;
+    if (ev->version < 3.5)
+        diag_warning(ev->diags, node->as.declare.after, "the value wants a ';' after it");
+    else
+        diag_error(ev->diags, node->as.declare.after, "expected ';' after the value");
+}
+
 void run_assign(Eval *ev, const Node *node) {
     const Node *target = node->as.declare.target, *source = node->as.declare.value;
     ev->at = node->span;
@@ -316,7 +333,9 @@ void run_assign(Eval *ev, const Node *node) {
         is_float = eval_operand(ev, source, &number, &v);
     if (!is_float && v.kind == VALUE_VECTOR && v.size > 5)
         v = eval_fail(ev, source->span, "a vector has 2 to 5 components, this one %d", v.size);
+    check_semicolon(ev, node, is_float || value_is_numeric(&v));
     if (target->kind == NODE_NAME) {
+        if (!scope_may_declare(ev, target->as.name, is_float ? VALUE_FLOAT : v.kind, target->span)) return;
         Slot *slot = scope_declare(ev, target->as.name, node->as.declare.local);
         if (slot->set && slot->value.kind == VALUE_FUNCTION)
             eval_fail(ev, target->span, "'%s' is a function: #undef comes before another declaration",
@@ -329,13 +348,14 @@ void run_assign(Eval *ev, const Node *node) {
     }
     if (is_float) v = value_float(number);
     bool failed = false;
-    Slot *slot = eval_target(ev, target, &failed);
+    Array *array = NULL;
+    Slot *slot = eval_element(ev, target, &array, &failed);
     if (!slot && !failed) {
         const Node *base = target;
         while (base->kind == NODE_INDEX) base = base->as.apply.base;
         eval_undeclared(ev, base->as.name, base->span);
     }
-    if (slot) slot_set(ev, slot, &v);
+    if (slot && may_set_element(ev, array, slot, &v, source->span)) slot_set(ev, slot, &v);
 }
 
 static void run_undef(Eval *ev, const Node *node) {
@@ -350,6 +370,14 @@ static void run_undef(Eval *ev, const Node *node) {
     }
     Slot *slot = eval_target(ev, target, &failed);
     if (slot) slot_clear(ev, slot);
+}
+
+/* #warning tells where it stands, as every warning does. */
+static const char *located_warning(Eval *ev, Span span, const char *text, size_t length) {
+    SourcePlace place = source_locate(ev->sources, span);
+    bool ended = length > 0 && text[length - 1] == '\n';
+    return arena_printf(&ev->temp, "%s:%u:%u: warning: %s%s", place.file ? place.file->name : "?", place.line,
+                        place.column, text, ended ? "" : "\n");
 }
 
 static void run_message(Eval *ev, const Node *node) {
@@ -369,8 +397,9 @@ static void run_message(Eval *ev, const Node *node) {
     default: break;
     }
     /* After an error the program goes on only to find more errors. */
-    if (ev->options->on_text && ev->diags->error_count == 0)
-        ev->options->on_text(ev->options->context, stream, text);
+    if (!ev->options->on_text || ev->diags->error_count) return;
+    if (node->op == KW_warning) text = located_warning(ev, node->span, text, length);
+    ev->options->on_text(ev->options->context, stream, text);
 }
 
 static void run_version(Eval *ev, const Node *node) {
@@ -381,6 +410,7 @@ static void run_version(Eval *ev, const Node *node) {
                    "the scene asks for version %g of the language, this is 3.8 at most", version);
     else
         ev->version = version;
+    if (node->op == 0) diag_warning(ev->diags, node->span, "#version wants a ';' after its number");
 }
 
 static void run_default(Eval *ev, const Node *node) {
@@ -412,8 +442,24 @@ static void run_value(Eval *ev, const Node *node, Sink *sink) {
     sink_value(ev, sink, v, node->span);
 }
 
+static bool block_holds_objects(const Eval *ev, Name block) {
+    Keyword keyword = block ? keyword_of(&ev->keywords, block) : KW_NONE;
+    return keyword == KW_union || keyword == KW_merge || keyword == KW_intersection ||
+           keyword == KW_difference;
+}
+
+/* Commas separate values; a semicolon ends a directive, which takes it along, and a second one after #declare is let pass. */
+static void check_stray(Eval *ev, const Node *node, const Sink *sink) {
+    bool comma = node->op == ',';
+    bool in_set = sink->kind == SINK_ITEMS && block_holds_objects(ev, sink->block);
+    if (sink->kind != SINK_SCENE && !in_set && (comma || sink->kind != SINK_ITEMS)) return;
+    diag_error(ev->diags, node->span, "unexpected '%c'", node->op);
+}
+
 Flow run_node(Eval *ev, const Node *node, Sink *sink) {
     Flow flow = FLOW_NEXT;
+    bool after_declare = ev->after_declare;
+    ev->after_declare = node->kind == NODE_DECLARE;
     switch (node->kind) {
     case NODE_DECLARE: run_assign(ev, node); break;
     case NODE_UNDEF: run_undef(ev, node); break;
@@ -438,6 +484,8 @@ Flow run_node(Eval *ev, const Node *node, Sink *sink) {
     case NODE_ENTRY: sink_entry(ev, sink, node); break;
     case NODE_LIST: sink_list(ev, sink, node); break;
     case NODE_EMPTY:
+        if (node->op == ',' || !after_declare) check_stray(ev, node, sink);
+        break;
     case NODE_ERROR: break;
     case NODE_CALL:
         if (is_macro_call(ev, node)) return run_call(ev, node, sink);

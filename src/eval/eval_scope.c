@@ -76,6 +76,15 @@ static Scope *global_scope(Eval *ev) {
     return s;
 }
 
+bool scope_may_declare(Eval *ev, Name name, ValueKind kind, Span span) {
+    VarBinding *b = scope_find(ev, name);
+    ValueKind old = b && b->slot->set ? b->slot->value.kind : VALUE_ERROR;
+    bool fixed = old == VALUE_MACRO || old == VALUE_FUNCTION;
+    if (old == VALUE_ERROR || (!fixed && kind != VALUE_FUNCTION)) return true;
+    diag_error(ev->diags, span, "'%s' is %s already: #undef it first", name->text, value_kind_text(old));
+    return false;
+}
+
 Slot *scope_declare(Eval *ev, Name name, bool local) {
     VarBinding *b = scope_find(ev, name);
     if (b && (!local || b->scope == ev->scope->number)) return b->slot;

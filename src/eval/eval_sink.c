@@ -58,7 +58,8 @@ static void add_element(Eval *ev, Sink *sink, Value v, Span span) {
         diag_error(ev->diags, span, "one element too many for an array of %zu", sink->array->count);
         sink->filled = true;
     }
-    if (sink->next < sink->array->count) slot_set(ev, &sink->array->items[sink->next++], &v);
+    if (sink->next < sink->array->count && array_accepts(ev, sink->array, &v, span))
+        slot_set(ev, &sink->array->items[sink->next++], &v);
 }
 
 void sink_value(Eval *ev, Sink *sink, Value v, Span span) {

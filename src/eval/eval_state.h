@@ -96,8 +96,9 @@ typedef enum Flow { FLOW_NEXT, FLOW_BREAK, FLOW_STOP } Flow;
 struct Array {
     Slot *items;
     size_t count, capacity;
-    bool growing; /* written without a size: array { … } */
-    bool rows;    /* its elements are arrays themselves: more than one dimension */
+    bool growing;    /* written without a size: array { … } */
+    bool rows;       /* its elements are arrays themselves: more than one dimension */
+    uint16_t *class; /* what all elements are, 0 as long as there are none; rows share it; NULL: mixed */
 };
 
 enum { SPLINE_LINEAR, SPLINE_QUADRATIC, SPLINE_CUBIC, SPLINE_NATURAL };
@@ -176,6 +177,7 @@ struct Eval {
     double version;
     size_t silent_errors; /* erroneous values that were left out of blocks */
     bool stopped, interrupted;
+    bool after_declare; /* the last statement was one */
     Span last_break,
         break_end; /* blamed if no loop is found around it; the #end of the branches that it left */
     void (*outer_exhausted)(void *context); /* the memory budget's own handler */
@@ -232,6 +234,8 @@ static inline VarBinding *scope_find(const Eval *ev, Name name) {
 }
 void scope_enter(Eval *ev, Scope *scope);
 void scope_leave(Eval *ev, Scope *scope);
+/* Functions and macros stay what they are until #undef, and nothing else becomes a function: false after a report. */
+bool scope_may_declare(Eval *ev, Name name, ValueKind kind, Span span);
 /* The slot that #declare (local: #local) of a name assigns, made if need be. */
 Slot *scope_declare(Eval *ev, Name name, bool local);
 /* A parameter of the innermost scope: bound to the caller's slot, or (NULL) to one of its own with this value. */
@@ -275,6 +279,8 @@ bool eval_condition(Eval *ev, const Node *node, bool *out);
 bool eval_string(Eval *ev, const Node *node, const char **text, size_t *length);
 /* The slot that a target names, or NULL: not declared (no report), or an error (reported: *failed). */
 Slot *eval_target(Eval *ev, const Node *target, bool *failed);
+/* The same for an element of an array, and the array that holds it. */
+Slot *eval_element(Eval *ev, const Node *target, Array **array, bool *failed);
 Value eval_color(Eval *ev, const Node *node);
 void eval_undeclared(Eval *ev, Name name, Span span);
 
@@ -293,6 +299,10 @@ Diagnostic *eval_argument_count(Eval *ev, Span span, const char *what, size_t le
 
 /* ---- eval_array.c ---- */
 Value eval_array(Eval *ev, const Node *node);
+/* Whether the value is of the kind of the elements that the array has; false after a report. */
+bool array_accepts(Eval *ev, Array *array, const Value *v, Span span);
+/* Whether `v`, the element of `array` that an index gave, lacks further indices; reported. */
+bool array_is_partial(Eval *ev, const Array *array, const Value *v, Span span);
 /* NULL when the limit of elements is reached (reported; the program stops). */
 Array *array_copy(Eval *ev, const Array *from);
 /* Counts elements that are about to be made; false when the limit is reached (reported; the program stops). */

@@ -131,6 +131,8 @@ struct Node {
         } word;
         struct {
             Node *target, *value;
+            Span after;   /* unended: where the semicolon is missing */
+            bool unended; /* without semicolon, which is a mistake if the value is a number */
             bool local;
         } declare;
         struct {

@@ -308,6 +308,19 @@ static bool needs_semicolon(const Node *n) {
     }
 }
 
+/* Values of which only their evaluation will tell. A macro's text may bring the semicolon along. */
+static bool may_need_semicolon(const Node *n) {
+    int kind = n->kind == NODE_VALUE && n->op ? n->op : n->kind;
+    return kind == NODE_NAME || kind == NODE_INDEX || kind == NODE_BUILTIN || kind == NODE_VALUE;
+}
+
+/* Where a semicolon is missing: what stands there instead, or the end of what it should follow. */
+static Span missing_place(Parser *p) {
+    const Token *t = p->slow && !p->has_window ? p->host->after(p->host->context, 0) : parser_peek(p);
+    bool nothing = t->kind == TOKEN_END || t->kind == TOKEN_DIRECTIVE;
+    return nothing ? (Span){p->last.span.file, p->last.span.end, p->last.span.end} : t->span;
+}
+
 /* "deprecated" ["once"] [string]: a note for users of the name, which is not checked here */
 static void skip_deprecation(Parser *p) {
     p->raw = true;
@@ -366,17 +379,15 @@ static Node *declare_directive(Parser *p, Token head) {
         p->failed = true;
         return NULL;
     }
-    if (accept_semicolon(p) || p->semicolons_optional) return n;
-    if (needs_semicolon(value)) {
-        const Token *t = p->slow && !p->has_window ? p->host->after(p->host->context, 0) : parser_peek(p);
-        Span after = {p->last.span.file, p->last.span.end, p->last.span.end};
-        return parser_fail(p, t->kind == TOKEN_END || t->kind == TOKEN_DIRECTIVE ? after : t->span,
-                           "expected ';' after the value of '%s', found %s",
-                           n->as.declare.target->kind == NODE_NAME ? n->as.declare.target->as.name->text
-                                                                   : "an array's element",
-                           parser_found(p, t));
-    }
-    return n;
+    if (accept_semicolon(p)) return n;
+    n->as.declare.after = missing_place(p);
+    n->as.declare.unended = may_need_semicolon(value) || needs_semicolon(value);
+    if (!needs_semicolon(value) || p->semicolons_optional) return n;
+    const Token *t = p->slow && !p->has_window ? p->host->after(p->host->context, 0) : parser_peek(p);
+    return parser_fail(p, n->as.declare.after, "expected ';' after the value of '%s', found %s",
+                       n->as.declare.target->kind == NODE_NAME ? n->as.declare.target->as.name->text
+                                                               : "an array's element",
+                       parser_found(p, t));
 }
 
 static Node *undef_directive(Parser *p, Token head) {
@@ -384,7 +395,6 @@ static Node *undef_directive(Parser *p, Token head) {
     Node *target = parser_target(p);
     if (!target) return NULL;
     *list_push(p->arena, &n->as.list) = target;
-    accept_semicolon(p);
     return n;
 }
 
@@ -394,7 +404,10 @@ static Node *operand_directive(Parser *p, NodeKind kind, Token head) {
     n->as.operand.a = parser_expression(p);
     if (!n->as.operand.a) return NULL;
     n->span = span_join(head.span, p->last.span);
-    if (kind == NODE_VERSION) accept_semicolon(p);
+    if (kind == NODE_VERSION && !accept_semicolon(p)) {
+        n->op = 0;
+        n->span = missing_place(p);
+    }
     return n;
 }
 

@@ -244,10 +244,7 @@ static Node *primary(Parser *p) {
     case '<': return vector(p);
     case '(': return parenthesized(p);
     case TOKEN_WORD: break;
-    default:
-        return parser_fail(
-            p, t->kind == TOKEN_END ? (Span){p->last.span.file, p->last.span.end, p->last.span.end} : t->span,
-            "expected a value, found %s", parser_found(p, t));
+    default: return parser_fail(p, parser_here(p), "expected a value, found %s", parser_found(p, t));
     }
     if (t->keyword == KW_NONE) return name_or_call(p);
     if (is_parameter(p, t->as.name)) return constant(p);

@@ -1,6 +1,8 @@
 /* function (…) { … } and array […] { … }. */
 #include "parser/parser.h"
 
+#include <string.h>
+
 /* function = "function" ["(" name { "," name } ")"] "{" (full { "," full } | vector | block) "}" */
 Node *parser_function(Parser *p) {
     Token word = parser_take(p);
@@ -13,7 +15,7 @@ Node *parser_function(Parser *p) {
     if (parser_accept(p, '(')) {
         for (;;) {
             p->raw = true;
-            if (parser_peek(p)->kind == ')') break;
+            if (parser_peek(p)->kind == ')' && names.count) break;
             Token name = parser_take(p);
             if (name.kind != TOKEN_WORD)
                 return parser_fail(p, name.span, "expected the name of a parameter, found %s",
@@ -65,6 +67,11 @@ Node *parser_function(Parser *p) {
 Node *parser_array(Parser *p) {
     Token word = parser_take(p);
     Node *n = parser_node(p, NODE_ARRAY, word.span);
+    const Token *t = parser_peek(p);
+    if (t->kind == TOKEN_WORD && strcmp(t->as.name->text, "mixed") == 0) {
+        n->op = 1;
+        parser_take(p);
+    }
     p->brackets++;
     while (parser_accept(p, '[')) {
         Node *e = parser_expression(p);

@@ -95,8 +95,7 @@ static Node *call_item(Parser *p, const void *macro) {
     if (!parser_arguments(p, &call->as.apply.list)) return NULL;
     call->span = span_join(name.span, p->last.span);
     if (!continues_expression(parser_peek(p))) return call;
-    if (p->host->macro_binding(p->host->context, macro) == BIND_NONE)
-        return parser_give_up(p);
+    if (p->host->macro_binding(p->host->context, macro) == BIND_NONE) return parser_give_up(p);
     *p = before;
     return parser_expression(p);
 }
@@ -107,6 +106,16 @@ static Node *value_item(Parser *p) {
     Node *n = parser_expression(p);
     if (!n || !name || p->closed || !parser_begins_component(p) || !components_make_colors(p)) return n;
     return parser_color_from(p, n);
+}
+
+/* POV-Ray looks for the arguments in what comes next. */
+static Node *call_without_arguments(Parser *p) {
+    if (!p->slow) return parser_give_up(p);
+    Token name = parser_take(p);
+    Span span = parser_here(p);
+    Diagnostic *d = diag_error(p->diags, span, "'%s' is a macro: it is called with ( )", name.as.name->text);
+    if (span.begin != name.span.end) diag_note(p->diags, d, name.span, "called here");
+    return parser_give_up(p);
 }
 
 static bool follows_comma(const Parser *p) {
@@ -125,8 +134,7 @@ static Node *named_item(Parser *p) {
         if (brace) return parser_block(p);
         return after->kind == '(' || p->guessing || follows_comma(p) ? parser_expression(p) : word_item(p);
     case NAME_MACRO:
-        if (after->kind != '(')
-            return parser_fail(p, t->span, "'%s' is a macro: it is called with ( )", t->as.name->text);
+        if (after->kind != '(') return call_without_arguments(p);
         return call_item(p, macro);
     default: return value_item(p);
     }
@@ -173,6 +181,7 @@ Node *parser_statement(Parser *p) {
     case ',':
     case ';': {
         Node *n = parser_node(p, NODE_EMPTY, t->span);
+        n->op = t->kind;
         parser_take(p);
         return n;
     }

@@ -54,17 +54,19 @@ bool parser_accept_keyword(Parser *p, Keyword keyword) {
     return true;
 }
 
-/* Where something is missing: the next token, or the end of the last one where nothing follows. */
-static Span here(Parser *p) {
+Span parser_here(Parser *p) {
     const Token *t = parser_peek(p);
     if (t->kind != TOKEN_DIRECTIVE && (t->kind != TOKEN_END || t->span.end > t->span.begin)) return t->span;
+    /* Directives may have run since: then where the text ends. */
+    if (t->kind == TOKEN_END && t->span.file == p->last.span.file && t->span.begin > p->last.span.end)
+        return t->span;
     return (Span){p->last.span.file, p->last.span.end, p->last.span.end};
 }
 
 bool parser_expect(Parser *p, int kind, const char *what) {
     if (parser_accept(p, kind)) return true;
     const Token *t = parser_peek(p);
-    parser_fail(p, here(p), "expected %s, found %s", what, parser_found(p, t));
+    parser_fail(p, parser_here(p), "expected %s, found %s", what, parser_found(p, t));
     return false;
 }
 
@@ -97,7 +99,7 @@ Node *parser_node(Parser *p, NodeKind kind, Span begin) {
 
 bool parser_enter(Parser *p) {
     if (++p->depth <= PARSER_DEPTH_LIMIT) return true;
-    parser_fail(p, here(p), "nested too deeply");
+    parser_fail(p, parser_here(p), "nested too deeply");
     return false;
 }
 
@@ -113,6 +115,28 @@ static void never_closed(Parser *p, const Token *open, Span end, const char *nam
     Diagnostic *d = diag_error(p->diags, end, "the text ends, but '%c' is missing for '%s'",
                                open->kind == '[' ? ']' : '}', name);
     diag_note(p->diags, d, open->span, "opened here");
+}
+
+static bool is_misplaced(Parser *p, Name block) {
+    const Token *t = parser_peek(p);
+    return block && t->kind == TOKEN_WORD && t->keyword && parser_peek_after(p)->kind == '{' &&
+           nesting_never(keyword_of(p->keywords, block), t->keyword);
+}
+
+static Node *missing_close(Parser *p, const Token *open, Name block) {
+    const Token *t = parser_peek(p);
+    Diagnostic *d = diag_error(p->diags, t->span, "'%s' has no place in '%s': is a '}' missing before it?",
+                               t->as.name->text, block->text);
+    diag_note(p->diags, d, open->span, "opened here");
+    return parser_give_up(p);
+}
+
+/* A block among the items of one whose end is not in sight: its mistakes are met before what follows. */
+static Node *fold_block(Parser *p, Node *n) {
+    size_t failures = p->diags->failures;
+    n = parser_fold(p, n);
+    if (p->diags->failures != failures) p->failed = true;
+    return n;
 }
 
 /* body = "{" … "}" | "[" … "]": a range of tokens where its end is known, else its statements now. */
@@ -141,7 +165,8 @@ Body *parser_body(Parser *p, Name block) {
     int close = open.kind == '[' ? ']' : '}';
     if (!parser_enter(p)) return NULL;
     while (!p->failed && parser_peek(p)->kind != close && !parser_at_end(p)) {
-        Node *n = parser_statement(p);
+        Node *n = is_misplaced(p, block) ? missing_close(p, &open, block) : parser_statement(p);
+        if (n && n->kind == NODE_BLOCK) n = fold_block(p, n);
         if (n) *list_push(p->arena, &body->items) = n;
     }
     parser_leave(p);
@@ -164,7 +189,7 @@ Node *parser_target(Parser *p) {
     p->raw = true;
     const Token *t = parser_peek(p);
     if (t->kind != TOKEN_WORD)
-        return parser_fail(p, here(p), "expected a name, found %s", parser_found(p, t));
+        return parser_fail(p, parser_here(p), "expected a name, found %s", parser_found(p, t));
     if (t->keyword)
         return parser_fail(p, t->span, "'%s' is a word of the language: it cannot be a name",
                            t->as.name->text);

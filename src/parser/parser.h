@@ -73,7 +73,7 @@ struct Parser {
     bool unfolded;   /* operands are kept as trees */
     bool heads_only; /* branches of directives need not be whole: the text after #end may complete them */
     bool semicolons_optional; /* before version 3.5 of the language */
-    bool guessing;   /* names that mean nothing yet are taken for values */
+    bool guessing;            /* names that mean nothing yet are taken for values */
     bool crossed; /* slow road: a group ended between an operand and what follows it, outside of brackets */
     bool closed;  /* the last operand was a block, a function, an array or a text: no operator follows */
     int depth;    /* nesting, against the C stack */
@@ -109,6 +109,8 @@ const Token *parser_peek_after(Parser *parser);
 Token parser_take(Parser *parser);
 bool parser_accept(Parser *parser, int kind);
 bool parser_accept_keyword(Parser *parser, Keyword keyword);
+/* Where something is missing: at the next token, or behind the last one where nothing or a directive follows. */
+Span parser_here(Parser *parser);
 bool parser_expect(Parser *parser, int kind, const char *what);
 /* Makes the parse fail without a word: on the fast road, for what the slow road will read. Returns NULL. */
 Node *parser_give_up(Parser *parser);
@@ -142,6 +144,9 @@ bool parser_begins_color(Parser *parser);
 bool parser_begins_component(Parser *parser);
 /* The components that follow a colour's value. */
 Node *parser_color_from(Parser *parser, Node *base);
+
+/* Whether a block of this keyword never holds one of the other (nesting.c). */
+bool nesting_never(int outer, int inner);
 
 /* The vocabulary of vts's own blocks, which is reserved only where it means something (context.c). */
 bool context_is_block(Name word);

@@ -38,35 +38,26 @@ bool array_take(Eval *ev, uint64_t count, Span span) {
     return false;
 }
 
-/* Kinds as POV-Ray tells them apart: vectors by size, those of five components being colours. */
-static uint16_t element_class(const Value *v) {
+/* Where POV-Ray tells floats from vectors too, here all numbers go together, as they do in expressions. */
+static ValueKind element_class(const Value *v) {
     switch (v->kind) {
-    case VALUE_ERROR: return 0;
-    case VALUE_COLOR: return VALUE_COLOR << 4;
-    case VALUE_VECTOR: return (uint16_t)(v->size == 5 ? VALUE_COLOR << 4 : VALUE_VECTOR << 4 | v->size);
+    case VALUE_COLOR:
+    case VALUE_VECTOR: return VALUE_FLOAT;
     case VALUE_LIGHT:
     case VALUE_TEXEL:
     case VALUE_SURFACE:
-    case VALUE_SKIN: return VALUE_OBJECT << 4;
-    default: return (uint16_t)(v->kind << 4);
-    }
-}
-
-static const char *class_text(uint16_t class) {
-    switch (class & 15) {
-    case 2: return "a vector of 2 components";
-    case 4: return "a vector of 4 components";
-    default: return value_kind_text((ValueKind)(class >> 4));
+    case VALUE_SKIN: return VALUE_OBJECT;
+    default: return v->kind;
     }
 }
 
 bool array_accepts(Eval *ev, Array *array, const Value *v, Span span) {
-    uint16_t class = element_class(v);
-    if (!array->class || class == 0 || array->rows) return true;
-    if (*array->class == 0) *array->class = class;
+    ValueKind class = element_class(v);
+    if (!array->class || class == VALUE_ERROR || array->rows) return true;
+    if (*array->class == VALUE_ERROR) *array->class = class;
     if (*array->class == class) return true;
     Diagnostic *d = diag_error(ev->diags, span, "the elements of this array are of another kind: %s, not %s",
-                               class_text(*array->class), class_text(class));
+                               value_kind_text(*array->class), value_kind_text(class));
     diag_hint(ev->diags, d, "'array mixed' holds anything");
     return false;
 }
@@ -77,7 +68,7 @@ bool array_is_partial(Eval *ev, const Array *array, const Value *v, Span span) {
     return true;
 }
 
-static void share_class(Array *array, uint16_t *class) {
+static void share_class(Array *array, ValueKind *class) {
     array->class = class;
     for (size_t i = 0; array->rows && i < array->count; i++)
         if (array->items[i].set && array->items[i].value.kind == VALUE_ARRAY)
@@ -107,7 +98,7 @@ Slot *array_slot(Eval *ev, const Array *array, double index, Span span) {
 }
 
 /* Rows are made at once, so that elements can be set in any order. */
-static Array *make(Eval *ev, const size_t *sizes, size_t rank, uint16_t *class) {
+static Array *make(Eval *ev, const size_t *sizes, size_t rank, ValueKind *class) {
     Array *a = arena_new(ev->parse, Array);
     a->count = sizes[0];
     a->rows = rank > 1;
@@ -159,7 +150,7 @@ Value eval_array(Eval *ev, const Node *node) {
         diag_error(ev->diags, node->span, "array needs its size: array[N]");
         return value_error();
     }
-    Array *a = make(ev, sizes, rank ? rank : 1, node->op ? NULL : arena_new(ev->parse, uint16_t));
+    Array *a = make(ev, sizes, rank ? rank : 1, node->op ? NULL : arena_new(ev->parse, ValueKind));
     a->growing = rank == 0;
     if (node->as.array.body) {
         Sink sink = {.kind = SINK_ARRAY, .array = a};

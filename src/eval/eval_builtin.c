@@ -6,7 +6,8 @@
 #include <math.h>
 #include <time.h>
 
-Diagnostic *eval_argument_count(Eval *ev, Span span, const char *what, size_t least, size_t most, size_t given) {
+Diagnostic *eval_argument_count(Eval *ev, Span span, const char *what, size_t least, size_t most,
+                                size_t given) {
     if (given < least)
         return diag_error(ev->diags, span, "too few arguments for %s: expected %s%zu, found %zu", what,
                           least == most ? "" : "at least ", least, given);

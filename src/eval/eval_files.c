@@ -3,9 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
-bool file_is_open(const UserFile *file) {
-    return file->open && !file->ended;
-}
+bool file_is_open(const UserFile *file) { return file->open && !file->ended; }
 
 MemoryFile *files_in_memory(const Eval *ev, const char *name) {
     for (MemoryFile *m = ev->memory; m; m = m->next)
@@ -205,8 +203,8 @@ void run_read(Eval *ev, const Node *node) {
             return;
         }
         if (!read_value(ev, f, &v)) {
-            Diagnostic *d =
-                diag_error(ev->diags, t->span, "the next value of '%s' is no number, vector or string", f->path);
+            Diagnostic *d = diag_error(ev->diags, t->span,
+                                       "the next value of '%s' is no number, vector or string", f->path);
             diag_note(ev->diags, d, target->span, "read here");
             return;
         }

@@ -450,6 +450,7 @@ static bool block_holds_objects(const Eval *ev, Name block) {
 
 /* Commas separate values; a semicolon ends a directive, which takes it along, and a second one after #declare is let pass. */
 static void check_stray(Eval *ev, const Node *node, const Sink *sink) {
+    if (ev->diags->failures) return; /* likely left over from what failed */
     bool comma = node->op == ',';
     bool in_set = sink->kind == SINK_ITEMS && block_holds_objects(ev, sink->block);
     if (sink->kind != SINK_SCENE && !in_set && (comma || sink->kind != SINK_ITEMS)) return;

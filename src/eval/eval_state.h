@@ -96,9 +96,10 @@ typedef enum Flow { FLOW_NEXT, FLOW_BREAK, FLOW_STOP } Flow;
 struct Array {
     Slot *items;
     size_t count, capacity;
-    bool growing;    /* written without a size: array { … } */
-    bool rows;       /* its elements are arrays themselves: more than one dimension */
-    uint16_t *class; /* what all elements are, 0 as long as there are none; rows share it; NULL: mixed */
+    bool growing; /* written without a size: array { … } */
+    bool rows;    /* its elements are arrays themselves: more than one dimension */
+    ValueKind
+        *class; /* what all elements are, VALUE_ERROR as long as there are none; rows share it; NULL: mixed */
 };
 
 enum { SPLINE_LINEAR, SPLINE_QUADRATIC, SPLINE_CUBIC, SPLINE_NATURAL };

@@ -13,7 +13,8 @@ static bool is_gamma_name(Parser *p, const Token *after) {
 
 bool parser_begins_color(Parser *p) {
     const Token *t = parser_peek(p);
-    if (t->kind != TOKEN_WORD || !t->keyword || keyword_class((Keyword)t->keyword) != KEYWORD_COLOR) return false;
+    if (t->kind != TOKEN_WORD || !t->keyword || keyword_class((Keyword)t->keyword) != KEYWORD_COLOR)
+        return false;
     const Token *after = parser_peek_after(p);
     return after->kind != '{' && !is_gamma_name(p, after);
 }
@@ -66,7 +67,8 @@ static Node *color_parts(Parser *p, Span begin, ColorPartList parts) {
         *list_push(p->arena, &parts) = (ColorPart){(uint16_t)keyword, e};
     }
     if (parts.count == 0 && !named)
-        return parser_fail(p, parser_peek(p)->span, "expected a colour, found %s", parser_found(p, parser_peek(p)));
+        return parser_fail(p, parser_peek(p)->span, "expected a colour, found %s",
+                           parser_found(p, parser_peek(p)));
     n->as.color.parts = parts.items;
     n->as.color.count = parts.count;
     n->span = span_join(n->span, p->last.span);

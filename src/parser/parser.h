@@ -74,10 +74,10 @@ struct Parser {
     bool heads_only; /* branches of directives need not be whole: the text after #end may complete them */
     bool semicolons_optional; /* before version 3.5 of the language */
     bool guessing;            /* names that mean nothing yet are taken for values */
-    bool crossed; /* slow road: a group ended between an operand and what follows it, outside of brackets */
-    bool closed;  /* the last operand was a block, a function, an array or a text: no operator follows */
-    int depth;    /* nesting, against the C stack */
-    int brackets; /* open ( < [ of the expression being read */
+    bool crossed;   /* slow road: a group ended between an operand and what follows it, outside of brackets */
+    bool closed;    /* the last operand was a block, a function, an array or a text: no operator follows */
+    int depth;      /* nesting, against the C stack */
+    int brackets;   /* open ( < [ of the expression being read */
     bool expanding; /* within a block whose text is expanded as it is read */
     AssumptionList assumptions;
 };

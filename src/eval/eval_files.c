@@ -85,7 +85,8 @@ void run_fopen(Eval *ev, const Node *node) {
         return;
     }
     VarBinding *b = scope_find(ev, handle->as.name);
-    if (b && b->slot->set && b->slot->value.kind != VALUE_ERROR) {
+    bool ended = b && b->slot->value.kind == VALUE_FILE && !file_is_open(b->slot->value.as.file);
+    if (b && b->slot->set && !ended && b->slot->value.kind != VALUE_ERROR) {
         diag_error(ev->diags, handle->span, "'%s' is %s already: #undef it first", handle->as.name->text,
                    value_kind_text(b->slot->value.kind));
         return;

@@ -75,7 +75,7 @@ static Node *color_parts(Parser *p, Span begin, ColorPartList parts) {
     return parser_fold(p, n);
 }
 
-/* color = { "color" | "colour" | ("rgb" | … | "srgbft") expression | component expression | expression }, at most one
+/* color = { "color" | "colour" | color_word expression | component_word expression | expression }, at most one
  * expression that is not a component */
 Node *parser_color(Parser *p) { return color_parts(p, parser_peek(p)->span, (ColorPartList){0}); }
 

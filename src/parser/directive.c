@@ -138,7 +138,7 @@ typedef struct BranchList {
     size_t count, capacity;
 } BranchList;
 
-/* group = if body { "#elseif" "(" full ")" body } ["#else" body] "#end"
+/* group = if statements { "#elseif" "(" full ")" statements } ["#else" statements] "#end"
  * On the slow road only the head is read; #elseif are read when they are reached (their condition is then a NODE_IF of its own). */
 static Node *if_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *next) {
     const Token *head = &list->items[index];
@@ -173,6 +173,7 @@ static Node *if_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *
     return bodies_whole(p, n, list->items[index].unbalanced) ? n : NULL;
 }
 
+/* while = "#while" "(" full ")" statements "#end" */
 static Node *while_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *next) {
     Node *n = parser_node(p, NODE_WHILE, list->items[index].span);
     n->as.loop.condition = in_parentheses(p);
@@ -184,7 +185,7 @@ static Node *while_directive(Parser *p, TokenList *list, uint32_t index, uint32_
     return bodies_whole(p, n, list->items[index].unbalanced) ? n : NULL;
 }
 
-/* for = "#for" "(" name "," expression "," expression ["," expression] ")" body "#end" */
+/* for = "#for" "(" identifier "," expression "," expression ["," expression] ")" statements "#end" */
 static Node *for_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *next) {
     Node *n = parser_node(p, NODE_FOR, list->items[index].span);
     if (!parser_expect(p, '(', "'('")) return NULL;
@@ -213,7 +214,7 @@ static bool case_head(Parser *p, const Token *t, SwitchCase *out) {
     return parser_expect(p, ')', "')'");
 }
 
-/* switch = "#switch" "(" full ")" { "#case" "(" full ")" body | "#range" "(" full "," full ")" body } ["#else" body] "#end" */
+/* switch = "#switch" "(" full ")" { "#case" "(" full ")" statements | "#range" "(" full "," full ")" statements } ["#else" statements] "#end" */
 static Node *switch_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *next) {
     Node *n = parser_node(p, NODE_SWITCH, list->items[index].span);
     n->as.switch_.subject = in_parentheses(p);
@@ -246,7 +247,7 @@ static Node *switch_directive(Parser *p, TokenList *list, uint32_t index, uint32
     return bodies_whole(p, n, list->items[index].unbalanced) ? n : NULL;
 }
 
-/* macro = "#macro" name "(" [name { "," name }] ")" body "#end" */
+/* macro = "#macro" identifier "(" [identifier { "," identifier }] ")" statements "#end" */
 static Node *macro_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *next) {
     Node *n = parser_node(p, NODE_MACRO, list->items[index].span);
     p->raw = true;
@@ -357,7 +358,7 @@ static Node *layers(Parser *p, Node *first, Token word) {
     return n;
 }
 
-/* declare = ("#declare" | "#local") ["deprecated" …] target "=" expression { texture } [";"] */
+/* declare = ("#declare" | "#local") ["deprecated" ["once"] [string]] target "=" expression { block } [";"] */
 static Node *declare_directive(Parser *p, Token head) {
     Node *n = parser_node(p, NODE_DECLARE, head.span);
     n->as.declare.local = head.keyword == KW_local;
@@ -411,7 +412,7 @@ static Node *operand_directive(Parser *p, NodeKind kind, Token head) {
     return n;
 }
 
-/* fopen = "#fopen" name expression ("read" | "write" | "append") */
+/* fopen = "#fopen" target expression ("read" | "write" | "append") */
 static Node *fopen_directive(Parser *p, Token head) {
     Node *n = parser_node(p, NODE_FOPEN, head.span);
     Node *handle = parser_target(p);
@@ -436,7 +437,7 @@ static Node *fclose_directive(Parser *p, Token head) {
     return n;
 }
 
-/* read = "#read" "(" name { "," target } ")" */
+/* read = "#read" "(" target { "," target } ")" */
 static Node *read_directive(Parser *p, Token head) {
     Node *n = parser_node(p, NODE_READ, head.span);
     if (!parser_expect(p, '(', "'('")) return NULL;
@@ -448,7 +449,7 @@ static Node *read_directive(Parser *p, Token head) {
     return parser_expect(p, ')', "',' or ')'") ? n : NULL;
 }
 
-/* write = "#write" "(" name { [","] full } ")" */
+/* write = "#write" "(" target { [","] full } ")" */
 static Node *write_directive(Parser *p, Token head) {
     Node *n = parser_node(p, NODE_WRITE, head.span);
     if (!parser_expect(p, '(', "'('")) return NULL;
@@ -489,6 +490,9 @@ static Node *unknown_directive(Parser *p, Token head) {
     return NULL;
 }
 
+/* directive = group | while | for | switch | macro | declare | "#undef" target | "#include" expression
+ *           | "#version" expression [";"] | ("#debug" | "#warning" | "#error" | "#render" | "#statistics") expression
+ *           | "#break" | "#default" body | fopen | "#fclose" target | read | write */
 Node *parser_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *next) {
     Token head = p->last;
     *next = 0;

@@ -57,7 +57,7 @@ static bool reference_follows(Parser *p) {
     }
 }
 
-/* arguments = "(" [full { "," full }] ")" */
+/* macro_arguments = "(" [full { "," full }] ")" */
 bool parser_arguments(Parser *p, NodeList *out) {
     if (!parser_expect(p, '(', "'('")) return false;
     p->brackets++;
@@ -98,8 +98,8 @@ static bool plain_arguments(Parser *p, NodeList *out) {
     return true;
 }
 
-/* builtin = "defined" "(" target ")" | ("sum" | "prod") "(" name "," full "," full "," full ")"
- *         | "trace" "(" full "," full "," full ["," target] ")" | "dimensions" … "(" arguments ")" */
+/* builtin = "defined" "(" target ")" | ("sum" | "prod") "(" identifier "," full "," full "," full ")"
+ *         | "trace" "(" full "," full "," full ["," target] ")" | function_word arguments */
 static Node *builtin(Parser *p) {
     Token word = parser_take(p);
     Node *n = parser_node(p, NODE_BUILTIN, word.span);
@@ -154,7 +154,7 @@ static bool is_parameter(const Parser *p, Name name) {
     return false;
 }
 
-/* name = identifier ["(" arguments ")"] | block */
+/* name = identifier [macro_arguments | arguments] | block */
 static Node *name_or_call(Parser *p) {
     const Token *t = parser_peek(p), *after = parser_peek_after(p);
     if (after->kind == '{' && context_is_block(t->as.name) && !p->in_function) return parser_block(p);
@@ -319,7 +319,7 @@ static Node *dot(Parser *p, Node *n) {
     return result;
 }
 
-/* "[" expression "]" ["(" arguments ")"]: an element, possibly a function that is called */
+/* index = "[" expression "]" [arguments]: an element, possibly a function that is called */
 static Node *index(Parser *p, Node *n) {
     parser_take(p);
     p->brackets++;
@@ -389,7 +389,7 @@ static Node *term(Parser *p) {
     return a;
 }
 
-/* expression = term { ("+" | "-") term } */
+/* expression = color | term { ("+" | "-") term } */
 Node *parser_expression(Parser *p) {
     if (parser_begins_color(p)) return parser_color(p);
     if (!parser_enter(p)) return NULL;
@@ -502,6 +502,7 @@ bool parser_begins_expression(Parser *p, bool after_comma) {
     }
 }
 
+/* block = (keyword | identifier) body */
 Node *parser_block(Parser *p) {
     Token word = parser_take(p);
     Node *n = parser_node(p, NODE_BLOCK, word.span);

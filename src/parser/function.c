@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/* function = "function" ["(" name { "," name } ")"] "{" (full { "," full } | vector | block) "}" */
+/* function = "function" ["(" identifier { "," identifier } ")"] "{" (full { "," full } | vector | block) "}" */
 Node *parser_function(Parser *p) {
     Token word = parser_take(p);
     Node *n = parser_node(p, NODE_FUNCTION, word.span);
@@ -63,7 +63,7 @@ Node *parser_function(Parser *p) {
     return n;
 }
 
-/* array = "array" ["mixed"] { "[" expression "]" } ["{" body "}"] */
+/* array = "array" { "[" expression "]" } [body] */
 Node *parser_array(Parser *p) {
     Token word = parser_take(p);
     Node *n = parser_node(p, NODE_ARRAY, word.span);

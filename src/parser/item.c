@@ -84,7 +84,7 @@ static bool continues_expression(const Token *t) {
     return t->kind == '*' || t->kind == '/' || t->kind == '+' || t->kind == '-' || t->kind == '.';
 }
 
-/* call = name "(" arguments ")": as an item, whatever its macro's body holds are items here too. */
+/* call = identifier macro_arguments: as an item, whatever its macro's body holds are items here too. */
 static Node *call_item(Parser *p, const void *macro) {
     Parser before = *p;
     Token name = parser_take(p);
@@ -166,7 +166,7 @@ static Node *keyword_item(Parser *p) {
     return brace ? parser_block(p) : word_item(p);
 }
 
-/* statement = directive | word | block | call | "[" body "]" | "{" body "}" | expression | "," | ";" */
+/* statement = directive | word | block | call | body | expression | "," | ";" */
 Node *parser_statement(Parser *p) {
     const Token *t = parser_peek(p);
     switch (t->kind) {

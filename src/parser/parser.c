@@ -139,7 +139,7 @@ static Node *fold_block(Parser *p, Node *n) {
     return n;
 }
 
-/* body = "{" … "}" | "[" … "]": a range of tokens where its end is known, else its statements now. */
+/* body = "{" statements "}" | "[" statements "]": a range of tokens where its end is known, else its statements now. */
 Body *parser_body(Parser *p, Name block) {
     Token open = parser_take(p);
     Body *body = arena_new(p->arena, Body);
@@ -184,7 +184,7 @@ Body *parser_body(Parser *p, Name block) {
     return p->failed ? NULL : body;
 }
 
-/* target = name { "[" expression "]" } */
+/* target = identifier { "[" expression "]" } */
 Node *parser_target(Parser *p) {
     p->raw = true;
     const Token *t = parser_peek(p);

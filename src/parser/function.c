@@ -63,7 +63,7 @@ Node *parser_function(Parser *p) {
     return n;
 }
 
-/* array = "array" { "[" expression "]" } [body] */
+/* array = "array" ["mixed"] { "[" expression "]" } [body] */
 Node *parser_array(Parser *p) {
     Token word = parser_take(p);
     Node *n = parser_node(p, NODE_ARRAY, word.span);

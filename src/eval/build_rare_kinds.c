@@ -276,8 +276,7 @@ static const char *font_name(RareDraft *draft) {
 }
 
 bool build_text(BuildContext *context, const EvalBlock *block, Value *out) {
-    /* POV-Ray turns every text by a thousandth of a degree, against rays that run along its walls. */
-    BEGIN(.solid.kind = SOLID_TEXT, .turned = vec3_splat(0.001));
+    BEGIN(.solid.kind = SOLID_TEXT, .turned = vec3_splat(SOLID_TEXT_TURN));
     Solid *s = &draft.solid;
     if (draft.row.count < 2 || draft.row.items[1].value.kind != VALUE_STRING) {
         reader_error(&reader, block->word_span, "'text' takes ttf \"FONT\" \"TEXT\" thickness, offset");

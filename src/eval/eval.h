@@ -22,6 +22,7 @@ typedef struct EvalGeometry {
     void *context;
     bool (*trace)(void *context, const Object *object, Vec3 origin, Vec3 direction, Vec3 *hit, Vec3 *normal);
     bool (*inside)(void *context, const Object *object, Vec3 point);
+    Box3 (*extent)(void *context, const Object *object); /* min_extent(), max_extent() */
     /* A pigment as a function of place: 3 inputs, 5 outputs. `out` and its data live in `arena`; false: it cannot be one. */
     bool (*pigment_function)(void *context, Arena *arena, const Pigment *pigment, TapeExternal *out);
     /* A pattern as a function of place: 3 inputs, 1 output; otherwise the same. */

@@ -1,100 +1,6 @@
 /* What the language asks of objects: min_extent(), max_extent(), trace(), inside(). */
 #include "eval/eval_state.h"
 
-static Box3 box_of(Vec3 a, Vec3 b) { return box3_add_point(box3_add_point(box3_empty(), a), b); }
-
-/* Half the extent of a circle of radius 1 across the unit vector `axis`. */
-static Vec3 circle_extent(Vec3 axis) {
-    return vec3(sqrt(double_max(1 - axis.x * axis.x, 0)), sqrt(double_max(1 - axis.y * axis.y, 0)),
-                sqrt(double_max(1 - axis.z * axis.z, 0)));
-}
-
-static Box3 cone_box(Vec3 base, double r0, Vec3 cap, double r1) {
-    Vec3 spread = circle_extent(vec3_normalize(vec3_sub(cap, base)));
-    Box3 a = box_of(vec3_madd(base, spread, -r0), vec3_madd(base, spread, r0));
-    return box3_union(a, box_of(vec3_madd(cap, spread, -r1), vec3_madd(cap, spread, r1)));
-}
-
-static bool object_box(const Object *o, const Transform *place, Box3 *out);
-
-static bool children_box(const Object *o, const Transform *place, Box3 *out) {
-    bool common = o->kind == OBJECT_INTERSECTION;
-    size_t count = o->kind == OBJECT_DIFFERENCE ? size_min(o->as.children.count, 1) : o->as.children.count;
-    *out = box3_empty();
-    for (size_t i = 0; i < count; i++) {
-        Box3 b;
-        if (!object_box(o->as.children.items[i], place, &b)) {
-            if (common) continue;
-            return false;
-        }
-        *out = common && !box3_is_empty(*out) ? (Box3){vec3_max(out->min, b.min), vec3_min(out->max, b.max)}
-                                              : box3_union(*out, b);
-    }
-    return !box3_is_empty(*out);
-}
-
-static bool own_box(const Object *o, Box3 *out) {
-    Vec3 r;
-    switch (o->kind) {
-    case OBJECT_SPHERE:
-        r = vec3_splat(o->as.sphere.radius);
-        *out = box_of(vec3_sub(o->as.sphere.center, r), vec3_add(o->as.sphere.center, r));
-        return true;
-    case OBJECT_BOX: *out = box_of(o->as.box.corner1, o->as.box.corner2); return true;
-    case OBJECT_CYLINDER:
-    case OBJECT_CONE:
-        *out = cone_box(o->as.cone.base, o->as.cone.base_radius, o->as.cone.cap, o->as.cone.cap_radius);
-        return true;
-    case OBJECT_TORUS:
-        r = vec3(o->as.torus.major_radius + o->as.torus.minor_radius, o->as.torus.minor_radius,
-                 o->as.torus.major_radius + o->as.torus.minor_radius);
-        *out = box_of(vec3_negate(r), r);
-        return true;
-    case OBJECT_DISC:
-        /* POV-Ray gives it this thickness. */
-        r = vec3_add(vec3_scale(circle_extent(o->as.disc.normal), o->as.disc.radius),
-                     vec3_scale(o->as.disc.normal, 0.001));
-        *out = box_of(vec3_sub(o->as.disc.center, r), vec3_add(o->as.disc.center, r));
-        return true;
-    case OBJECT_TRIANGLES:
-        *out = box3_empty();
-        for (size_t i = 0; i < o->as.mesh->vertex_count; i++)
-            *out = box3_add_point(*out, o->as.mesh->vertices[i]);
-        return true;
-    case OBJECT_TEXEL: *out = o->as.texel->bounds; return true;
-    default: return false;
-    }
-}
-
-/* A sphere that is still one after `t`: its own box, not the box of its box. */
-static bool placed_sphere(const Object *o, const Transform *t, Box3 *out) {
-    if (o->kind != OBJECT_SPHERE) return false;
-    double x = vec3_length(t->linear.c[0]), y = vec3_length(t->linear.c[1]), z = vec3_length(t->linear.c[2]);
-    bool right_angles = fabs(vec3_dot(t->linear.c[0], t->linear.c[1])) +
-                            fabs(vec3_dot(t->linear.c[0], t->linear.c[2])) +
-                            fabs(vec3_dot(t->linear.c[1], t->linear.c[2])) <
-                        1e-9 * x * x;
-    if (fabs(x - y) + fabs(x - z) > 1e-9 * x || !right_angles) return false;
-    Vec3 c = transform_point(t, o->as.sphere.center), r = vec3_splat(x * o->as.sphere.radius);
-    *out = box_of(vec3_sub(c, r), vec3_add(c, r));
-    return true;
-}
-
-static bool is_set(const Object *o) {
-    return o->kind == OBJECT_UNION || o->kind == OBJECT_MERGE || o->kind == OBJECT_INTERSECTION ||
-           o->kind == OBJECT_DIFFERENCE;
-}
-
-/* The box of the object placed by `place`: of sets, the boxes of their parts where they really are. False for what has no end. */
-static bool object_box(const Object *o, const Transform *place, Box3 *out) {
-    Transform t = transform_then(&o->transform, place);
-    if (is_set(o)) return children_box(o, &t, out);
-    if (placed_sphere(o, &t, out)) return true;
-    if (!own_box(o, out)) return false;
-    *out = box3_transform(&t, *out);
-    return true;
-}
-
 static const Object *object_argument(Eval *ev, const Node *node) {
     Value v = eval_node(ev, node->as.list.items[0]);
     if (v.kind == VALUE_OBJECT) return v.as.object;
@@ -151,10 +57,13 @@ Value eval_geometry(Eval *ev, const Node *node) {
 Value eval_extent(Eval *ev, const Node *node) {
     if (!builtin_argument_count(ev, node, 1, 1)) return value_error();
     const Object *object = object_argument(ev, node);
-    Box3 box;
+    const EvalGeometry *g = ev->options->geometry;
     if (!object) return value_error();
-    Transform place = transform_identity();
-    if (!object_box(object, &place, &box)) box = (Box3){vec3_splat(-1e10), vec3_splat(1e10)};
+    if (!g || !g->extent) {
+        diag_error(ev->diags, node->span, "%s() is not available here", keyword_text((Keyword)node->op));
+        return value_error();
+    }
+    Box3 box = g->extent(g->context, object);
     Vec3 p = node->op == KW_min_extent ? box.min : box.max;
     return value_vector(ev, (double[]){p.x, p.y, p.z}, 3);
 }

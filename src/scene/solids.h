@@ -27,6 +27,9 @@ typedef enum SolidKind {
     SOLID_HEIGHT_FIELD,
 } SolidKind;
 
+/* Degrees about x, y and z by which POV-Ray turns every text before all else, against rays that run along its walls. */
+#define SOLID_TEXT_TURN 0.001
+
 typedef enum CurveKind { CURVE_LINEAR, CURVE_QUADRATIC, CURVE_CUBIC, CURVE_BEZIER, CURVE_B_SPLINE } CurveKind;
 
 typedef struct Point2 {

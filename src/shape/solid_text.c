@@ -2,6 +2,7 @@
 #include "shape/box_tree.h"
 #include "shape/font_outline.h"
 #include "shape/solid.h"
+#include "shape/solid_text.h"
 
 enum { PART_CAP = UINT32_MAX };
 
@@ -86,6 +87,17 @@ static Vec3 normal(const void *data, Vec3 p, const SolidTag *tag) {
     Point2 t = outline_tangent(&text->line.glyphs[(size_t)tag->v].outline.items[tag->part], tag->u);
     double side = text->line.filled_on_right ? 1 : -1;
     return vec3_normalize(vec3(side * t.y, -side * t.x, 0));
+}
+
+Box3 solid_text_extent(const void *data) {
+    const TextSolid *text = data;
+    Box3 box = box3_empty();
+    for (size_t i = 0; text && i < text->line.count; i++) {
+        const FontGlyph *glyph = &text->line.glyphs[i];
+        Vec3 low = {glyph->min.x, glyph->min.y, 0}, high = {glyph->max.x, glyph->max.y, text->thickness};
+        box = box3_union(box, (Box3){vec3_add(text->places[i], low), vec3_add(text->places[i], high)});
+    }
+    return box;
 }
 
 typedef struct PointInText {

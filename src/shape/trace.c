@@ -356,3 +356,13 @@ bool shape_trace_inside(ShapeTracer *tracer, const Object *object, Vec3 point) {
     uint64_t budget = MOST_VISITS;
     return core && vec3_is_finite(point) && placed_inside(&placed, point, &budget);
 }
+
+const void *shape_trace_data(ShapeTracer *tracer, const Object *object) {
+    const Core *core = core_of(tracer, object, 0);
+    return core ? core->data : NULL;
+}
+
+Box3 shape_trace_bounds(ShapeTracer *tracer, const Object *object) {
+    const Core *core = core_of(tracer, object, 0);
+    return core ? core->bounds : box3_empty();
+}

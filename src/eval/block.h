@@ -71,11 +71,19 @@ typedef struct BuildContext {
     double image_aspect; /* width / height */
     bool is_program;     /* run for what it prints: an empty scene is no matter */
     const Texture *default_texture;
+    int noise_generator; /* of global_settings: 1, 2, 3; 0: not given */
+    bool old_noise;      /* #version is below 3.5: generator 1 unless one is given */
+    int wave_count;      /* number_of_waves of global_settings; 0: not given */
     void *eval;          /* for the evaluator itself */
 } BuildContext;
 
 /* A copy with all its items that lives as long as `arena`: for what stays a block. */
 const EvalBlock *block_keep(Arena *arena, const EvalBlock *block);
+
+/* The noise generator of functions and patterns that name none. */
+static inline int build_noise_generator(const BuildContext *context) {
+    return context->noise_generator ? context->noise_generator : context->old_noise ? 1 : 2;
+}
 
 /* Makes the value of a block; false after a diagnostic (out is then VALUE_ERROR). */
 typedef bool BlockBuilder(BuildContext *context, const EvalBlock *block, Value *out);

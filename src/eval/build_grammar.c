@@ -255,7 +255,8 @@ bool grammar_read(Reader *reader, const char *block) {
             read_entry(reader, grammar, item);
         } else if (item_as_word(item, &word)) {
             const char *operands = find_operands(grammar, word.text);
-            bool pattern = operands && grammar_has("pattern_types", word.text);
+            bool prefix = strcmp(word.text, "magnet") == 0; /* of `magnet 1 mandel`: the pattern's first word of two */
+            bool pattern = operands && !prefix && grammar_has("pattern_types", word.text);
             if (pattern && patterned)
                 reader_error(reader, word.span, "'%s' is a second pattern", word.text);
             else if (operands)

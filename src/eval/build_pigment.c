@@ -132,6 +132,8 @@ static const Pigment *read_from(Reader *reader, const Pigment *start) {
     reader->value_target = draft;
     reader->on_word = on_word;
     if (!check_order(reader) || !reader_run(reader)) return NULL;
+    if (!draft->pigment.noise_generator)
+        draft->pigment.noise_generator = build_noise_generator(reader->context);
     if (draft->count) {
         draft->pigment.entries = draft->items;
         draft->pigment.entry_count = draft->count;
@@ -141,7 +143,9 @@ static const Pigment *read_from(Reader *reader, const Pigment *start) {
 }
 
 const Pigment *pigment_read(Reader *reader) {
-    return read_from(reader, texture_default(reader->context)->pigment);
+    Pigment start = *texture_default(reader->context)->pigment;
+    if (reader->context->wave_count) start.wave_count = reader->context->wave_count;
+    return read_from(reader, &start);
 }
 
 /* Of function { pattern { … } }: a pigment whose colours nobody asks for. */

@@ -87,6 +87,24 @@ static void read_charset(Reader *reader, const Word *word, void *target) {
         reader_expect_word(reader, word, "ascii, utf8 or sys");
 }
 
+/* Patterns and functions that come after it in the text. */
+static void read_noise_generator(Reader *reader, const Word *word, void *target) {
+    (void)target;
+    int generator;
+    if (!word_arguments(reader, word, 1, 1) || !word_int(reader, word, 0, &generator)) return;
+    if (generator < 1 || generator > 3)
+        reader_error(reader, word->arguments[0].span, "'noise_generator' is 1, 2 or 3");
+    else
+        reader->context->noise_generator = generator;
+}
+
+static void read_wave_count(Reader *reader, const Word *word, void *target) {
+    (void)target;
+    int count;
+    if (!word_arguments(reader, word, 1, 1) || !word_int(reader, word, 0, &count)) return;
+    reader->context->wave_count = int_clamp(count, 1, 10000);
+}
+
 #define FIELD(name) offsetof(SettingsDraft, settings.name)
 #define KNOB(word)                                                                                           \
     { word, WORD_CUSTOM, 0, read_knob, true }
@@ -115,8 +133,8 @@ static const WordRule rules[] = {
     IGNORED("irid_wavelength"),
     {"charset", WORD_CUSTOM, 0, read_charset, false},
     IGNORED("max_intersections"),
-    IGNORED("noise_generator"),
-    IGNORED("number_of_waves"),
+    {"noise_generator", WORD_CUSTOM, 0, read_noise_generator, false},
+    {"number_of_waves", WORD_CUSTOM, 0, read_wave_count, false},
 };
 
 bool settings_read(BuildContext *context, const EvalBlock *block, GlobalSettings *settings) {

@@ -35,12 +35,36 @@ Value external_function(Eval *ev, const Node *node, const TapeExternal *external
     return as_function(ev, node, external->input_count, tape, out, external->output_count);
 }
 
-/* The noises are operations of tapes, which know more of them than that they are functions. */
+/* The usual noise is an operation of tapes, which know more of it than that it is a function. */
 static Value noise_function(Eval *ev, const Node *node) {
     TapeBuilder *tape = tape_builder_create(ev->build.arena, 3);
     TapeRef in[3];
     for (int i = 0; i < 3; i++) in[i] = tape_input(tape, i);
     TapeRef out = tape_ternary(tape, TAPE_POV_NOISE, in[0], in[1], in[2], node->span);
+    return as_function(ev, node, 3, tape, &out, 1);
+}
+
+static TapeExternal *internal_external(Eval *ev, const InternalFunction *f) {
+    TapeExternal *e = arena_new(ev->build.arena, TapeExternal);
+    *e = (TapeExternal){.name = f->name,
+                        .input_count = f->inputs,
+                        .output_count = 1,
+                        .eval = eval_internal,
+                        .data = f,
+                        .hash = hash_begin(0x696E7465)};
+    hash_add_u64(&e->hash, (uint64_t)f->number);
+    return e;
+}
+
+/* f_noise_generator with the generator filled in. */
+static Value other_noise_function(Eval *ev, const Node *node, int generator) {
+    enum { NOISE_GENERATOR = 78 };
+    const TapeExternal *e = internal_external(ev, internal_find(NOISE_GENERATOR));
+    TapeBuilder *tape = tape_builder_create(ev->build.arena, 3);
+    TapeRef in[4], out;
+    for (int i = 0; i < 3; i++) in[i] = tape_input(tape, i);
+    in[3] = tape_constant(tape, generator);
+    tape_call(tape, e, in, &out, node->span);
     return as_function(ev, node, 3, tape, &out, 1);
 }
 
@@ -50,16 +74,10 @@ Value internal_function(Eval *ev, const Node *node, int id) {
         diag_error(ev->diags, node->span, "there is no internal function %d", id);
         return value_error();
     }
-    if (f->eval == internal_noise3d) return noise_function(ev, node);
-    TapeExternal *e = arena_new(ev->build.arena, TapeExternal);
-    *e = (TapeExternal){.name = f->name,
-                        .input_count = f->inputs,
-                        .output_count = 1,
-                        .eval = eval_internal,
-                        .data = f,
-                        .hash = hash_begin(0x696E7465)};
-    hash_add_u64(&e->hash, (uint64_t)f->number);
-    return external_function(ev, node, e);
+    int generator = build_noise_generator(&ev->build);
+    if (f->eval == internal_noise3d && generator == NOISE_CORRECTED) return noise_function(ev, node);
+    if (f->eval == internal_noise3d) return other_noise_function(ev, node, generator);
+    return external_function(ev, node, internal_external(ev, f));
 }
 
 /* ---- objects as functions: inside or not ---- */

@@ -405,11 +405,13 @@ static void run_message(Eval *ev, const Node *node) {
 static void run_version(Eval *ev, const Node *node) {
     double version;
     if (!eval_float(ev, node->as.operand.a, &version)) return;
-    if (version > 3.85)
+    if (version > 3.85) {
         diag_error(ev->diags, node->as.operand.a->span,
                    "the scene asks for version %g of the language, this is 3.8 at most", version);
-    else
+    } else {
         ev->version = version;
+        ev->build.old_noise = version < 3.5;
+    }
     if (node->op == 0) diag_warning(ev->diags, node->span, "#version wants a ';' after its number");
 }
 

@@ -1,4 +1,5 @@
-/* Functions that are not written in the language: POV-Ray's internal ones, as functions.inc numbers them, and those that vts adds. */
+/* Functions that are not written in the language: POV-Ray's internal ones, as functions.inc numbers them, splines, transforms,
+ * objects. */
 #include "eval/eval_function.h"
 
 #include "eval/build_pattern.h"
@@ -139,90 +140,4 @@ Value transform_function(Eval *ev, const Node *node, const Transform *t) {
         out[row] = sum;
     }
     return as_function(ev, node, 3, tape, out, 3);
-}
-
-/* ---- functions that vts adds ---- */
-
-static bool compile_perlin(Eval *ev, TapeBuilder *tape, const Node *call, const TapeRef *a, size_t count,
-                           TapeRef *out) {
-    (void)ev;
-    (void)count;
-    *out = tape_ternary(tape, TAPE_PERLIN, a[0], a[1], a[2], call->span);
-    return true;
-}
-
-static bool constant_argument(Eval *ev, const Node *call, size_t i, double *out) {
-    return eval_float(ev, call->as.apply.list.items[i], out);
-}
-
-/* fbm(noise, x, y, z, octaves, lacunarity, gain) = Σ gainᵏ · noise(lacunarityᵏ · p) */
-static bool compile_fbm(Eval *ev, TapeBuilder *tape, const Node *call, const TapeRef *a, size_t count,
-                        TapeRef *out) {
-    (void)count;
-    const Node *noise = call->as.apply.list.items[0];
-    double octaves, lacunarity, gain;
-    if (noise->kind != NODE_NAME || strcmp(noise->as.name->text, "perlin") != 0) {
-        diag_error(ev->diags, noise->span, "fbm() takes the name of a noise first: perlin");
-        return false;
-    }
-    if (!constant_argument(ev, call, 4, &octaves) || !constant_argument(ev, call, 5, &lacunarity) ||
-        !constant_argument(ev, call, 6, &gain))
-        return false;
-    if (!(octaves >= 1 && octaves <= 64)) {
-        diag_error(ev->diags, call->as.apply.list.items[4]->span, "fbm() takes 1 to 64 octaves, found %g",
-                   octaves);
-        return false;
-    }
-    Span s = call->span;
-    TapeRef sum = tape_constant(tape, 0);
-    double frequency = 1, weight = 1;
-    for (int k = 0; k < (int)octaves; k++, frequency *= lacunarity, weight *= gain) {
-        TapeRef f = tape_constant(tape, frequency);
-        TapeRef value =
-            tape_ternary(tape, TAPE_PERLIN, tape_binary(tape, TAPE_MUL, a[1], f, s),
-                         tape_binary(tape, TAPE_MUL, a[2], f, s), tape_binary(tape, TAPE_MUL, a[3], f, s), s);
-        sum = tape_binary(tape, TAPE_ADD, sum,
-                          tape_binary(tape, TAPE_MUL, tape_constant(tape, weight), value, s), s);
-    }
-    *out = sum;
-    return true;
-}
-
-static const KnownFunction known_functions[] = {
-    {"perlin", 3, false, compile_perlin},
-    {"fbm", 7, true, compile_fbm},
-};
-
-const KnownFunction *known_function_find(Name name) {
-    for (size_t i = 0; i < VTS_ARRAY_COUNT(known_functions); i++)
-        if (strcmp(known_functions[i].name, name->text) == 0) return &known_functions[i];
-    return NULL;
-}
-
-bool known_function_takes(Eval *ev, const Node *call, const KnownFunction *f) {
-    size_t count = call->as.apply.list.count;
-    if (count == f->arguments) return true;
-    eval_argument_count(ev, call->span, arena_printf(&ev->temp, "'%s'", f->name), f->arguments, f->arguments,
-                        count);
-    return false;
-}
-
-/* Called outside of functions: as a tape of constants. */
-Value call_known_function(Eval *ev, const Node *node, bool *known) {
-    const KnownFunction *f = known_function_find(node->as.apply.base->as.name);
-    *known = f != NULL;
-    if (!f) return value_error();
-    const NodeList *list = &node->as.apply.list;
-    if (!known_function_takes(ev, node, f)) return value_error();
-    TapeBuilder *tape = tape_builder_create(&ev->temp, 0);
-    TapeRef arguments[8] = {0}, out;
-    for (size_t i = f->takes_noise ? 1 : 0; i < list->count; i++) {
-        double a;
-        if (!eval_float(ev, list->items[i], &a)) return value_error();
-        arguments[i] = tape_constant(tape, a);
-    }
-    if (!f->compile(ev, tape, node, arguments, list->count, &out)) return value_error();
-    double result;
-    tape_eval_once(tape_finish(tape, &out, 1), NULL, &result);
-    return value_float(result);
 }

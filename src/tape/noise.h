@@ -14,6 +14,15 @@ double noise_perlin_seeded(Vec3 p, uint32_t seed);
 /* Σ gainᵏ · noise(lacunarityᵏ · p), k = 0 … octaves − 1; not normalised. */
 double noise_fbm(Vec3 p, int octaves, double lacunarity, double gain);
 
+/* Worley's cellular noise: the distance to the index-th nearest of the nodes, from 0 (at most WORLEY_NODES - 1). Three nodes
+ * a unit cell on average. */
+enum { WORLEY_NODES = 8 };
+double noise_worley(Vec3 p, int index);
+/* Lewis's sparse convolution: `count` impulses a unit cell (1 to SPARSE_IMPULSES) of weights in [-1, 1], each a raised cosine
+ * of radius 1; divided by the root of `count`, so that the deviation, about 0.35, does not depend on it. */
+enum { SPARSE_IMPULSES = 64 };
+double noise_sparse_convolution(Vec3 p, int count);
+
 /* POV-Ray's own noises, number for number (its noise_generator 2, the default of 3.7, and 1). In [0, 1], period 4096. */
 double noise_pov(Vec3 p);
 double noise_pov_original(Vec3 p);

@@ -1,0 +1,165 @@
+/* Functions that vts adds to POV-Ray's: noises by name, and sums of their octaves. */
+#include "eval/eval_function.h"
+
+#include "tape/noise.h"
+
+#include <string.h>
+
+/* ---- noises that are no operations of tapes ---- */
+
+/* Rounded towards zero and bounded; what is no number counts as 0. */
+static int whole(double a, int most) { return a >= most ? most : a > 0 ? (int)a : 0; }
+
+static void eval_worley(const void *data, const double *in, double *out) {
+    (void)data;
+    out[0] = noise_worley(vec3(in[0], in[1], in[2]), whole(in[3], WORLEY_NODES));
+}
+
+static void eval_sparse(const void *data, const double *in, double *out) {
+    (void)data;
+    out[0] = noise_sparse_convolution(vec3(in[0], in[1], in[2]), whole(in[3], SPARSE_IMPULSES));
+}
+
+static const TapeExternal worley = {
+    .name = "worley", .input_count = 4, .output_count = 1, .eval = eval_worley, .hash = {0x776F726C6579, 1}};
+static const TapeExternal sparse_convolution = {.name = "sparse_convolution",
+                                                .input_count = 4,
+                                                .output_count = 1,
+                                                .eval = eval_sparse,
+                                                .hash = {0x737061727365, 1}};
+
+/* ---- one octave ---- */
+
+typedef TapeRef CompileNoise(TapeBuilder *tape, const TapeRef place[3], Span span);
+
+static TapeRef perlin_octave(TapeBuilder *tape, const TapeRef place[3], Span span) {
+    return tape_ternary(tape, TAPE_PERLIN, place[0], place[1], place[2], span);
+}
+
+static TapeRef call_with(TapeBuilder *tape, const TapeExternal *external, const TapeRef place[3], double last,
+                         Span span) {
+    const TapeRef in[4] = {place[0], place[1], place[2], tape_constant(tape, last)};
+    TapeRef out;
+    tape_call(tape, external, in, &out, span);
+    return out;
+}
+
+/* In fbm() the distance to the nearest node, and three impulses a cell. */
+static TapeRef worley_octave(TapeBuilder *tape, const TapeRef place[3], Span span) {
+    return call_with(tape, &worley, place, 0, span);
+}
+
+static TapeRef sparse_octave(TapeBuilder *tape, const TapeRef place[3], Span span) {
+    return call_with(tape, &sparse_convolution, place, 3, span);
+}
+
+static const struct {
+    const char *name;
+    CompileNoise *octave;
+} noises[] = {{"perlin", perlin_octave}, {"worley", worley_octave}, {"sparse_convolution", sparse_octave}};
+
+/* ---- calls ---- */
+
+static bool compile_perlin(Eval *ev, TapeBuilder *tape, const Node *call, const TapeRef *a, size_t count,
+                           TapeRef *out) {
+    (void)ev;
+    (void)count;
+    *out = perlin_octave(tape, a, call->span);
+    return true;
+}
+
+static bool compile_worley(Eval *ev, TapeBuilder *tape, const Node *call, const TapeRef *a, size_t count,
+                           TapeRef *out) {
+    (void)ev;
+    (void)count;
+    tape_call(tape, &worley, a, out, call->span);
+    return true;
+}
+
+static bool compile_sparse(Eval *ev, TapeBuilder *tape, const Node *call, const TapeRef *a, size_t count,
+                           TapeRef *out) {
+    (void)ev;
+    (void)count;
+    tape_call(tape, &sparse_convolution, a, out, call->span);
+    return true;
+}
+
+static CompileNoise *find_noise(Eval *ev, const Node *name) {
+    for (size_t i = 0; name->kind == NODE_NAME && i < VTS_ARRAY_COUNT(noises); i++)
+        if (strcmp(noises[i].name, name->as.name->text) == 0) return noises[i].octave;
+    diag_error(ev->diags, name->span,
+               "fbm() takes the name of a noise first: perlin, sparse_convolution or worley");
+    return NULL;
+}
+
+/* Σ gainᵏ · noise(lacunarityᵏ · p), k = 0 … octaves - 1, one after the other. a: place, octaves, lacunarity, gain. */
+static TapeRef sum_octaves(TapeBuilder *tape, CompileNoise *noise, const TapeRef *a, int octaves, Span span) {
+    TapeRef sum = tape_constant(tape, 0), frequency = tape_constant(tape, 1), weight = frequency;
+    for (int k = 0; k < octaves; k++) {
+        TapeRef place[3];
+        for (int i = 0; i < 3; i++) place[i] = tape_binary(tape, TAPE_MUL, a[i], frequency, span);
+        TapeRef term = tape_binary(tape, TAPE_MUL, weight, noise(tape, place, span), span);
+        sum = k ? tape_binary(tape, TAPE_ADD, sum, term, span) : term;
+        frequency = tape_binary(tape, TAPE_MUL, frequency, a[4], span);
+        weight = tape_binary(tape, TAPE_MUL, weight, a[5], span);
+    }
+    return sum;
+}
+
+/* fbm(noise, x, y, z, octaves, lacunarity, gain); the octaves are counted when the function is defined. */
+static bool compile_fbm(Eval *ev, TapeBuilder *tape, const Node *call, const TapeRef *a, size_t count,
+                        TapeRef *out) {
+    enum { OCTAVES = 4, MOST = 64 };
+    (void)count;
+    double octaves = 0;
+    CompileNoise *noise = find_noise(ev, call->as.apply.list.items[0]);
+    if (!noise) return false;
+    if (!tape_is_constant(tape, a[OCTAVES], &octaves) || !(octaves >= 1 && octaves <= MOST)) {
+        diag_error(ev->diags, call->as.apply.list.items[OCTAVES]->span,
+                   "fbm() takes 1 to 64 octaves, a number that is known when the function is defined");
+        return false;
+    }
+    *out = sum_octaves(tape, noise, a + 1, (int)octaves, call->span);
+    return true;
+}
+
+static const KnownFunction known_functions[] = {
+    {"perlin", 3, false, compile_perlin},
+    {"worley", 4, false, compile_worley},
+    {"sparse_convolution", 4, false, compile_sparse},
+    {"fbm", 7, true, compile_fbm},
+};
+
+const KnownFunction *known_function_find(Name name) {
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(known_functions); i++)
+        if (strcmp(known_functions[i].name, name->text) == 0) return &known_functions[i];
+    return NULL;
+}
+
+bool known_function_takes(Eval *ev, const Node *call, const KnownFunction *f) {
+    size_t count = call->as.apply.list.count;
+    if (count == f->arguments) return true;
+    eval_argument_count(ev, call->span, arena_printf(&ev->temp, "'%s'", f->name), f->arguments, f->arguments,
+                        count);
+    return false;
+}
+
+/* Called outside of functions: as a tape of constants. */
+Value call_known_function(Eval *ev, const Node *node, bool *known) {
+    const KnownFunction *f = known_function_find(node->as.apply.base->as.name);
+    *known = f != NULL;
+    if (!f) return value_error();
+    const NodeList *list = &node->as.apply.list;
+    if (!known_function_takes(ev, node, f)) return value_error();
+    TapeBuilder *tape = tape_builder_create(&ev->temp, 0);
+    TapeRef arguments[8] = {0}, out;
+    for (size_t i = f->takes_noise ? 1 : 0; i < list->count; i++) {
+        double a;
+        if (!eval_float(ev, list->items[i], &a)) return value_error();
+        arguments[i] = tape_constant(tape, a);
+    }
+    if (!f->compile(ev, tape, node, arguments, list->count, &out)) return value_error();
+    double result;
+    tape_eval_once(tape_finish(tape, &out, 1), NULL, &result);
+    return value_float(result);
+}

@@ -8,7 +8,7 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 src=$here/../src out=${1:-$here}
 
 keywords() { grep -oE "KEYWORD\($1, [a-z0-9_]+" "$src/lexer/keywords.def" | sed 's/.* //' | sort -u; }
-known_functions() { sed -n '/known_functions\[\] = {/,/^};/s/^ *{"\([a-z0-9_]*\)".*/\1/p' "$src/eval/eval_internal.c"; }
+known_functions() { sed -n '/known_functions\[\] = {/,/^};/s/^ *{"\([a-z0-9_]*\)".*/\1/p' "$src/eval/eval_noise.c"; }
 contexts() { sed -n 's/^CONTEXT_BLOCK(\([a-z0-9_]*\), "\(.*\)")$/\1 \2/p' "$src/parser/context.def"; }
 joined() { paste -sd "$1" -; }
 

@@ -114,9 +114,14 @@ static bool compile_fbm(Eval *ev, TapeBuilder *tape, const Node *call, const Tap
     double octaves = 0;
     CompileNoise *noise = find_noise(ev, call->as.apply.list.items[0]);
     if (!noise) return false;
-    if (!tape_is_constant(tape, a[OCTAVES], &octaves) || !(octaves >= 1 && octaves <= MOST)) {
-        diag_error(ev->diags, call->as.apply.list.items[OCTAVES]->span,
-                   "fbm() takes 1 to 64 octaves, a number that is known when the function is defined");
+    Span span = call->as.apply.list.items[OCTAVES]->span;
+    if (!tape_is_constant(tape, a[OCTAVES], &octaves)) {
+        diag_error(ev->diags, span,
+                   "the octaves of fbm() are counted when the function is defined: a number");
+        return false;
+    }
+    if (!(octaves >= 1 && octaves <= MOST)) {
+        diag_error(ev->diags, span, "fbm() takes 1 to %d octaves, found %g", MOST, octaves);
         return false;
     }
     *out = sum_octaves(tape, noise, a + 1, (int)octaves, call->span);

@@ -197,7 +197,18 @@ static void read_picture(Reader *reader, const Word *word, void *target) {
 
 #define CUSTOM(word, handler)                                                                                \
     { word, WORD_CUSTOM, 0, handler, false }
+/* Four corners of the texture; the points may follow them. */
+static void read_patch_uvs(Reader *reader, const Word *word, void *target) {
+    for (size_t i = 0; i < 4; i++) {
+        Vec3 corner;
+        if (!word_vector(reader, word, i, &corner)) return;
+    }
+    push_from(target, word, 4);
+}
+
 static const WordRule rules[] = {
+    CUSTOM("uv_vectors", read_patch_uvs),
+    CUSTOM("xyz", read_row),
     CUSTOM("linear_spline", read_curve),
     CUSTOM("quadratic_spline", read_curve),
     CUSTOM("cubic_spline", read_curve),

@@ -22,6 +22,34 @@ bool build_quadric(BuildContext *context, const EvalBlock *block, Value *out) {
            rare_float(&draft, "the constant", &s->as.quadric.constant) && rare_end(&draft, out);
 }
 
+/* The place of x^i y^j z^k among the coefficients of this order, which fall lexicographically. */
+static size_t polynomial_term(int order, const double *power) {
+    size_t at = 0;
+    for (int i = order; i >= 0; i--)
+        for (int j = order - i; j >= 0; j--)
+            for (int k = order - i - j; k >= 0; k--, at++)
+                if (i == power[0] && j == power[1] && k == power[2]) return at;
+    return at;
+}
+
+/* polynomial { order, xyz(i, j, k): coefficient, … } */
+static bool read_terms(RareDraft *draft, int order, double *coefficients, size_t count) {
+    while (rare_numbers_left(draft)) {
+        double term[4];
+        for (int i = 0; i < 4; i++)
+            if (!rare_float(draft, "xyz(i, j, k): coefficient", &term[i])) return false;
+        size_t at = polynomial_term(order, term);
+        if (at == count) {
+            reader_error(draft->reader, draft->reader->block->word_span,
+                         "'%s' of order %d has no term xyz(%g, %g, %g)", draft->reader->block->word->text,
+                         order, term[0], term[1], term[2]);
+            return false;
+        }
+        coefficients[at] = term[3];
+    }
+    return true;
+}
+
 /* poly, cubic, quartic: one vector, or as many numbers. */
 bool build_polynomial(BuildContext *context, const EvalBlock *block, Value *out) {
     BEGIN(.solid.kind = SOLID_POLYNOMIAL);
@@ -34,6 +62,10 @@ bool build_polynomial(BuildContext *context, const EvalBlock *block, Value *out)
     }
     size_t wanted = solid_polynomial_terms((int)order);
     double *c = arena_new_array(context->arena, double, wanted);
+    if (strcmp(word, "polynomial") == 0) {
+        if (!read_terms(&draft, (int)order, c, wanted)) return false;
+        count = wanted;
+    }
     while (rare_numbers_left(&draft) && count < wanted) {
         const Value *v = &draft.row.items[draft.next].value;
         size_t size = v->kind == VALUE_VECTOR ? v->size : 1;

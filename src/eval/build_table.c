@@ -39,7 +39,7 @@ static const struct BlockWord {
     {"parametric", build_parametric},
     {"poly", build_polynomial},
     {"polygon", build_polygon},
-    {"polynomial", build_unmodelled},
+    {"polynomial", build_polynomial},
     {"prism", build_prism},
     {"quadric", build_quadric},
     {"quartic", build_polynomial},

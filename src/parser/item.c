@@ -43,6 +43,21 @@ static bool components_make_colors(const Parser *p) {
     return true;
 }
 
+/* `pwr(2, 0)` of a julia_fractal and `xyz(1, 0, 2): 3` of a polynomial */
+static bool takes_brackets(Parser *p, const Token *word) {
+    bool term = !word->keyword && p->block && strcmp(p->block->text, "polynomial") == 0;
+    return (term || word->keyword == KW_pwr) && parser_peek(p)->kind == '(';
+}
+
+static Node *bracketed_arguments(Parser *p, Node *word) {
+    NodeList *list = &word->as.word.list;
+    if (!parser_arguments(p, list)) return NULL;
+    if (!parser_accept(p, ':')) return word;
+    Node *e = parser_expression(p);
+    if (e) *list_push(p->arena, list) = e;
+    return e ? word : NULL;
+}
+
 /* word = keyword { [","] expression } [body] */
 static Node *word_item(Parser *p) {
     Token word = parser_take(p);
@@ -51,8 +66,13 @@ static Node *word_item(Parser *p) {
     n->as.word.word_span = word.span;
     NodeList *list = &n->as.word.list;
     bool comma = false;
-    while (!p->failed &&
-           (argument_follows(p, list, comma) || (list->count == 0 && parser_begins_component(p) && components_make_colors(p)))) {
+    if (takes_brackets(p, &word)) {
+        n = bracketed_arguments(p, n);
+        if (n) n->span = span_join(word.span, p->last.span);
+        return n;
+    }
+    while (!p->failed && (argument_follows(p, list, comma) ||
+                          (list->count == 0 && parser_begins_component(p) && components_make_colors(p)))) {
         Node *e = parser_begins_component(p) ? parser_color(p) : parser_expression(p);
         if (!e) return NULL;
         *list_push(p->arena, list) = e;

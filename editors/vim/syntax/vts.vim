@@ -40,20 +40,20 @@ syn keyword vtsWord nearest_count no_bump_scale no_image no_radiosity no_reflect
 syn keyword vtsWord normal_indices normal_map normal_vectors number_of_sides number_of_tiles number_of_waves object
 syn keyword vtsWord octaves offset omega omnimax once onion open orient orientation orthographic ovus panoramic
 syn keyword vtsWord parallel parametric pass_through pattern pavement perspective pgm phong phong_size photons pigment
-syn keyword vtsWord pigment_map pigment_pattern planar plane png point_at poly poly_wave polygon polynomial pot ppm
-syn keyword vtsWord precision precompute premultiplied pretrace_end pretrace_start prism projected_through pwr
-syn keyword vtsWord quadratic_spline quadric quartic quaternion quick_color quick_colour quilted radial radiosity
-syn keyword vtsWord radius rainbow ramp_wave ratio reciprocal recursion_limit red reflection reflection_exponent
-syn keyword vtsWord refraction repeat right ripples rotate roughness samples save_file scale scallop_wave scattering
-syn keyword vtsWord shadowless sine_wave sint16be sint16le sint32be sint32le sint8 size sky sky_sphere slice slope
-syn keyword vtsWord slope_map smooth smooth_triangle solid sor spacing specular sphere sphere_sweep spherical spiral1
-syn keyword vtsWord spiral2 spline split_union spotlight spotted square strength sturm subsurface superellipsoid sys
-syn keyword vtsWord target text texture texture_list texture_map tga thickness threshold tiff tightness tile2 tiles
-syn keyword vtsWord tiling tolerance toroidal torus transform translate translucency transmit triangle triangle_wave
+syn keyword vtsWord pigment_map pigment_pattern planar plane png point_at poly poly_wave polygon pot ppm precision
+syn keyword vtsWord precompute premultiplied pretrace_end pretrace_start prism projected_through pwr quadratic_spline
+syn keyword vtsWord quadric quartic quaternion quick_color quick_colour quilted radial radiosity radius rainbow
+syn keyword vtsWord ramp_wave ratio reciprocal recursion_limit red reflection reflection_exponent refraction repeat
+syn keyword vtsWord right ripples rotate roughness samples save_file scale scallop_wave scattering shadowless sine_wave
+syn keyword vtsWord sint16be sint16le sint32be sint32le sint8 size sky sky_sphere slice slope slope_map smooth
+syn keyword vtsWord smooth_triangle solid sor spacing specular sphere sphere_sweep spherical spiral1 spiral2 spline
+syn keyword vtsWord split_union spotlight spotted square strength sturm subsurface superellipsoid sys target text
+syn keyword vtsWord texture texture_list texture_map tga thickness threshold tiff tightness tile2 tiles tiling
+syn keyword vtsWord tolerance toroidal torus transform translate translucency transmit triangle triangle_wave
 syn keyword vtsWord triangular ttf turb_depth type u_steps uint16be uint16le uint8 ultra_wide_angle union up use_alpha
 syn keyword vtsWord use_color use_colour use_index utf8 uv_indices uv_mapping uv_vectors v_steps variance
 syn keyword vtsWord vertex_vectors warp water_level waves width wood wrinkles
-syn match vtsWord "\<\%(count\|density\|global_settings\|isosurface\|jitter\|light_source\|phase\|turbulence\)\>" display
+syn match vtsWord "\<\%(count\|density\|global_settings\|isosurface\|jitter\|light_source\|phase\|polynomial\|turbulence\)\>" display
 
 syn match vtsNumber "\%(\h\w*\)\@<!\%(\d\+\.\=\d*\|\.\d\+\)\%([eE][-+]\=\d\+\)\=" display
 syn match vtsMember "\.\%([xyztuv]\|red\|green\|blue\|filter\|transmit\|gray\)\>" display
@@ -138,6 +138,9 @@ hi def link vtsItem_global_settings vtsItem
 syn region vtsIn_light_source matchgroup=vtsBlock start="\<light_source\>\s*{" matchgroup=vtsBlock end="}" fold contains=TOP
 syn match vtsItem_light_source "\<\%(goniometric\|ies\)\>\%(\s*{\)\@!" contained containedin=vtsIn_light_source
 hi def link vtsItem_light_source vtsItem
+syn region vtsIn_polynomial matchgroup=vtsBlock start="\<polynomial\>\s*{" matchgroup=vtsBlock end="}" fold contains=TOP
+syn match vtsItem_polynomial "\<\%(xyz\)\>\%(\s*{\)\@!" contained containedin=vtsIn_polynomial
+hi def link vtsItem_polynomial vtsItem
 syn region vtsIn_height_vectors matchgroup=vtsBlock start="\<height_vectors\>\s*{" matchgroup=vtsBlock end="}" fold contains=TOP
 syn region vtsIn_w_vectors matchgroup=vtsBlock start="\<w_vectors\>\s*{" matchgroup=vtsBlock end="}" fold contains=TOP
 

@@ -31,13 +31,13 @@ const SolidOps *solid_ops(const Object *object) {
     case OBJECT_DISC:
     case OBJECT_TORUS: return &solid_plain_ops;
     case OBJECT_TRIANGLES: return &solid_mesh_ops;
+    case OBJECT_SURFACE: return &solid_surface_ops;
     case OBJECT_SOLID: return rare[object->as.solid->kind];
     case OBJECT_UNION:
     case OBJECT_INTERSECTION:
     case OBJECT_DIFFERENCE:
     case OBJECT_MERGE:
     case OBJECT_PARTICLES:
-    case OBJECT_SURFACE:
     case OBJECT_TEXEL:
     case OBJECT_UNMODELLED: break;
     }

@@ -84,7 +84,20 @@ Array *array_copy(Eval *ev, const Array *from) {
     for (size_t i = 0; i < from->count && !ev->stopped; i++)
         if (from->items[i].set) slot_set(ev, &to->items[i], &from->items[i].value);
     share_class(to, from->class ? arena_copy(ev->parse, from->class, sizeof *from->class) : NULL);
+    to->key_capacity = from->count;
+    if (from->keys) to->keys = arena_copy(ev->parse, from->keys, from->count * sizeof *to->keys);
     return to;
+}
+
+void array_grow(Eval *ev, Array *a) {
+    struct {
+        Slot *items;
+        size_t count, capacity;
+    } list = {a->items, a->count, a->capacity};
+    *list_push(ev->parse, &list) = (Slot){0};
+    a->items = list.items;
+    a->count = list.count;
+    a->capacity = list.capacity;
 }
 
 Slot *array_slot(Eval *ev, const Array *array, double index, Span span) {
@@ -159,4 +172,44 @@ Value eval_array(Eval *ev, const Node *node) {
         if (errors == ev->diags->failures && rank) check_filled(ev, a, sink.next, node->span);
     }
     return (Value){.kind = VALUE_ARRAY, .as.array = a};
+}
+
+/* ---- dictionaries ---- */
+
+Slot *dictionary_find(const Array *d, Name key) {
+    for (size_t i = 0; i < d->count; i++)
+        if (d->keys[i] == key) return &d->items[i];
+    return NULL;
+}
+
+Slot *dictionary_entry(Eval *ev, Array *d, Name key) {
+    Slot *known = dictionary_find(d, key);
+    if (known) return known;
+    if (!array_take(ev, 1, ev->at)) return NULL;
+    struct {
+        Name *items;
+        size_t count, capacity;
+    } keys = {d->keys, d->count, d->key_capacity};
+    *list_push(ev->parse, &keys) = key;
+    d->keys = keys.items;
+    d->key_capacity = keys.capacity;
+    array_grow(ev, d);
+    return &d->items[d->count - 1];
+}
+
+Name dictionary_key(Eval *ev, const Node *index) {
+    const char *text;
+    size_t length;
+    return eval_string(ev, index, &text, &length) ? intern(ev->names, text, length) : NULL;
+}
+
+Value eval_dictionary(Eval *ev, const Node *node) {
+    Array *d = arena_new(ev->parse, Array);
+    for (size_t i = 0; i + 1 < node->as.list.count; i += 2) {
+        const Node *key = node->as.list.items[i];
+        Name name = key->kind == NODE_NAME ? key->as.name : dictionary_key(ev, key);
+        Value v = eval_node(ev, node->as.list.items[i + 1]);
+        if (name) slot_set(ev, dictionary_entry(ev, d, name), &v);
+    }
+    return (Value){.kind = VALUE_DICTIONARY, .as.array = d};
 }

@@ -37,33 +37,50 @@ static Value eval_vector(Eval *ev, const Node *node) {
     return ok ? value_vector(ev, out, size) : value_error();
 }
 
+/* Element `index` of an array, entry `index` of a dictionary. NULL after a report. */
+static Slot *element_slot(Eval *ev, const Value *base, Span base_span, const Node *index, Span span) {
+    if (base->kind == VALUE_DICTIONARY) {
+        Name key = dictionary_key(ev, index);
+        return key ? dictionary_entry(ev, base->as.array, key) : NULL;
+    }
+    double number;
+    if (!eval_float(ev, index, &number) || base->kind == VALUE_ERROR) return NULL;
+    if (base->kind == VALUE_ARRAY) return array_slot(ev, base->as.array, number, span);
+    eval_fail(ev, base_span, "expected an array before '[', found %s", value_kind_text(base->kind));
+    return NULL;
+}
+
+static Value element_value(Eval *ev, const Slot *slot, ValueKind of, Span span) {
+    if (slot && slot->set) return slot_get(ev, slot);
+    if (!slot) return value_error();
+    return eval_fail(ev, span, of == VALUE_ARRAY ? "this element of the array was never set"
+                                                 : "the dictionary has no entry of this name");
+}
+
 static Value eval_index(Eval *ev, const Node *node, bool whole) {
     const Node *base = node->as.apply.base;
-    Value v;
     VarBinding *b = base->kind == NODE_NAME ? scope_find(ev, base->as.name) : NULL;
+    Value v;
     if (b && b->slot->set && b->slot->value.kind == VALUE_ARRAY)
         v = b->slot->value;
     else
         v = base->kind == NODE_INDEX ? eval_index(ev, base, false) : eval_node(ev, base);
-    double index;
-    if (!eval_float(ev, node->as.apply.list.items[0], &index) || v.kind == VALUE_ERROR) return value_error();
-    if (v.kind != VALUE_ARRAY) {
-        diag_error(ev->diags, base->span, "expected an array before '[', found %s", value_kind_text(v.kind));
-        return value_error();
-    }
-    Slot *slot = array_slot(ev, v.as.array, index, node->span);
-    if (!slot) return value_error();
-    if (!slot->set) {
-        diag_error(ev->diags, node->span, "this element of the array was never set");
-        return value_error();
-    }
-    if (whole && array_is_partial(ev, v.as.array, &slot->value, node->span)) return value_error();
-    return slot_get(ev, slot);
+    Slot *slot = element_slot(ev, &v, base->span, node->as.apply.list.items[0], node->span);
+    if (whole && slot && array_is_partial(ev, v.as.array, &slot->value, node->span)) return value_error();
+    return element_value(ev, slot, v.kind, node->span);
 }
 
 static Value eval_dot(Eval *ev, const Node *node) {
     Value v = eval_node(ev, node->as.operand.a);
     if (v.kind == VALUE_ERROR) return v;
+    if (v.kind == VALUE_DICTIONARY)
+        return element_value(ev, dictionary_entry(ev, v.as.array, node->as.operand.b->as.name), v.kind,
+                             node->span);
+    if (node->op == DOT_OTHER)
+        return eval_fail(ev, node->as.operand.b->span,
+                         "expected a component after '.', found '%s': they are x y z t, u v, red green blue "
+                         "filter transmit gray",
+                         node->as.operand.b->as.name->text);
     if (!value_is_numeric(&v)) {
         diag_error(ev->diags, node->span, "%s has no components", value_kind_text(v.kind));
         return v = value_error();
@@ -97,6 +114,7 @@ Value eval_compound(Eval *ev, const Node *node) {
     case NODE_BUILTIN: return eval_builtin(ev, node);
     case NODE_COLOR: return eval_color(ev, node);
     case NODE_ARRAY: return eval_array(ev, node);
+    case NODE_DICTIONARY: return eval_dictionary(ev, node);
     case NODE_FUNCTION: return eval_function(ev, node);
     case NODE_BLOCK: return eval_block(ev, node, NULL);
     default: return value_error();
@@ -118,20 +136,19 @@ Slot *eval_element(Eval *ev, const Node *target, Array **array, bool *failed) {
         VarBinding *b = scope_find(ev, target->as.name);
         return b ? b->slot : NULL;
     }
-    if (target->kind != NODE_INDEX) return NULL;
-    Slot *base = eval_element(ev, target->as.apply.base, array, failed);
-    double index;
-    if (!eval_float(ev, target->as.apply.list.items[0], &index)) *failed = true;
+    bool dot = target->kind == NODE_DOT;
+    if (!dot && target->kind != NODE_INDEX) return NULL;
+    const Node *base_node = dot ? target->as.operand.a : target->as.apply.base;
+    Slot *base = eval_element(ev, base_node, array, failed), *slot = NULL;
     if (*failed || !base || !base->set) return NULL;
-    if (base->value.kind != VALUE_ARRAY) {
-        *failed = true;
-        if (base->value.kind != VALUE_ERROR)
-            diag_error(ev->diags, target->as.apply.base->span, "expected an array before '[', found %s",
-                       value_kind_text(base->value.kind));
-        return NULL;
-    }
+    if (!dot)
+        slot = element_slot(ev, &base->value, base_node->span, target->as.apply.list.items[0], target->span);
+    else if (base->value.kind == VALUE_DICTIONARY)
+        slot = dictionary_entry(ev, base->value.as.array, target->as.operand.b->as.name);
+    else
+        eval_fail(ev, base_node->span, "expected a dictionary before '.', found %s",
+                  value_kind_text(base->value.kind));
     *array = base->value.as.array;
-    Slot *slot = array_slot(ev, *array, index, target->span);
     *failed = slot == NULL;
     return slot;
 }

@@ -12,6 +12,7 @@ void run_define_macro(Eval *ev, const Node *node) {
     m->name = node->as.macro.name;
     m->name_span = node->as.macro.name_span;
     m->parameter_count = node->as.macro.count;
+    m->required = node->as.macro.required;
     m->parameters = arena_copy(ev->parse, node->as.macro.parameters,
                                m->parameter_count * sizeof(Name)); /* the tree may be a passing one */
     m->body = node->as.macro.body;
@@ -203,7 +204,7 @@ static bool pass(Eval *ev, const Node *argument, Passed *out) {
 }
 
 static bool count_matches(Eval *ev, const Macro *m, size_t given, Span span) {
-    if (given == m->parameter_count) return true;
+    if (given >= m->required && given <= m->parameter_count) return true;
     const char *what = arena_printf(&ev->temp, "macro '%s'", m->name->text);
     Diagnostic *d = eval_argument_count(ev, span, what, m->parameter_count, m->parameter_count, given);
     diag_note(ev->diags, d, m->name_span, "'%s' is defined here", m->name->text);
@@ -231,6 +232,7 @@ bool macro_enter(Eval *ev, const Macro *m, const NodeList *arguments, Span span,
     scope_enter(ev, scope);
     for (size_t i = 0; i < arguments->count; i++)
         scope_bind(ev, m->parameters[i], passed[i].reference, &passed[i].value);
+    for (size_t i = arguments->count; i < m->parameter_count; i++) scope_bind(ev, m->parameters[i], NULL, NULL);
     ((Macro *)(uintptr_t)m)->last_call = span;
     *record = (CallRecord){.outer = ev->calls, .macro = m->name, .span = span};
     ev->calls = record;

@@ -337,10 +337,7 @@ void run_assign(Eval *ev, const Node *node) {
     if (target->kind == NODE_NAME) {
         if (!scope_may_declare(ev, target->as.name, is_float ? VALUE_FLOAT : v.kind, target->span)) return;
         Slot *slot = scope_declare(ev, target->as.name, node->as.declare.local);
-        if (slot->set && slot->value.kind == VALUE_FUNCTION)
-            eval_fail(ev, target->span, "'%s' is a function: #undef comes before another declaration",
-                      target->as.name->text);
-        else if (is_float)
+        if (is_float)
             slot_set_float(ev, slot, number);
         else
             slot_set(ev, slot, &v);
@@ -352,7 +349,8 @@ void run_assign(Eval *ev, const Node *node) {
     Slot *slot = eval_element(ev, target, &array, &failed);
     if (!slot && !failed) {
         const Node *base = target;
-        while (base->kind == NODE_INDEX) base = base->as.apply.base;
+        while (base->kind != NODE_NAME)
+            base = base->kind == NODE_INDEX ? base->as.apply.base : base->as.operand.a;
         eval_undeclared(ev, base->as.name, base->span);
     }
     if (slot && may_set_element(ev, array, slot, &v, source->span)) slot_set(ev, slot, &v);

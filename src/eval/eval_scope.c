@@ -98,6 +98,8 @@ Slot *scope_bind(Eval *ev, Name name, Slot *reference, const Value *value) {
     uint64_t stamp = ev->name_stamp;
     if (reference) {
         b->slot = reference;
+    } else if (!value) {
+        slot_clear(ev, b->slot);
     } else if (value->kind == VALUE_FLOAT) {
         b->own.value = *value;
         b->own.set = true;

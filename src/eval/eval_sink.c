@@ -37,22 +37,10 @@ static void add_item(Eval *ev, Sink *sink, Value v, Span span) {
         *list_push(&ev->blocks, sink->items) = (BlockItem){.kind = ITEM_VALUE, .span = span, .value = v};
 }
 
-/* An array without a size grows as it is filled. */
-static void grow_array(Eval *ev, Array *a) {
-    struct {
-        Slot *items;
-        size_t count, capacity;
-    } list = {a->items, a->count, a->capacity};
-    *list_push(ev->parse, &list) = (Slot){0};
-    a->items = list.items;
-    a->count = list.count;
-    a->capacity = list.capacity;
-}
-
 static void add_element(Eval *ev, Sink *sink, Value v, Span span) {
     if (sink->array->growing && sink->next == sink->array->count) {
         if (!array_take(ev, 1, span)) return;
-        grow_array(ev, sink->array);
+        array_grow(ev, sink->array);
     }
     if (sink->next >= sink->array->count && !sink->filled) {
         diag_error(ev->diags, span, "one element too many for an array of %zu", sink->array->count);

@@ -43,7 +43,7 @@ struct Macro {
     Name name;
     Span name_span; /* in its definition */
     const Name *parameters;
-    size_t parameter_count;
+    size_t parameter_count, required;
     Body body;
     bool whole; /* brackets balance and no operator dangles */
     /* Whether a call stands for one expression and how tightly it binds; found on first need, and again when `stamp` is old. */
@@ -100,6 +100,8 @@ struct Array {
     bool rows;    /* its elements are arrays themselves: more than one dimension */
     ValueKind
         *class; /* what all elements are, VALUE_ERROR as long as there are none; rows share it; NULL: mixed */
+    Name *keys;   /* of a dictionary: one for each element */
+    size_t key_capacity;
 };
 
 enum { SPLINE_LINEAR, SPLINE_QUADRATIC, SPLINE_CUBIC, SPLINE_NATURAL };
@@ -239,7 +241,7 @@ void scope_leave(Eval *ev, Scope *scope);
 bool scope_may_declare(Eval *ev, Name name, ValueKind kind, Span span);
 /* The slot that #declare (local: #local) of a name assigns, made if need be. */
 Slot *scope_declare(Eval *ev, Name name, bool local);
-/* A parameter of the innermost scope: bound to the caller's slot, or (NULL) to one of its own with this value. */
+/* A parameter of the innermost scope: bound to the caller's slot, or (NULL) to one of its own with this value (NULL: none yet). */
 Slot *scope_bind(Eval *ev, Name name, Slot *reference, const Value *value);
 void scope_undef(Eval *ev, Name name);
 NameClass scope_classify(const Eval *ev, Name name, const Macro **macro);
@@ -309,6 +311,15 @@ Array *array_copy(Eval *ev, const Array *from);
 /* Counts elements that are about to be made; false when the limit is reached (reported; the program stops). */
 bool array_take(Eval *ev, uint64_t count, Span span);
 Slot *array_slot(Eval *ev, const Array *array, double index, Span span);
+/* One more element, not set. */
+void array_grow(Eval *ev, Array *array);
+Value eval_dictionary(Eval *ev, const Node *node);
+/* The entry of a dictionary; NULL when there is none. */
+Slot *dictionary_find(const Array *dictionary, Name key);
+/* The same, made (but not set) if need be. */
+Slot *dictionary_entry(Eval *ev, Array *dictionary, Name key);
+/* The key that an index in [ ] names; NULL after a report. */
+Name dictionary_key(Eval *ev, const Node *index);
 
 /* ---- eval_run.c ---- */
 Flow run_body(Eval *ev, const Body *body, Sink *sink);

@@ -11,6 +11,7 @@ const char *value_kind_text(ValueKind kind) {
         [VALUE_COLOR] = "a colour",
         [VALUE_STRING] = "a string",
         [VALUE_ARRAY] = "an array",
+        [VALUE_DICTIONARY] = "a dictionary",
         [VALUE_FUNCTION] = "a function",
         [VALUE_SPLINE] = "a spline",
         [VALUE_TRANSFORM] = "a transform",
@@ -197,7 +198,7 @@ void slot_set(Eval *ev, Slot *slot, const Value *value) {
         memcpy(text, v.as.string.text, v.as.string.length);
         text[v.as.string.length] = '\0';
         v.as.string.text = text;
-    } else if (v.kind == VALUE_ARRAY) {
+    } else if (v.kind == VALUE_ARRAY || v.kind == VALUE_DICTIONARY) {
         v.as.array = array_copy(ev, v.as.array);
         if (!v.as.array) v = value_error();
     }

@@ -13,6 +13,7 @@ typedef enum ValueKind {
     VALUE_COLOR,  /* 5 components: red, green, blue, filter, transmit */
     VALUE_STRING,
     VALUE_ARRAY,
+    VALUE_DICTIONARY, /* as.array, with keys */
     VALUE_FUNCTION,
     VALUE_SPLINE,
     VALUE_TRANSFORM,

@@ -15,14 +15,15 @@ typedef enum NodeKind {
     NODE_CONSTANT,  /* x, pi, clock …: op is the Keyword */
     NODE_VECTOR,    /* list */
     NODE_INDEX,     /* base [list[0]] */
-    NODE_DOT,       /* base . op (DotComponent) */
+    NODE_DOT,       /* a . op (DotComponent), b: the word as a NODE_NAME, for dictionaries */
     NODE_UNARY,     /* op: '-' '+' '!' */
     NODE_BINARY,    /* op: character or TokenKind of the operator */
     NODE_CONDITION, /* a ? b : c */
     NODE_CALL,      /* base ( list ): macro, function, spline; decided when it runs */
     NODE_BUILTIN,   /* op: Keyword; list */
     NODE_COLOR,     /* colour expression */
-    NODE_ARRAY,     /* array [list]… { body } */
+    NODE_ARRAY,     /* array [list]… { body }; op: mixed */
+    NODE_DICTIONARY, /* list: key, value, key, value … */
     NODE_FUNCTION,  /* function ( names ) { list } or { block } */
     NODE_BLOCK,     /* word { body } */
     /* what only a body may hold */
@@ -48,7 +49,7 @@ typedef enum NodeKind {
     NODE_EMPTY, /* a stray ; or , */
 } NodeKind;
 
-typedef enum DotComponent { DOT_X, DOT_Y, DOT_Z, DOT_4, DOT_5, DOT_GRAY } DotComponent;
+typedef enum DotComponent { DOT_X, DOT_Y, DOT_Z, DOT_4, DOT_5, DOT_GRAY, DOT_OTHER } DotComponent;
 
 typedef struct Node Node;
 
@@ -158,7 +159,7 @@ struct Node {
             Name name;
             Span name_span;
             Name *parameters;
-            size_t count;
+            size_t count, required; /* the rest may be left out */
             Body body;
             bool unbalanced;
         } macro;

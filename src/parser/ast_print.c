@@ -2,7 +2,7 @@
 
 static const char *const kind_texts[] = {
     "error",    "number", "string", "value",     "name",  "constant", "vector",  "index",
-    "dot",      "unary",  "binary", "condition", "call",  "builtin",  "color",   "array",
+    "dot",      "unary",  "binary", "condition", "call",  "builtin",  "color",   "array",  "dictionary",
     "function", "block",  "word",   "entry",     "list",  "declare",  "undef",   "if",
     "while",    "for",    "switch", "break",     "macro", "include",  "version", "default",
     "message",  "fopen",  "fclose", "read",      "write", "empty"};

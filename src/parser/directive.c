@@ -1,5 +1,7 @@
 #include "parser/parser.h"
 
+#include <string.h>
+
 /* Where the bodies of a group lie: from the head's end to #else …, known from the tokens' matches. */
 typedef struct Group {
     TokenList *list;
@@ -247,7 +249,14 @@ static Node *switch_directive(Parser *p, TokenList *list, uint32_t index, uint32
     return bodies_whole(p, n, list->items[index].unbalanced) ? n : NULL;
 }
 
-/* macro = "#macro" identifier "(" [identifier { "," identifier }] ")" statements "#end" */
+/* `optional` before a parameter, unless it is the name of one. */
+static bool is_optional(Parser *p, const Token *t) {
+    if (t->keyword || strcmp(t->as.name->text, "optional") != 0) return false;
+    p->raw = true;
+    return parser_peek(p)->kind == TOKEN_WORD;
+}
+
+/* macro = "#macro" identifier "(" [["optional"] identifier { "," ["optional"] identifier }] ")" statements "#end" */
 static Node *macro_directive(Parser *p, TokenList *list, uint32_t index, uint32_t *next) {
     Node *n = parser_node(p, NODE_MACRO, list->items[index].span);
     p->raw = true;
@@ -264,14 +273,20 @@ static Node *macro_directive(Parser *p, TokenList *list, uint32_t index, uint32_
         size_t count, capacity;
     } names = {0};
     if (!parser_expect(p, '(', "'('")) return NULL;
+    bool optional = false;
     for (;;) {
         p->raw = true;
         if (parser_peek(p)->kind != TOKEN_WORD) break;
         Token name = parser_take(p);
+        if (is_optional(p, &name)) {
+            optional = true;
+            name = parser_take(p);
+        }
         if (name.keyword)
             return parser_fail(p, name.span, "'%s' is a word of the language: it cannot be a name",
                                name.as.name->text);
         *list_push(p->arena, &names) = name.as.name;
+        if (!optional) n->as.macro.required = names.count;
         parser_accept(p, ','); /* POV-Ray does not miss it, and its own includes leave it out */
     }
     if (!parser_expect(p, ')', "',' or ')'")) return NULL;

@@ -158,6 +158,7 @@ static bool is_parameter(const Parser *p, Name name) {
 static Node *name_or_call(Parser *p) {
     const Token *t = parser_peek(p), *after = parser_peek_after(p);
     if (after->kind == '{' && context_is_block(t->as.name) && !p->in_function) return parser_block(p);
+    if (parser_begins_dictionary(p)) return parser_dictionary(p);
     Token word = parser_take(p);
     Node *n = parser_node(p, NODE_NAME, word.span);
     n->as.name = word.as.name;
@@ -277,7 +278,7 @@ static int dot_component(const Token *t) {
     case KW_filter: return DOT_4;
     case KW_transmit: return DOT_5;
     case KW_gray: return DOT_GRAY;
-    default: return -1;
+    default: return t->kind == TOKEN_WORD ? DOT_OTHER : -1;
     }
 }
 
@@ -297,7 +298,9 @@ bool parser_directive_follows(Parser *p) {
 /* On the slow road, looking at the next token runs the directives before it. Outside of brackets an operand therefore ends where
  * a directive follows it, and after values that no operator can follow nothing is looked at. */
 static bool operand_ends(Parser *p, const Node *n) {
-    if (n->kind == NODE_BLOCK || n->kind == NODE_FUNCTION || n->kind == NODE_ARRAY || is_text(n)) return true;
+    if (n->kind == NODE_BLOCK || n->kind == NODE_FUNCTION || n->kind == NODE_ARRAY ||
+        n->kind == NODE_DICTIONARY || is_text(n))
+        return true;
     return parser_directive_follows(p);
 }
 
@@ -305,7 +308,7 @@ static Node *dot(Parser *p, Node *n) {
     parser_take(p);
     p->raw = true;
     Token part = parser_take(p);
-    int component = part.kind == TOKEN_WORD ? dot_component(&part) : -1;
+    int component = part.kind != TOKEN_WORD ? -1 : dot_component(&part);
     if (component < 0)
         return parser_fail(
             p, part.span,
@@ -316,6 +319,8 @@ static Node *dot(Parser *p, Node *n) {
     Node *result = parser_node(p, NODE_DOT, span_join(n->span, part.span));
     result->op = (uint16_t)component;
     result->as.operand.a = n;
+    result->as.operand.b = parser_node(p, NODE_NAME, part.span);
+    result->as.operand.b->as.name = part.as.name;
     return result;
 }
 
@@ -347,7 +352,7 @@ static Node *postfix(Parser *p) {
             p->crossed = true;
         if (next == '.')
             n = dot(p, n);
-        else if (next == '[' && (n->kind == NODE_NAME || n->kind == NODE_INDEX || n->kind == NODE_VALUE))
+        else if (next == '[' && (n->kind == NODE_NAME || n->kind == NODE_INDEX || n->kind == NODE_DOT || n->kind == NODE_VALUE))
             n = index(p, n);
         else
             return parser_fold(p, n);

@@ -1,4 +1,4 @@
-/* function (…) { … } and array […] { … }. */
+/* function (…) { … }, array […] { … } and dictionary { … }. */
 #include "parser/parser.h"
 
 #include <string.h>
@@ -63,15 +63,22 @@ Node *parser_function(Parser *p) {
     return n;
 }
 
+static bool is_word(const Token *t, const char *text) {
+    return t->kind == TOKEN_WORD && !t->keyword && strcmp(t->as.name->text, text) == 0;
+}
+
+static bool accept_mixed(Parser *p) {
+    p->raw = true;
+    if (!is_word(parser_peek(p), "mixed")) return false;
+    parser_take(p);
+    return true;
+}
+
 /* array = "array" ["mixed"] { "[" expression "]" } [body] */
 Node *parser_array(Parser *p) {
     Token word = parser_take(p);
     Node *n = parser_node(p, NODE_ARRAY, word.span);
-    const Token *t = parser_peek(p);
-    if (t->kind == TOKEN_WORD && strcmp(t->as.name->text, "mixed") == 0) {
-        n->op = 1;
-        parser_take(p);
-    }
+    n->op = accept_mixed(p);
     p->brackets++;
     while (parser_accept(p, '[')) {
         Node *e = parser_expression(p);
@@ -79,10 +86,61 @@ Node *parser_array(Parser *p) {
         *list_push(p->arena, &n->as.array.dimensions) = e;
     }
     p->brackets--;
+    if (!n->op) n->op = accept_mixed(p);
     if (parser_peek(p)->kind == '{') {
         n->as.array.body = parser_body(p, NULL);
         if (!n->as.array.body) return NULL;
     }
+    n->span = span_join(word.span, p->last.span);
+    return n;
+}
+
+bool parser_begins_dictionary(Parser *p) {
+    const void *macro;
+    return !p->in_function && is_word(parser_peek(p), "dictionary") && parser_peek_after(p)->kind != '(' &&
+           parser_classify(p, parser_peek(p)->as.name, &macro) == NAME_UNKNOWN;
+}
+
+/* dictionary_key = "." word | "[" full "]" | string | word */
+static Node *dictionary_key(Parser *p) {
+    bool dotted = parser_accept(p, '.');
+    if (!dotted && parser_accept(p, '[')) {
+        Node *e = parser_full(p);
+        return e && parser_expect(p, ']', "']'") ? e : NULL;
+    }
+    p->raw = true;
+    const Token *t = parser_peek(p);
+    if (t->kind != TOKEN_WORD && (dotted || t->kind != TOKEN_STRING))
+        return parser_fail(p, t->span, "expected a key of the dictionary");
+    Node *n = parser_node(p, t->kind == TOKEN_WORD ? NODE_NAME : NODE_STRING, t->span);
+    if (t->kind == TOKEN_WORD)
+        n->as.name = t->as.name;
+    else
+        n->as.string = t->as.string;
+    parser_take(p);
+    return n;
+}
+
+/* dictionary = "dictionary" ["{" { dictionary_key (":" | "=") full [","] } "}"] */
+Node *parser_dictionary(Parser *p) {
+    Token word = parser_take(p);
+    Node *n = parser_node(p, NODE_DICTIONARY, word.span);
+    if (p->slow && p->host->after(p->host->context, 0)->kind != '{') return n;
+    if (!parser_accept(p, '{')) return n;
+    p->brackets++;
+    /* Keys are words as they stand, whatever they mean elsewhere. */
+    for (p->raw = true; !p->failed && parser_peek(p)->kind != '}'; p->raw = true) {
+        Node *key = dictionary_key(p);
+        if (!key) return NULL;
+        if (!parser_accept(p, '=') && !parser_expect(p, ':', "':'")) return NULL;
+        Node *value = parser_full(p);
+        if (!value) return NULL;
+        *list_push(p->arena, &n->as.list) = key;
+        *list_push(p->arena, &n->as.list) = value;
+        parser_accept(p, ',');
+    }
+    p->brackets--;
+    if (!parser_expect(p, '}', "'}'")) return NULL;
     n->span = span_join(word.span, p->last.span);
     return n;
 }

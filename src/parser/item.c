@@ -151,6 +151,7 @@ static Node *named_item(Parser *p) {
     const void *macro;
     switch (parser_classify(p, t->as.name, &macro)) {
     case NAME_UNKNOWN:
+        if (parser_begins_dictionary(p)) return parser_expression(p);
         if (brace) return parser_block(p);
         return after->kind == '(' || p->guessing || follows_comma(p) ? parser_expression(p) : word_item(p);
     case NAME_MACRO:

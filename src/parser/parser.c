@@ -184,7 +184,26 @@ Body *parser_body(Parser *p, Name block) {
     return p->failed ? NULL : body;
 }
 
-/* target = identifier { "[" expression "]" } */
+/* The "." of a target: an entry of a dictionary. */
+static Node *target_entry(Parser *p, Node *base) {
+    parser_take(p);
+    p->raw = true;
+    Token word = parser_take(p);
+    if (word.kind != TOKEN_WORD) return parser_fail(p, word.span, "expected a name after '.'");
+    Node *n = parser_node(p, NODE_DOT, span_join(base->span, word.span));
+    n->as.operand.a = base;
+    n->as.operand.b = parser_node(p, NODE_NAME, word.span);
+    n->as.operand.b->as.name = word.as.name;
+    return n;
+}
+
+/* Nothing is pulled on the slow road to find out: that would run the directives that come next. */
+static bool target_continues(Parser *p, int kind) {
+    if (p->slow && !p->has_window && p->host->after(p->host->context, 0)->kind != kind) return false;
+    return parser_peek(p)->kind == kind;
+}
+
+/* target = identifier { "[" expression "]" | "." word } */
 Node *parser_target(Parser *p) {
     p->raw = true;
     const Token *t = parser_peek(p);
@@ -197,8 +216,14 @@ Node *parser_target(Parser *p) {
     Node *n = parser_node(p, NODE_NAME, name.span);
     n->as.name = name.as.name;
     p->brackets++;
-    /* On the slow road nothing is pulled to find out: that would run the directives that come next. */
-    while ((!p->slow || p->host->after(p->host->context, 0)->kind == '[') && parser_accept(p, '[')) {
+    while (!p->failed) {
+        if (target_continues(p, '.')) {
+            n = target_entry(p, n);
+            if (!n) return NULL;
+            continue;
+        }
+        if (!target_continues(p, '[')) break;
+        parser_take(p);
         Node *index = parser_node(p, NODE_INDEX, n->span);
         index->as.apply.base = n;
         Node *e = parser_expression(p);

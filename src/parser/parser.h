@@ -131,11 +131,14 @@ Node *parser_full(Parser *parser);       /* with comparisons and ?: */
 Node *parser_color(Parser *parser);
 Node *parser_function(Parser *parser);
 Node *parser_array(Parser *parser);
+/* `dictionary` where it is no name of the scene's. */
+bool parser_begins_dictionary(Parser *parser);
+Node *parser_dictionary(Parser *parser);
 /* word { body }, the word being the next token. */
 Node *parser_block(Parser *parser);
 /* { body } or [ body ], the opening bracket being the next token. NULL after failure. */
 Body *parser_body(Parser *parser, Name block);
-/* name { "[" expression "]" }, not evaluated. */
+/* name { "[" expression "]" | "." word }, not evaluated. */
 Node *parser_target(Parser *parser);
 /* An expression at the place of an argument of a word: does the next token begin one? `after_comma`: then names count whatever they are. */
 bool parser_begins_expression(Parser *parser, bool after_comma);

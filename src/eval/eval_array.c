@@ -209,7 +209,8 @@ Value eval_dictionary(Eval *ev, const Node *node) {
         const Node *key = node->as.list.items[i];
         Name name = key->kind == NODE_NAME ? key->as.name : dictionary_key(ev, key);
         Value v = eval_node(ev, node->as.list.items[i + 1]);
-        if (name) slot_set(ev, dictionary_entry(ev, d, name), &v);
+        Slot *slot = name ? dictionary_entry(ev, d, name) : NULL;
+        if (slot) slot_set(ev, slot, &v);
     }
     return (Value){.kind = VALUE_DICTIONARY, .as.array = d};
 }

@@ -316,7 +316,7 @@ void array_grow(Eval *ev, Array *array);
 Value eval_dictionary(Eval *ev, const Node *node);
 /* The entry of a dictionary; NULL when there is none. */
 Slot *dictionary_find(const Array *dictionary, Name key);
-/* The same, made (but not set) if need be. */
+/* The same, made (but not set) if need be; NULL after a report: too many elements. */
 Slot *dictionary_entry(Eval *ev, Array *dictionary, Name key);
 /* The key that an index in [ ] names; NULL after a report. */
 Name dictionary_key(Eval *ev, const Node *index);

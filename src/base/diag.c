@@ -43,6 +43,14 @@ static bool is_repeated_warning(const DiagList *list, Span span, const char *for
     return false;
 }
 
+bool diag_error_before(const DiagList *list, Span span) {
+    for (const Diagnostic *d = list->first; d; d = d->next)
+        if (d->severity == SEVERITY_ERROR && d->span.file == span.file && d->span.begin < span.begin &&
+            source_locate(list->sources, d->span).line == source_locate(list->sources, span).line)
+            return true;
+    return false;
+}
+
 static Diagnostic *add(DiagList *list, Severity severity, Span span, const char *format, va_list args) {
     if (severity == SEVERITY_ERROR) {
         list->failures++;

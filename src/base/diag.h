@@ -43,6 +43,8 @@ Diagnostic *diag_warning(DiagList *list, Span span, const char *format, ...) VTS
 /* Adds a note to `to` (no effect if NULL). */
 void diag_note(DiagList *list, Diagnostic *to, Span span, const char *format, ...) VTS_PRINTF(4, 5);
 void diag_hint(DiagList *list, Diagnostic *to, const char *format, ...) VTS_PRINTF(3, 4);
+/* Whether an error is blamed on the line of `span`, before it: what does not parse after it is likely its consequence. */
+bool diag_error_before(const DiagList *list, Span span);
 /* Whether the error limit is reached: time to give up. */
 bool diag_full(const DiagList *list);
 

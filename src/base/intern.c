@@ -1,6 +1,7 @@
 #include "base/intern.h"
 
 #include <string.h>
+#include <strings.h>
 
 static uint32_t text_hash(const char *text, size_t size) {
     uint32_t h = 2166136261u; /* FNV-1a */
@@ -75,6 +76,8 @@ const char *closest_word(const char *text, const char *const *candidates, size_t
     size_t best = size / 3 + 1;
     if (size < 3) best = 1;
     const char *closest = NULL;
+    for (size_t i = 0; i < count; i++)
+        if (strcasecmp(text, candidates[i]) == 0) return candidates[i];
     for (size_t i = 0; i < count; i++) {
         size_t n = strlen(candidates[i]);
         if (n > LONGEST_COMPARED || (n > size ? n - size : size - n) >= best) continue;

@@ -27,7 +27,7 @@ Name intern_cstr(Interner *interner, const char *text);
 Name intern_find(const Interner *interner, const char *text, size_t size);
 
 /* The candidate nearest to `text` in edit distance (Damerau-Levenshtein), if near enough to be a likely typing
- * error (at most a third of its length), else NULL: for "did you mean" hints. */
+ * error (at most a third of its length, or other capitals), else NULL: for "did you mean" hints. */
 const char *closest_word(const char *text, const char *const *candidates, size_t count);
 
 #endif

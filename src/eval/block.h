@@ -74,6 +74,7 @@ typedef struct BuildContext {
     int noise_generator; /* of global_settings: 1, 2, 3; 0: not given */
     bool old_noise;      /* #version is below 3.5: generator 1 unless one is given */
     int wave_count;      /* number_of_waves of global_settings; 0: not given */
+    bool names_missing;  /* an include was not found: what it declares is missing, without a word */
     void *eval;          /* for the evaluator itself */
 } BuildContext;
 

@@ -81,7 +81,7 @@ bool build_color_map(BuildContext *context, const EvalBlock *block, Value *out) 
     for (const BlockItem *item; (item = reader_peek(&reader)); reader.next++)
         if (item->kind == ITEM_ENTRY)
             read_entry(&reader, item->entry, pigments, &list);
-        else
+        else if (!reader.failed)
             reader_error(&reader, item->span, "'%s' holds entries [ … ] only", block->word->text);
     if (!reader.failed && list.count == 0)
         reader_error(&reader, block->word_span, "'%s' without entries", block->word->text);

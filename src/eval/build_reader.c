@@ -86,6 +86,12 @@ static const char *item_text(Reader *reader, const BlockItem *item) {
     return arena_printf(reader->context->arena, "'%s'", word->text);
 }
 
+/* After an include that was not found, names are what it would have declared. */
+static bool silently_undeclared(Reader *reader) {
+    reader->failed |= reader->context->names_missing;
+    return reader->context->names_missing;
+}
+
 void reader_expect_word(Reader *reader, const Word *word, const char *words) {
     const BlockItem *item = reader_peek(reader);
     bool take = item && item->kind == ITEM_WORD && word->count == 0;
@@ -230,6 +236,12 @@ static bool take_surplus(Reader *reader, const Word *word, size_t from) {
 }
 
 bool word_arguments(Reader *reader, const Word *word, size_t low, size_t high) {
+    const BlockItem *next = reader_peek(reader);
+    if (word->count < low && next && next->kind == ITEM_WORD && is_undeclared(reader, next->word)) {
+        reader_undeclared(reader, next->word->text, next->word_span); /* it was to be the value */
+        reader->next++;
+        return false;
+    }
     if (word->count < low) {
         reader_error(reader, word->span, "too few values for '%s': expected %s%zu, found %zu", word->text,
                      low == high ? "" : "at least ", low, word->count);
@@ -372,18 +384,27 @@ static bool check_once(Reader *reader, const Word *word, const WordRule *rule) {
 }
 
 void reader_unknown_word(Reader *reader, const Word *word) {
+    bool block;
+    block_builder_find(reader->context, intern_cstr(reader->context->names, word->text), &block);
+    if (block && !word->body) {
+        reader_error(reader, (Span){word->span.file, word->span.end, word->span.end},
+                     "expected '{' after '%s'", word->text);
+        return;
+    }
     const char *words[256];
     size_t count = 0;
     for (size_t t = 0; t < reader->table_count; t++)
         for (size_t i = 0; i < reader->tables[t].count && count < VTS_ARRAY_COUNT(words); i++)
             words[count++] = reader->tables[t].rules[i].text;
+    const char *closest = eval_suggest_name(reader->context, word->text, words, count);
+    if (!closest && silently_undeclared(reader)) return;
     Diagnostic *d = reader_error(reader, word->span, "'%s' is neither declared nor a word of '%s'",
                                  word->text, reader->block->word->text);
-    const char *closest = eval_suggest_name(reader->context, word->text, words, count);
     if (closest) diag_hint(reader->context->diags, d, "did you mean '%s'?", closest);
 }
 
 void reader_undeclared(Reader *reader, const char *name, Span span) {
+    if (silently_undeclared(reader)) return;
     Diagnostic *d = reader_error(reader, span, "'%s' is not declared", name);
     const char *closest = eval_suggest_name(reader->context, name, NULL, 0);
     if (closest) diag_hint(reader->context->diags, d, "did you mean '%s'?", closest);
@@ -402,13 +423,22 @@ void reader_word(Reader *reader, const Word *word) {
         reader_unknown_word(reader, word);
 }
 
+/* More values of the kind are as wrong: `rgb 1, 0, 0` is one mistake. */
+static void refuse_value(Reader *reader, const BlockItem *item) {
+    reader_error(reader, item->span, "%s has no meaning here in '%s'", value_kind_text(item->value.kind),
+                 reader->block->word->text);
+    for (const BlockItem *next; (next = reader_peek(reader)); reader->next++)
+        if (next->kind != ITEM_VALUE || next->value.kind != item->value.kind ||
+            item->value.kind == VALUE_BLOCK)
+            return;
+}
+
 static void read_value(Reader *reader, const BlockItem *item) {
     Argument argument = {item->value, item->span};
     if (item->value.kind == VALUE_ERROR)
         reader->failed = true;
     else if (!reader->on_value || !reader->on_value(reader, &argument, reader->value_target))
-        reader_error(reader, item->span, "%s has no meaning here in '%s'", value_kind_text(item->value.kind),
-                     reader->block->word->text);
+        refuse_value(reader, item);
 }
 
 bool reader_run(Reader *reader) {

@@ -120,6 +120,7 @@ TokenList *eval_load_include(Eval *ev, const Node *node, Span *path_span) {
         diag_hint(ev->diags, d, "looked in %s", places.data ? places.data : "no folder");
     }
     strbuf_free(&places);
+    ev->build.names_missing |= !path;
     if (!path) return NULL;
     return eval_load_text(ev, path, *path_span, &file) == SOURCE_OK ? load(ev, file) : NULL;
 }

@@ -6,23 +6,24 @@
 #include <math.h>
 #include <time.h>
 
-Diagnostic *eval_argument_count(Eval *ev, Span span, const char *what, size_t least, size_t most,
-                                size_t given) {
+bool eval_argument_count(Eval *ev, Span span, const char *what, size_t least, size_t most, size_t given,
+                         Diagnostic **reported) {
+    Diagnostic *d = NULL;
     if (given < least)
-        return diag_error(ev->diags, span, "too few arguments for %s: expected %s%zu, found %zu", what,
-                          least == most ? "" : "at least ", least, given);
-    if (given > most)
-        return diag_error(ev->diags, span, "too many arguments for %s: expected %s%zu, found %zu", what,
-                          least == most ? "" : "at most ", most, given);
-    return NULL;
+        d = diag_error(ev->diags, span, "too few arguments for %s: expected %s%zu, found %zu", what,
+                       least == most ? "" : "at least ", least, given);
+    else if (given > most)
+        d = diag_error(ev->diags, span, "too many arguments for %s: expected %s%zu, found %zu", what,
+                       least == most ? "" : "at most ", most, given);
+    if (reported) *reported = d;
+    return given >= least && given <= most;
 }
 
 bool builtin_argument_count(Eval *ev, const Node *node, size_t least, size_t most) {
     size_t count = node->as.list.count;
     if (count >= least && count <= most) return true;
     const char *what = arena_printf(&ev->temp, "'%s'", keyword_text((Keyword)node->op));
-    eval_argument_count(ev, node->span, what, least, most, count);
-    return false;
+    return eval_argument_count(ev, node->span, what, least, most, count, NULL);
 }
 
 static double out_of_domain(Eval *ev, const Node *node, const char *name, double value, double fallback) {

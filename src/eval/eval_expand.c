@@ -397,7 +397,9 @@ static Token pull(void *context, Parser *p) {
     if (s->ev->stopped) p->failed = true;
     Frame *f = s->top;
     Span last = f->at > 0 ? f->list->items[f->at - 1].span : f->list->items[0].span;
-    return (Token){.kind = TOKEN_END, .span = {last.file, last.end, last.end}};
+    Token end = {.kind = TOKEN_END, .span = {last.file, last.end, last.end}};
+    if (f->at < f->list->count) token_set_ending(&end, &f->list->items[f->at]);
+    return end;
 }
 
 /* Past the end of a macro's or a branch's text, the text that it stood in goes on. */

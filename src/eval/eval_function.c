@@ -225,7 +225,7 @@ static TapeRef inline_function(Compiler *c, const UserFunction *f, const NodeLis
     TapeRef inputs[FUNCTION_INPUTS], outputs[TAPE_CALL_MAX] = {0};
     if ((size_t)f->parameter_count != list->count) {
         size_t takes = (size_t)f->parameter_count;
-        eval_argument_count(c->ev, span, "the function", takes, takes, list->count);
+        eval_argument_count(c->ev, span, "the function", takes, takes, list->count, NULL);
         c->failed = true;
         return number(c, 0);
     }
@@ -421,7 +421,7 @@ Value call_function(Eval *ev, const UserFunction *function, const NodeList *argu
     if (!ok) return value_error();
     if (!vector && arguments->count != (size_t)function->parameter_count) {
         size_t takes = (size_t)function->parameter_count;
-        eval_argument_count(ev, span, "the function", takes, takes, arguments->count);
+        eval_argument_count(ev, span, "the function", takes, takes, arguments->count, NULL);
         return value_error();
     }
     tape_eval_once(function->tape, in, out);

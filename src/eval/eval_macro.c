@@ -206,7 +206,8 @@ static bool pass(Eval *ev, const Node *argument, Passed *out) {
 static bool count_matches(Eval *ev, const Macro *m, size_t given, Span span) {
     if (given >= m->required && given <= m->parameter_count) return true;
     const char *what = arena_printf(&ev->temp, "macro '%s'", m->name->text);
-    Diagnostic *d = eval_argument_count(ev, span, what, m->parameter_count, m->parameter_count, given);
+    Diagnostic *d;
+    eval_argument_count(ev, span, what, m->parameter_count, m->parameter_count, given, &d);
     diag_note(ev->diags, d, m->name_span, "'%s' is defined here", m->name->text);
     return false;
 }

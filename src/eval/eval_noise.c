@@ -142,11 +142,9 @@ const KnownFunction *known_function_find(Name name) {
 }
 
 bool known_function_takes(Eval *ev, const Node *call, const KnownFunction *f) {
-    size_t count = call->as.apply.list.count;
-    if (count == f->arguments) return true;
-    eval_argument_count(ev, call->span, arena_printf(&ev->temp, "'%s'", f->name), f->arguments, f->arguments,
-                        count);
-    return false;
+    const char *what = arena_printf(&ev->temp, "'%s'", f->name);
+    size_t takes = f->arguments;
+    return eval_argument_count(ev, call->span, what, takes, takes, call->as.apply.list.count, NULL);
 }
 
 /* Called outside of functions: as a tape of constants. */

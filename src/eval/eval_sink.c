@@ -178,8 +178,10 @@ void sink_entry(Eval *ev, Sink *sink, const Node *node) {
 /* { … } among the elements of an array is one row of it. */
 void sink_list(Eval *ev, Sink *sink, const Node *node) {
     if (sink->kind != SINK_ARRAY) {
-        diag_error(ev->diags, (Span){node->span.file, node->span.begin, node->span.begin + 1},
-                   "unexpected '{'");
+        Diagnostic *d = diag_error(ev->diags, (Span){node->span.file, node->span.begin, node->span.begin + 1},
+                                   "unexpected '{'");
+        if (sink->kind == SINK_SCENE)
+            diag_hint(ev->diags, d, "a declared object is used as object { Name … }");
         return;
     }
     Array *a = sink->array;

@@ -199,7 +199,7 @@ Value eval_spline(Eval *ev, const EvalBlock *block) {
 Value call_spline(Eval *ev, const Spline *spline, const NodeList *arguments, Span span) {
     double at, out[5] = {0};
     int type = spline->type;
-    if (eval_argument_count(ev, span, "a spline's time and type", 1, 2, arguments->count))
+    if (!eval_argument_count(ev, span, "a spline's time and type", 1, 2, arguments->count, NULL))
         return value_error();
     if (!eval_float(ev, arguments->items[0], &at)) return value_error();
     if (arguments->count == 2) {

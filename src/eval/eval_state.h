@@ -296,9 +296,10 @@ Value eval_extent(Eval *ev, const Node *node);
 /* trace, inside: by way of EvalOptions.geometry. */
 Value eval_geometry(Eval *ev, const Node *node);
 bool builtin_argument_count(Eval *ev, const Node *node, size_t least, size_t most);
-/* Reports too few or too many arguments at `span`; `what` is what is called, "'sin'". NULL when the number is right. */
-Diagnostic *eval_argument_count(Eval *ev, Span span, const char *what, size_t least, size_t most,
-                                size_t given);
+/* Whether the number of arguments is right. Otherwise false, after a report at `span` (*reported, if not NULL: what was added, NULL if
+ * it was dropped). `what` is what is called: "'sin'". */
+bool eval_argument_count(Eval *ev, Span span, const char *what, size_t least, size_t most, size_t given,
+                         Diagnostic **reported);
 
 /* ---- eval_array.c ---- */
 Value eval_array(Eval *ev, const Node *node);

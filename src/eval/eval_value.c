@@ -80,7 +80,15 @@ static double unary(int op, double a) {
     }
 }
 
+/* Also where the sign begins a statement, as a string is a whole value. */
+static Value no_sum_of_strings(Eval *ev, Span span) {
+    Diagnostic *d = diag_error(ev->diags, span, "strings are compared with = and <, not calculated with");
+    diag_hint(ev->diags, d, "concat(A, B) joins strings");
+    return value_error();
+}
+
 static Value vector_unary(Eval *ev, int op, Value a, Span span) {
+    if (a.kind == VALUE_STRING && op == '+') return no_sum_of_strings(ev, span);
     if (!value_is_numeric(&a)) return mismatch(ev, span, "a float or a vector", &a);
     double out[UINT8_MAX];
     for (int i = 0; i < a.size; i++) out[i] = unary(op, a.as.components[i]);
@@ -117,11 +125,8 @@ double value_float_binary(Eval *ev, int op, double a, double b, Span span) {
 
 static Value compare_strings(Eval *ev, int op, const Value *a, const Value *b, Span span) {
     int order = strcmp(a->as.string.text, b->as.string.text);
-    if (op == '+' || op == '-' || op == '*' || op == '/' || op == '&' || op == '|') {
-        Diagnostic *d = diag_error(ev->diags, span, "strings are compared with = and <, not calculated with");
-        if (op == '+') diag_hint(ev->diags, d, "concat(A, B) joins strings");
-        return value_error();
-    }
+    if (op == '+' || op == '-' || op == '*' || op == '/' || op == '&' || op == '|')
+        return no_sum_of_strings(ev, span);
     return value_float(value_float_binary(ev, op, order, 0, span));
 }
 

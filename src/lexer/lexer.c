@@ -318,6 +318,13 @@ TokenList *lexer_run(const SourceFile *file, const KeywordTable *keywords, Arena
     return list;
 }
 
+void token_set_ending(Token *end, const Token *by) {
+    if (by->kind == TOKEN_DIRECTIVE)
+        end->as.name = by->as.name;
+    else if (by->kind == '}' || by->kind == ']' || by->kind == ')')
+        end->match = by->kind;
+}
+
 /* The text of a token as the file has it; what cannot be shown by its number. */
 static const char *token_text(const Token *token, SourceSet *sources, Arena *arena) {
     SourcePlace place = source_locate(sources, token->span);
@@ -333,7 +340,9 @@ static const char *token_text(const Token *token, SourceSet *sources, Arena *are
 
 const char *token_describe(const Token *token, SourceSet *sources, Arena *arena) {
     switch (token->kind) {
-    case TOKEN_END: return "the end";
+    case TOKEN_END:
+        if (token->match) return arena_printf(arena, "'%c'", (int)token->match);
+        return token->as.name ? arena_printf(arena, "'#%s'", token->as.name->text) : "the end";
     case TOKEN_NUMBER: return arena_printf(arena, "the number %g", token->as.number);
     case TOKEN_STRING: return "a string";
     case TOKEN_WORD: return arena_printf(arena, "'%s'", token->as.name->text);

@@ -32,6 +32,8 @@ void token_report_broken(DiagList *diags, const Token *token);
 /* One token a line: place, kind, text. */
 void lexer_print(const TokenList *tokens, SourceSet *sources, StrBuf *out);
 /* What a token is called in messages: "'+'", "the number 3", "'sphere'", "the end of the file". */
+/* For token_describe(): the text that `end` ends is part of a larger one, where `by` comes next. */
+void token_set_ending(Token *end, const Token *by);
 const char *token_describe(const Token *token, SourceSet *sources, Arena *arena);
 
 #endif

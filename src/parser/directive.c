@@ -373,6 +373,24 @@ static Node *layers(Parser *p, Node *first, Token word) {
     return n;
 }
 
+/* What an operator that cannot stand here was meant to say. */
+static const char *operator_hint(const Token *t) {
+    switch (t->kind) {
+    case '=':
+    case '<':
+    case '>':
+    case '&':
+    case '|':
+    case '?':
+    case TOKEN_LESS_EQUAL:
+    case TOKEN_GREATER_EQUAL:
+    case TOKEN_NOT_EQUAL: return "comparisons, & | and ? : stand in parentheses";
+    case '^': return "pow(A, B) raises to a power";
+    case ',': return "a vector stands in < >";
+    default: return NULL;
+    }
+}
+
 /* declare = ("#declare" | "#local") ["deprecated" ["once"] [string]] target "=" expression { block } [";"] */
 static Node *declare_directive(Parser *p, Token head) {
     Node *n = parser_node(p, NODE_DECLARE, head.span);
@@ -400,10 +418,10 @@ static Node *declare_directive(Parser *p, Token head) {
     n->as.declare.unended = may_need_semicolon(value) || needs_semicolon(value);
     if (!needs_semicolon(value) || p->semicolons_optional) return n;
     const Token *t = p->slow && !p->has_window ? p->host->after(p->host->context, 0) : parser_peek(p);
-    return parser_fail(p, n->as.declare.after, "expected ';' after the value of '%s', found %s",
-                       n->as.declare.target->kind == NODE_NAME ? n->as.declare.target->as.name->text
-                                                               : "an array's element",
-                       parser_found(p, t));
+    return parser_fail_hint(
+        p, n->as.declare.after, operator_hint(t), "expected ';' after the value of '%s', found %s",
+        n->as.declare.target->kind == NODE_NAME ? n->as.declare.target->as.name->text : "an array's element",
+        parser_found(p, t));
 }
 
 static Node *undef_directive(Parser *p, Token head) {
@@ -417,6 +435,10 @@ static Node *undef_directive(Parser *p, Token head) {
 static Node *operand_directive(Parser *p, NodeKind kind, Token head) {
     Node *n = parser_node(p, kind, head.span);
     n->op = head.keyword;
+    const Token *t = kind == NODE_INCLUDE ? parser_peek(p) : NULL;
+    if (t && (t->kind == '<' || (t->kind == TOKEN_WORD && parser_peek_after(p)->kind == '.')))
+        return parser_fail(p, t->span, "expected the name of a file in double quotes, found %s",
+                           parser_found(p, t));
     n->as.operand.a = parser_expression(p);
     if (!n->as.operand.a) return NULL;
     n->span = span_join(head.span, p->last.span);
@@ -492,6 +514,18 @@ static Node *default_directive(Parser *p, Token head) {
     return n->as.block.body ? n : NULL;
 }
 
+/* What other languages have taught. */
+static const char *habit(const char *word) {
+    static const char *const words[][2] = {{"define", "declare"}, {"set", "declare"},    {"endif", "end"},
+                                           {"endwhile", "end"},   {"next", "end"},       {"endfor", "end"},
+                                           {"elif", "elseif"},    {"elsif", "elseif"},   {"foreach", "for"},
+                                           {"import", "include"}, {"function", "macro"}, {"def", "macro"},
+                                           {"print", "debug"},    {"echo", "debug"},     {"unset", "undef"}};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(words); i++)
+        if (strcmp(words[i][0], word) == 0) return words[i][1];
+    return NULL;
+}
+
 static Node *unknown_directive(Parser *p, Token head) {
     if (!p->slow) return parser_give_up(p);
     const char *candidates[64];
@@ -499,10 +533,10 @@ static Node *unknown_directive(Parser *p, Token head) {
     for (int k = 1; k < KW_COUNT; k++)
         if (keyword_is_directive((Keyword)k)) candidates[count++] = keyword_text((Keyword)k);
     Diagnostic *d = diag_error(p->diags, head.span, "unknown directive '#%s'", head.as.name->text);
-    const char *closest = closest_word(head.as.name->text, candidates, count);
+    const char *closest = habit(head.as.name->text);
+    if (!closest) closest = closest_word(head.as.name->text, candidates, count);
     if (closest) diag_hint(p->diags, d, "did you mean '#%s'?", closest);
-    p->failed = true;
-    return NULL;
+    return parser_give_up(p);
 }
 
 /* directive = group | while | for | switch | macro | declare | "#undef" target | "#include" expression

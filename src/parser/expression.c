@@ -226,6 +226,15 @@ static Node *parenthesized(Parser *p) {
     return n;
 }
 
+/* `A == B`, `A && B`, `A ** B` */
+static const char *doubled_hint(const Parser *p, const Token *t) {
+    if (p->last.kind != t->kind) return NULL;
+    return t->kind == '='                     ? "equality is a single ="
+           : t->kind == '&' || t->kind == '|' ? "logical and is a single &, or a single |"
+           : t->kind == '*'                   ? "pow(A, B) raises to a power"
+                                              : NULL;
+}
+
 /* primary = number | string | vector | "(" full ")" | constant | builtin | name | block | function | array */
 static Node *primary(Parser *p) {
     const Token *t = parser_peek(p);
@@ -245,7 +254,9 @@ static Node *primary(Parser *p) {
     case '<': return vector(p);
     case '(': return parenthesized(p);
     case TOKEN_WORD: break;
-    default: return parser_fail(p, parser_here(p), "expected a value, found %s", parser_found(p, t));
+    default:
+        return parser_fail_hint(p, parser_here(p), doubled_hint(p, t), "expected a value, found %s",
+                                parser_found(p, t));
     }
     if (t->keyword == KW_NONE) return name_or_call(p);
     if (is_parameter(p, t->as.name)) return constant(p);

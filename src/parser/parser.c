@@ -70,14 +70,32 @@ bool parser_expect(Parser *p, int kind, const char *what) {
     return false;
 }
 
-Node *parser_fail(Parser *p, Span span, const char *format, ...) {
-    if ((p->slow || p->reports) && !p->failed) {
-        va_list args;
-        va_start(args, format);
-        diag_error_va(p->diags, span, format, args);
-        va_end(args);
-    }
+static Node *fail(Parser *p, Span span, const char *hint, const char *format, va_list args) {
+    bool report = (p->slow || p->reports) && !p->failed;
     p->failed = true;
+    if (!report) return NULL;
+    if (diag_error_before(p->diags, span)) {
+        p->diags->failures++;
+        return NULL;
+    }
+    Diagnostic *d = diag_error_va(p->diags, span, format, args);
+    if (hint) diag_hint(p->diags, d, "%s", hint);
+    return NULL;
+}
+
+Node *parser_fail(Parser *p, Span span, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    fail(p, span, NULL, format, args);
+    va_end(args);
+    return NULL;
+}
+
+Node *parser_fail_hint(Parser *p, Span span, const char *hint, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    fail(p, span, hint, format, args);
+    va_end(args);
     return NULL;
 }
 
@@ -138,6 +156,13 @@ static Node *fold_block(Parser *p, Node *n) {
     if (p->diags->failures != failures) p->failed = true;
     return n;
 }
+static void wrong_bracket(Parser *p, const Token *open, int close) {
+    const Diagnostic *before = p->diags->last;
+    parser_expect(p, close, close == ']' ? "']'" : "'}'");
+    if (p->diags->last != before) diag_note(p->diags, p->diags->last, open->span, "opened here");
+}
+
+static bool is_closing(const Token *t) { return t->kind == '}' || t->kind == ']' || t->kind == ')'; }
 
 /* body = "{" statements "}" | "[" statements "]": a range of tokens where its end is known, else its statements now. */
 Body *parser_body(Parser *p, Name block) {
@@ -164,7 +189,7 @@ Body *parser_body(Parser *p, Name block) {
     p->expanding = true;
     int close = open.kind == '[' ? ']' : '}';
     if (!parser_enter(p)) return NULL;
-    while (!p->failed && parser_peek(p)->kind != close && !parser_at_end(p)) {
+    while (!p->failed && !is_closing(parser_peek(p)) && !parser_at_end(p)) {
         Node *n = is_misplaced(p, block) ? missing_close(p, &open, block) : parser_statement(p);
         if (n && n->kind == NODE_BLOCK) n = fold_block(p, n);
         if (n) *list_push(p->arena, &body->items) = n;
@@ -174,12 +199,12 @@ Body *parser_body(Parser *p, Name block) {
     p->brackets = brackets;
     p->expanding = expanding;
     if (!p->failed && !parser_accept(p, close)) {
-        const char *name = block ? block->text : "it";
+        const char *name = block ? block->text : "array";
         const Token *t = parser_peek(p);
         if (t->kind == TOKEN_END)
             never_closed(p, &open, t->span, name);
         else
-            parser_expect(p, close, close == ']' ? "']'" : "'}'");
+            wrong_bracket(p, &open, close);
     }
     return p->failed ? NULL : body;
 }

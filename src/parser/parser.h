@@ -118,6 +118,8 @@ Node *parser_give_up(Parser *parser);
 Node *parser_fail(Parser *parser, Span span, const char *format, ...) VTS_PRINTF(3, 4);
 /* Slow road, outside of brackets: whether a directive comes next, which looking at the next token would run. */
 bool parser_directive_follows(Parser *parser);
+/* The same with a hint (NULL: none), which must be a literal. */
+Node *parser_fail_hint(Parser *parser, Span span, const char *hint, const char *format, ...) VTS_PRINTF(4, 5);
 /* The token in words, for "expected …, found …". */
 const char *parser_found(Parser *parser, const Token *token);
 Node *parser_node(Parser *parser, NodeKind kind, Span begin);

@@ -108,11 +108,19 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
     return take_transform(value, target);
 }
 
+typedef struct Inverting {
+    Transform *transform;
+    bool inverse;
+} Inverting;
+
+/* Wherever it stands, and however often, it inverts the whole. A transform after it is an item of its own. */
 static void read_inverse(Reader *reader, const Word *word, void *target) {
-    (void)reader;
-    (void)word;
-    Transform *t = target;
-    *t = transform_inverse(t);
+    Inverting *to = target;
+    to->inverse = true;
+    for (size_t i = 0; i < word->count; i++)
+        if (!take_transform(&word->arguments[i], to->transform))
+            reader_mismatch(reader, word->arguments[i].span, "'inverse'", "nothing or a transform",
+                            word->arguments[i].value.kind);
 }
 
 static const WordRule own_rules[] = {{"inverse", WORD_CUSTOM, 0, read_inverse, false}};
@@ -120,12 +128,14 @@ static const WordRule own_rules[] = {{"inverse", WORD_CUSTOM, 0, read_inverse, f
 bool build_transform(BuildContext *context, const EvalBlock *block, Value *out) {
     Transform *t = arena_new(context->arena, Transform);
     *t = transform_identity();
+    Inverting own = {.transform = t};
     Reader reader = reader_begin(context, block);
     reader_add_table(&reader, transform_rules, transform_rule_count, t);
-    reader_add_table(&reader, own_rules, VTS_ARRAY_COUNT(own_rules), t);
+    reader_add_table(&reader, own_rules, VTS_ARRAY_COUNT(own_rules), &own);
     reader.on_value = on_value;
     reader.value_target = t;
     if (!reader_run(&reader)) return false;
+    if (own.inverse) *t = transform_inverse(t);
     *out = (Value){.kind = VALUE_TRANSFORM, .as.transform = t};
     return true;
 }

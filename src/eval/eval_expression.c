@@ -91,6 +91,8 @@ static Value eval_dot(Eval *ev, const Node *node) {
         diag_error(ev->diags, node->span, "%s has no components", value_kind_text(v.kind));
         return v = value_error();
     }
+    if (node->op != DOT_GRAY && node->op != DOT_X && v.kind == VALUE_FLOAT)
+        return eval_fail(ev, node->span, "%s has no components", value_kind_text(v.kind));
     if (node->op != DOT_GRAY && v.kind == VALUE_VECTOR && node->op >= v.size)
         return eval_fail(ev, node->span, "a vector of %d components has no such one", v.size);
     if (node->op == DOT_GRAY)

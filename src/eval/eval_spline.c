@@ -1,6 +1,5 @@
 #include "eval/eval_state.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- evaluation; outside of its points a spline keeps its end values ---- */
@@ -35,12 +34,17 @@ static double quadratic(const Spline *s, size_t i, int k, double at) {
     return lagrange(s->points + (i == 0 ? 0 : i - 1), 3, k, at);
 }
 
-/* Catmull-Rom: no curve on the first and last segments, whose ends only give tangents. */
+static double slope(const SplinePoint *p, size_t i, int k) {
+    return (p[i + 1].value[k] - p[i].value[k]) / (p[i + 1].at - p[i].at);
+}
+
+/* Catmull-Rom: no curve on the first and last segments, whose ends only give tangents. A point's tangent is the mean of the slopes
+ * on both sides of it, however long they are. */
 static double catmull_rom(const Spline *s, size_t i, int k, double at) {
     const SplinePoint *p = s->points;
-    double h = p[i + 1].at - p[i].at, u = (at - p[i].at) / h;
-    double m0 = (p[i + 1].value[k] - p[i - 1].value[k]) / (p[i + 1].at - p[i - 1].at) * h;
-    double m1 = (p[i + 2].value[k] - p[i].value[k]) / (p[i + 2].at - p[i].at) * h;
+    double h = p[i + 1].at - p[i].at, u = (at - p[i].at) / h, middle = slope(p, i, k);
+    double m0 = (slope(p, i - 1, k) + middle) / 2 * h;
+    double m1 = (middle + slope(p, i + 1, k)) / 2 * h;
     double u2 = u * u, u3 = u2 * u;
     return (2 * u3 - 3 * u2 + 1) * p[i].value[k] + (u3 - 2 * u2 + u) * m0 +
            (3 * u2 - 2 * u3) * p[i + 1].value[k] + (u3 - u2) * m1;
@@ -55,7 +59,11 @@ static double natural(const Spline *s, size_t i, int k, double at) {
 
 void spline_evaluate(const Spline *s, int type, double at, double *out) {
     size_t low = 0, high = s->count - 1;
-    if (type == SPLINE_CUBIC && s->count >= 4) {
+    if (type == SPLINE_CUBIC && s->count == 2) { /* POV-Ray's value of a curve that has only ends */
+        for (int k = 0; k < s->size; k++) out[k] = (s->points[0].value[k] + s->points[1].value[k]) / 2;
+        return;
+    }
+    if (type == SPLINE_CUBIC && s->count >= 3) {
         low = 1;
         high = s->count - 2;
     }
@@ -68,10 +76,10 @@ void spline_evaluate(const Spline *s, int type, double at, double *out) {
     }
     size_t i = segment_of(s, at);
     for (int k = 0; k < s->size; k++)
-        out[k] = type == SPLINE_QUADRATIC                ? quadratic(s, i, k, at)
-                 : type == SPLINE_CUBIC && s->count >= 4 ? catmull_rom(s, i, k, at)
-                 : type == SPLINE_NATURAL                ? natural(s, i, k, at)
-                                                         : lagrange(s->points + i, 2, k, at);
+        out[k] = type == SPLINE_QUADRATIC ? quadratic(s, i, k, at)
+                 : type == SPLINE_CUBIC   ? catmull_rom(s, i, k, at)
+                 : type == SPLINE_NATURAL ? natural(s, i, k, at)
+                                          : lagrange(s->points + i, 2, k, at);
 }
 
 /* Second derivatives of the natural cubic spline: a tridiagonal system, solved by elimination. */
@@ -111,30 +119,47 @@ typedef struct SplineReader {
     Eval *ev;
     Spline *spline;
     size_t capacity;
-    bool have_time, failed;
+    bool have_time, failed, typed;
     double time;
     double last[5]; /* the point before */
 } SplineReader;
 
-/* As in POV-Ray a float is a vector of two, and the components that a point lacks are those of the point before. */
-static void add_point(SplineReader *r, const Value *v) {
+/* Points are kept in the order of their times. A time that is there already gets the new value, except the last one, whose
+ * repetition POV-Ray drops. */
+static SplinePoint *place_for(SplineReader *r) {
+    Spline *s = r->spline;
+    if (s->count > 1 && s->points[s->count - 1].at == r->time) return NULL;
+    size_t at = s->count;
+    while (at > 0 && s->points[at - 1].at > r->time) at--;
+    if (at > 0 && s->points[at - 1].at == r->time) return &s->points[at - 1];
     struct {
         SplinePoint *items;
         size_t count, capacity;
-    } list = {r->spline->points, r->spline->count, r->capacity};
-    SplinePoint *p = list_push(r->ev->build.arena, &list);
-    *p = (SplinePoint){.at = r->time};
-    int size = v->kind == VALUE_FLOAT ? 2 : v->size;
-    for (int k = 0; k < 5; k++) p->value[k] = k < size ? value_component(v, k) : r->last[k];
-    memcpy(r->last, p->value, sizeof r->last);
-    r->spline->points = list.items;
-    r->spline->count = list.count;
+    } list = {s->points, s->count, r->capacity};
+    list_push(r->ev->build.arena, &list);
+    memmove(list.items + at + 1, list.items + at, (s->count - at) * sizeof *list.items);
+    s->points = list.items;
+    s->count = list.count;
     r->capacity = list.capacity;
+    return &s->points[at];
+}
+
+/* As in POV-Ray a float is a vector of two, and the components that a point lacks are those of the point before. */
+static void add_point(SplineReader *r, const Value *v) {
+    SplinePoint point = {.at = r->time};
+    int size = v->kind == VALUE_FLOAT ? 2 : v->size;
+    for (int k = 0; k < 5; k++) point.value[k] = k < size ? value_component(v, k) : r->last[k];
+    memcpy(r->last, point.value, sizeof r->last);
     if (size > r->spline->size) r->spline->size = size;
+    SplinePoint *place = place_for(r);
+    if (place) *place = point;
 }
 
 static void take_value(SplineReader *r, const Value *v, Span span) {
-    if (v->kind == VALUE_SPLINE) {
+    if (v->kind == VALUE_SPLINE && (r->typed || r->spline->count)) {
+        diag_error(r->ev->diags, span, "the spline to go on from comes first");
+        r->failed = true;
+    } else if (v->kind == VALUE_SPLINE) {
         *r->spline = *v->as.spline;
         r->spline->points =
             arena_copy(r->ev->build.arena, v->as.spline->points, v->as.spline->count * sizeof(SplinePoint));
@@ -152,21 +177,6 @@ static void take_value(SplineReader *r, const Value *v, Span span) {
     }
 }
 
-static int compare_points(const void *a, const void *b) {
-    double x = ((const SplinePoint *)a)->at, y = ((const SplinePoint *)b)->at;
-    return x < y ? -1 : x > y;
-}
-
-/* A time given twice: the later point counts. */
-static void drop_repeated_times(Spline *s) {
-    size_t kept = 0;
-    for (size_t i = 0; i < s->count; i++) {
-        if (kept && s->points[kept - 1].at == s->points[i].at) kept--;
-        s->points[kept++] = s->points[i];
-    }
-    s->count = kept;
-}
-
 Value eval_spline(Eval *ev, const EvalBlock *block) {
     SplineReader r = {.ev = ev, .spline = arena_new(ev->build.arena, Spline)};
     for (size_t i = 0; i < block->count && !r.failed; i++) {
@@ -182,6 +192,7 @@ Value eval_spline(Eval *ev, const EvalBlock *block) {
             return value_error();
         }
         r.spline->type = type;
+        r.typed = true;
         for (size_t k = 0; k < item->argument_count && !r.failed; k++)
             take_value(&r, &item->arguments[k].value, item->arguments[k].span);
     }
@@ -190,8 +201,6 @@ Value eval_spline(Eval *ev, const EvalBlock *block) {
         diag_error(ev->diags, block->span, "a spline needs at least one point");
         return value_error();
     }
-    qsort(r.spline->points, r.spline->count, sizeof *r.spline->points, compare_points);
-    drop_repeated_times(r.spline);
     find_second_derivatives(ev, r.spline);
     return (Value){.kind = VALUE_SPLINE, .as.spline = r.spline};
 }

@@ -14,12 +14,15 @@ static Vec3 normal(const void *data, Vec3 point, const SolidTag *tag) {
     return shape_hit_at(data, &here, &crossing).normal;
 }
 
-/* A disc divides space as its plane does. */
+/* A disc divides space as its plane does, and an open cylinder holds what a closed one would. On a sphere is not in it: POV-Ray. */
 static bool inside(const void *data, Vec3 point) {
-    const Object *object = data;
-    if (object->kind == OBJECT_DISC)
-        return vec3_dot(vec3_sub(point, object->as.disc.center), object->as.disc.normal) <= 0;
-    return shape_inside(object, point) != object->inverse;
+    Object object = *(const Object *)data;
+    if (object.kind == OBJECT_DISC)
+        return vec3_dot(vec3_sub(point, object.as.disc.center), object.as.disc.normal) <= 0;
+    if (object.kind == OBJECT_SPHERE)
+        return vec3_length(vec3_sub(point, object.as.sphere.center)) < fabs(object.as.sphere.radius);
+    if (object.kind == OBJECT_CYLINDER || object.kind == OBJECT_CONE) object.as.cone.open = false;
+    return shape_inside(&object, point) != object.inverse;
 }
 
 static Box3 bounds(const void *data) { return shape_bounds(data); }

@@ -28,11 +28,18 @@ static Box3 turned_box(const Outline *outline) {
 
 /* ---- lathe ---- */
 
+typedef struct Lathe {
+    Outline outline;
+    Outline mirrored; /* x and y changed over: POV-Ray tells the inside by what of the curve is above */
+} Lathe;
+
 static const void *lathe_prepare(const Object *object, Arena *arena) {
     const Solid *s = object->as.solid;
-    Outline *outline = arena_new(arena, Outline);
-    outline_add_curve(arena, outline, s->as.turned.curve, s->as.turned.points, s->as.turned.count);
-    return outline->count ? outline : NULL;
+    Lathe *lathe = arena_new(arena, Lathe);
+    outline_add_curve(arena, &lathe->outline, s->as.turned.curve, s->as.turned.points, s->as.turned.count);
+    for (size_t i = 0; i < lathe->outline.count; i++)
+        outline_add(arena, &lathe->mirrored, lathe->outline.items[i].y, lathe->outline.items[i].x);
+    return lathe->outline.count ? lathe : NULL;
 }
 
 /* The squared distance from the axis is quadratic along the line, and y tells the place on the line: with y = y(s),
@@ -77,7 +84,7 @@ static void lathe_level(const OutlinePiece *piece, uint32_t index, const LocalLi
 }
 
 static void lathe_cross(const void *data, const Ray *ray, SolidSink *sink) {
-    const Outline *outline = data;
+    const Outline *outline = &((const Lathe *)data)->outline;
     LocalLine line = localize(ray, turned_box_middle(outline));
     double size = turned_box(outline).max.x + outline->max.y - outline->min.y;
     bool level = fabs(line.d.y) * size < 1e-12 * size;
@@ -93,17 +100,17 @@ static Vec3 spun_normal(Point2 tangent, Vec3 p, double side) {
 
 /* To the right of the curve, which for one that climbs is the outside. */
 static Vec3 lathe_normal(const void *data, Vec3 p, const SolidTag *tag) {
-    const OutlinePiece *piece = &((const Outline *)data)->items[tag->part];
+    const OutlinePiece *piece = &((const Lathe *)data)->outline.items[tag->part];
     Point2 at = outline_at(piece, tag->u), tangent = outline_tangent(piece, tag->u);
     if (at.x < 0) tangent.x = -tangent.x; /* what lies beyond the axis is turned half round */
     return spun_normal(tangent, p, 1);
 }
 
 static bool lathe_inside(const void *data, Vec3 p) {
-    return outline_odd(data, (Point2){hypot(p.x, p.z), p.y});
+    return outline_odd(&((const Lathe *)data)->mirrored, (Point2){p.y, hypot(p.x, p.z)});
 }
 
-static Box3 lathe_bounds(const void *data) { return turned_box(data); }
+static Box3 lathe_bounds(const void *data) { return turned_box(&((const Lathe *)data)->outline); }
 
 const SolidOps solid_lathe_ops = {.prepare = lathe_prepare,
                                   .cross = lathe_cross,

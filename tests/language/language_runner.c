@@ -189,8 +189,7 @@ static int is_program(const struct dirent *entry) {
 /* Programs that need more than the evaluator: several frames, the geometry of objects, pigments as functions, fonts, or noises that no
  * description gives. */
 static bool needs_more(const char *name) {
-    static const char *const numbers[] = {"202", "225", "226", "227",
-                                          "235", "237", "250", "251"};
+    static const char *const numbers[] = {"202", "225", "226", "227", "237", "250"};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(numbers); i++)
         if (strncmp(name, numbers[i], 3) == 0) return true;
     return false;

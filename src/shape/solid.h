@@ -35,22 +35,22 @@ typedef struct SolidOps {
     bool (*inside)(const void *data, Vec3 point);
     /* Holds all of the surface; infinite where there is no end. */
     Box3 (*bounds)(const void *data);
-    bool keeps_normal; /* `inverse` does not turn its normals (POV-Ray's quadrics) */
+    bool keeps_normal; /* `inverse` does not turn its normals, as in POV-Ray */
 } SolidOps;
 
 /* Never NULL; sets and what has no surface have a table without functions. */
 const SolidOps *solid_ops(const Object *object);
 
 extern const SolidOps solid_plain_ops; /* solid_plain.c: sphere box cylinder cone plane disc torus */
-extern const SolidOps solid_mesh_ops;  /* solid_mesh.c: triangles of all kinds */
-extern const SolidOps solid_surface_ops; /* solid_surface.c: what skins lie on */
-extern const SolidOps solid_prism_ops, solid_polygon_ops;         /* solid_flat.c */
-extern const SolidOps solid_lathe_ops, solid_sor_ops;             /* solid_turned.c */
-extern const SolidOps solid_quadric_ops, solid_polynomial_ops;    /* solid_algebraic.c */
-extern const SolidOps solid_ovus_ops, solid_super_ops;            /* solid_round.c */
-extern const SolidOps solid_sweep_ops, solid_blob_ops;            /* solid_sweep.c, solid_blob.c */
-extern const SolidOps solid_isosurface_ops, solid_height_ops;     /* solid_field.c, solid_height.c */
-extern const SolidOps solid_patch_ops, solid_parametric_ops;      /* solid_patch.c */
-extern const SolidOps solid_text_ops, solid_julia_ops;            /* solid_text.c, solid_julia.c */
+extern const SolidOps solid_mesh_ops, solid_triangle_ops;      /* solid_mesh.c: triangles of all kinds */
+extern const SolidOps solid_surface_ops;                       /* solid_surface.c: what skins lie on */
+extern const SolidOps solid_prism_ops, solid_polygon_ops;      /* solid_flat.c */
+extern const SolidOps solid_lathe_ops, solid_sor_ops;          /* solid_turned.c */
+extern const SolidOps solid_quadric_ops, solid_polynomial_ops; /* solid_algebraic.c */
+extern const SolidOps solid_ovus_ops, solid_super_ops;         /* solid_round.c */
+extern const SolidOps solid_sweep_ops, solid_blob_ops;         /* solid_sweep.c, solid_blob.c */
+extern const SolidOps solid_isosurface_ops, solid_height_ops;  /* solid_field.c, solid_height.c */
+extern const SolidOps solid_patch_ops, solid_parametric_ops;   /* solid_patch.c */
+extern const SolidOps solid_text_ops, solid_julia_ops;         /* solid_text.c, solid_julia.c */
 
 #endif

@@ -166,5 +166,8 @@ static Vec3 polygon_normal(const void *data, Vec3 p, const SolidTag *tag) {
 
 static Box3 polygon_bounds(const void *data) { return ((const PolygonSheet *)data)->bounds; }
 
-const SolidOps solid_polygon_ops = {
-    .prepare = polygon_prepare, .cross = polygon_cross, .normal = polygon_normal, .bounds = polygon_bounds};
+const SolidOps solid_polygon_ops = {.prepare = polygon_prepare,
+                                    .cross = polygon_cross,
+                                    .normal = polygon_normal,
+                                    .bounds = polygon_bounds,
+                                    .keeps_normal = true};

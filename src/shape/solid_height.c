@@ -23,9 +23,7 @@ static Vec3 point_at(const Field *f, uint32_t i, uint32_t j) {
 }
 
 /* Heights are kept as POV-Ray keeps them, in 65536 steps. */
-static float quantize(double height) {
-    return (float)(floor(double_clamp(height, 0, 1) * 65535) / 65536);
-}
+static float quantize(double height) { return (float)(floor(double_clamp(height, 0, 1) * 65535) / 65536); }
 
 static bool copy_heights(const Solid *s, Arena *arena, Field *f) {
     f->columns = (uint32_t)s->as.field.columns;
@@ -164,7 +162,7 @@ static Vec3 normal(const void *data, Vec3 p, const SolidTag *tag) {
 
 static bool inside(const void *data, Vec3 p) {
     const Field *f = data;
-    if (!(p.x >= 0 && p.x <= 1 && p.z >= 0 && p.z <= 1) ) return false;
+    if (!(p.x >= 0 && p.x <= 1 && p.z >= 0 && p.z <= 1)) return false;
     uint32_t i = (uint32_t)double_min(p.x * (f->columns - 1), f->columns - 2),
              j = (uint32_t)double_min(p.z * (f->rows - 1), f->rows - 2);
     double x = p.x * (f->columns - 1) - i, z = p.z * (f->rows - 1) - j;

@@ -136,5 +136,9 @@ static Vec3 normal(const void *data, Vec3 p, const SolidTag *tag) {
     return vec3_normalize(vec3(g[0], g[1], g[2]));
 }
 
-const SolidOps solid_julia_ops = {
-    .prepare = prepare, .cross = cross, .normal = normal, .inside = inside, .bounds = bounds};
+const SolidOps solid_julia_ops = {.prepare = prepare,
+                                  .cross = cross,
+                                  .normal = normal,
+                                  .inside = inside,
+                                  .bounds = bounds,
+                                  .keeps_normal = true};

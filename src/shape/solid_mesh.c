@@ -105,3 +105,11 @@ static Box3 bounds(const void *data) { return ((const MeshSolid *)data)->bounds;
 
 const SolidOps solid_mesh_ops = {
     .prepare = prepare, .cross = cross, .normal = normal, .inside = inside, .bounds = bounds};
+
+/* One triangle on its own looks to the same side, inside out or not. */
+const SolidOps solid_triangle_ops = {.prepare = prepare,
+                                     .cross = cross,
+                                     .normal = normal,
+                                     .inside = inside,
+                                     .bounds = bounds,
+                                     .keeps_normal = true};

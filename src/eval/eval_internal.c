@@ -84,20 +84,22 @@ Value internal_function(Eval *ev, const Node *node, int id) {
 /* ---- objects as functions: inside or not ---- */
 
 typedef struct InsideQuery {
-    const EvalGeometry *geometry;
+    EvalGeometry geometry; /* a copy: the renderer asks after the evaluator is gone */
     const Object *object;
 } InsideQuery;
 
 static void eval_inside(const void *data, const double *in, double *out) {
     const InsideQuery *q = data;
-    out[0] = q->geometry->inside(q->geometry->context, q->object, vec3(in[0], in[1], in[2])) ? 1 : 0;
+    out[0] = q->geometry.inside(q->geometry.context, q->object, vec3(in[0], in[1], in[2])) ? 1 : 0;
 }
 
 const Tape *object_inside_tape(const BuildContext *context, const Object *object, Span span) {
     const EvalGeometry *geometry = ((const Eval *)context->eval)->options->geometry;
     if (!geometry || !geometry->inside) return NULL;
     InsideQuery *query = arena_new(context->arena, InsideQuery);
-    *query = (InsideQuery){geometry, object};
+    *query = (InsideQuery){*geometry, object};
+    /* Whatever is made of the object is made by the first question; later ones may come from many threads. */
+    geometry->inside(geometry->context, object, vec3_splat(0));
     TapeExternal *e = arena_new(context->arena, TapeExternal);
     *e = (TapeExternal){
         .name = "inside", .input_count = 3, .output_count = 1, .eval = eval_inside, .data = query};

@@ -24,39 +24,65 @@ typedef struct Lattice {
     double fraction[3], curve[3]; /* curve: 3t² - 2t³ */
 } Lattice;
 
+/* The place in its cell, the cell's number modulo 4096 from the lattice's origin. Small coordinates, which all are, need no
+ * floor(). */
+static inline unsigned cell_at(double x, double *fraction) {
+    if (fabs(x) < 0x1p30) {
+        int whole = (int)x;
+        whole -= x < whole;
+        *fraction = x - whole;
+        return (unsigned)whole + LATTICE_ORIGIN;
+    }
+    *fraction = x - floor(x);
+    return wrap(floor(x)) + LATTICE_ORIGIN;
+}
+
 static Lattice lattice_at(Vec3 p) {
     Lattice l;
-    for (int k = 0; k < 3; k++) {
-        double x = vec3_get(p, k), whole = floor(x), t = x - whole;
-        l.cell[k] = wrap(whole) + LATTICE_ORIGIN;
-        l.fraction[k] = t;
-        l.curve[k] = t * t * (3 - 2 * t);
-    }
+    l.cell[0] = cell_at(p.x, &l.fraction[0]);
+    l.cell[1] = cell_at(p.y, &l.fraction[1]);
+    l.cell[2] = cell_at(p.z, &l.fraction[2]);
+    for (int k = 0; k < 3; k++) l.curve[k] = l.fraction[k] * l.fraction[k] * (3 - 2 * l.fraction[k]);
     return l;
 }
 
-/* Adds the eight corners: each row of four weights is a value (halved) and a gradient, four apart for each output. */
-static void sum_corners(const Lattice *l, int outputs, double *sum) {
-    for (unsigned corner = 0; corner < 8; corner++) {
-        double weight = 1, offset[3];
-        unsigned at[3];
-        for (unsigned k = 0; k < 3; k++) {
-            unsigned far = corner >> (2 - k) & 1;
-            at[k] = l->cell[k] + far;
-            offset[k] = far ? l->fraction[k] - 1 : l->fraction[k];
-            weight *= far ? l->curve[k] : 1 - l->curve[k];
-        }
-        const double *w = &pov_weights[hash3(at[0], at[1], at[2]) & 0xFF];
-        for (int k = 0; k < outputs; k++, w += 4)
-            sum[k] += weight * (w[0] * 0.5 + w[1] * offset[0] + w[2] * offset[1] + w[3] * offset[2]);
+/* The rows of weights of the eight corners, x changing fastest: hashed in x and y first, which the layers share. */
+static void corner_rows(const unsigned cell[3], const double *rows[8]) {
+    unsigned mask = HASH_SIZE - 1, near = pov_hash[cell[0] & mask], far = pov_hash[(cell[0] + 1) & mask];
+    unsigned y = cell[1] & mask, above = (cell[1] + 1) & mask, z = cell[2] & mask,
+             behind = (cell[2] + 1) & mask;
+    unsigned columns[4] = {pov_hash[near ^ y], pov_hash[far ^ y], pov_hash[near ^ above],
+                           pov_hash[far ^ above]};
+    for (int k = 0; k < 4; k++) {
+        rows[k] = &pov_weights[pov_hash[columns[k] ^ z] & 0xFF];
+        rows[k + 4] = &pov_weights[pov_hash[columns[k] ^ behind] & 0xFF];
     }
+}
+
+/* A value (halved) and a gradient. */
+static inline double at_corner(const double *w, double x, double y, double z) {
+    return w[0] * 0.5 + w[1] * x + w[2] * y + w[3] * z;
+}
+
+static inline double mix(double t, double a, double b) { return a + t * (b - a); }
+
+/* Between the corners along x, then y, then z; the rows of another output are four numbers further. */
+static inline double between_corners(const double *const rows[8], int skip, const double f[3],
+                                     const double c[3]) {
+    double x = f[0], y = f[1], z = f[2], line[4];
+    for (int k = 0; k < 4; k++) {
+        double up = k & 1 ? y - 1 : y, back = k & 2 ? z - 1 : z;
+        line[k] = mix(c[0], at_corner(rows[2 * k] + skip, x, up, back),
+                      at_corner(rows[2 * k + 1] + skip, x - 1, up, back));
+    }
+    return mix(c[2], mix(c[1], line[0], line[1]), mix(c[1], line[2], line[3]));
 }
 
 static double raw_noise(Vec3 p) {
     Lattice lattice = lattice_at(p);
-    double sum = 0;
-    sum_corners(&lattice, 1, &sum);
-    return sum;
+    const double *rows[8];
+    corner_rows(lattice.cell, rows);
+    return between_corners(rows, 0, lattice.fraction, lattice.curve);
 }
 
 double noise_pov(Vec3 p) {
@@ -71,9 +97,11 @@ double noise_pov_original(Vec3 p) {
 Vec3 noise_pov_vector(Vec3 p) {
     if (!vec3_is_finite(p)) return vec3_splat((double)NAN);
     Lattice lattice = lattice_at(p);
-    double sum[3] = {0, 0, 0};
-    sum_corners(&lattice, 3, sum);
-    return vec3(sum[0], sum[1], sum[2]);
+    const double *rows[8];
+    corner_rows(lattice.cell, rows);
+    return vec3(between_corners(rows, 0, lattice.fraction, lattice.curve),
+                between_corners(rows, 4, lattice.fraction, lattice.curve),
+                between_corners(rows, 8, lattice.fraction, lattice.curve));
 }
 
 /* Cells count from 0, not from the lattice's origin. */

@@ -63,7 +63,7 @@ static void each_is_tested(void **state) {
 /* Nothing to compare: they come back, and soon. */
 static void survive_absurd_arguments(void **state) {
     (void)state;
-    static const double spicy[] = {0, -0.0, 1, -1, 1e-300, 1e300, -1e300, 4.5, INFINITY, -INFINITY, NAN};
+    static const double spicy[] = {0, -0.0, 1, -1, 1e-300, 1e300, -1e300, 4.5, VTS_INFINITY, -VTS_INFINITY, (double)NAN};
     size_t count;
     const InternalFunction *all = internal_all(&count);
     for (size_t i = 0; i < count; i++)

@@ -157,14 +157,10 @@ static size_t match(Reader *reader, const char *name, Span span, const char *ope
 }
 
 static void check_body(Reader *parent, const Word *word, const char *name, bool optional) {
-    bool filled = *name == '+';
-    if (filled) name++;
     size_t length = (size_t)(word_end(name) - name);
     const Grammar *grammar = length ? find_grammar(name, length) : NULL;
     if (!word->body && !optional)
         reader_error(parent, word->span, "'%s' needs its block { … }", word->text);
-    else if (filled && word->body->count == 0)
-        reader_error(parent, word->span, "'%s' is empty", word->text);
     else if (word->body && grammar) {
         Reader reader = reader_nested(parent, word->body);
         grammar_read(&reader, grammar->block);
@@ -255,7 +251,8 @@ bool grammar_read(Reader *reader, const char *block) {
             read_entry(reader, grammar, item);
         } else if (item_as_word(item, &word)) {
             const char *operands = find_operands(grammar, word.text);
-            bool prefix = strcmp(word.text, "magnet") == 0; /* of `magnet 1 mandel`: the pattern's first word of two */
+            bool prefix =
+                strcmp(word.text, "magnet") == 0; /* of `magnet 1 mandel`: the pattern's first word of two */
             bool pattern = operands && !prefix && grammar_has("pattern_types", word.text);
             if (pattern && patterned)
                 reader_error(reader, word.span, "'%s' is a second pattern", word.text);

@@ -23,6 +23,7 @@ static const Object *in_object_space(const BuildContext *context, const Object *
 }
 
 static void read_objects(Reader *reader, const Word *word, const Object *object, ObjectList *list) {
+    if (word->body && word->body->count == 0) reader_error(reader, word->span, "'%s' is empty", word->text);
     const EvalBlock *body = word->body;
     if (!body || (body->count == 1 && body->items[0].kind == ITEM_WORD)) return;
     const Object **items = arena_new_array(reader->context->arena, const Object *, list->count + body->count);

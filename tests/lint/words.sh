@@ -65,6 +65,9 @@ table_words doc/reference/stdlib.md > "$folder/library"
 cat "$folder/functions" "$folder/library" > "$folder/callable"
 tape_operations | require table "$folder/callable" "doc/reference/functions.md, doc/reference/stdlib.md"
 library_names | require table "$folder/library" doc/reference/stdlib.md
+for file in stdlib/*.inc; do
+  grep -qF "$(basename "$file")" doc/reference/stdlib.md || { echo "doc/reference/stdlib.md does not name $file"; fail; }
+done
 
 # And the index names no word that is not there: the first word of each code span in a first cell.
 { keywords '[A-Z]*'; context_words; block_words; } | sort -u > "$folder/words"

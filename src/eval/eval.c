@@ -71,6 +71,15 @@ static NameClass classify(void *context, Name name, const void **macro) {
 
 static Binding binding(void *context, const void *macro) { return macro_binding(context, macro); }
 
+static bool holds_half(void *context, const TokenList *tokens, uint32_t begin, uint32_t end) {
+    return macro_half_called(context, tokens, begin, end);
+}
+
+static bool is_whole(void *context, const void *macro) {
+    (void)context;
+    return ((const Macro *)macro)->whole;
+}
+
 static bool is_block(void *context, const void *macro) {
     (void)context;
     return ((const Macro *)macro)->is_block;
@@ -125,10 +134,17 @@ TokenList *eval_load_include(Eval *ev, const Node *node, Span *path_span) {
     return eval_load_text(ev, path, *path_span, &file) == SOURCE_OK ? load(ev, file) : NULL;
 }
 
+/* Where the text around an include has brackets too many or too few as well, the two complete each other. */
+static bool includer_is_balanced(const Eval *ev, const Node *node) {
+    uint32_t file = node->span.file;
+    return file >= ev->program_count || !ev->programs[file] || ev->programs[file]->tokens->balanced;
+}
+
 Flow run_include(Eval *ev, const Node *node, Sink *sink) {
     Span span;
     TokenList *tokens = eval_load_include(ev, node, &span);
     if (!tokens) return FLOW_NEXT;
+    if (!tokens->balanced && !includer_is_balanced(ev, node)) return FLOW_TEXT;
     Scope scope;
     CallRecord record = {.outer = ev->calls, .span = span};
     ev->calls = &record;
@@ -173,7 +189,8 @@ static void init(Eval *ev, const EvalOptions *options, SourceSet *sources, DiagL
                                  ? (double)options->image_width / options->image_height
                                  : 4.0 / 3;
     ev->fast_host = (ParserHost){
-        .context = ev, .classify = classify, .macro_binding = binding, .macro_is_block = is_block};
+        .context = ev, .classify = classify, .macro_binding = binding, .macro_is_whole = is_whole, .holds_half_macro = holds_half,
+        .macro_is_block = is_block};
     ev->index_name = intern_cstr(names, "index");
     ev->count_name = intern_cstr(names, "count");
     ev->particles_name = intern_cstr(names, "particles");

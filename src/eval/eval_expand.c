@@ -419,7 +419,7 @@ static bool take_body(void *context, Body *body) {
     Frame *f = s->window_frame;
     if (f != s->top || f->at == 0) return false;
     uint32_t close = f->list->items[s->window_at].match;
-    if (close == 0 || close >= f->end) return false;
+    if (close == 0 || close >= f->end || macro_half_called(s->ev, f->list, s->window_at, close)) return false;
     *body = (Body){.tokens = f->list, .begin = s->window_at + 1, .end = close};
     f->at = close + 1;
     return true;
@@ -452,6 +452,11 @@ static Binding binding(void *context, const void *macro) {
     return macro_binding(((Source *)context)->ev, macro);
 }
 
+static bool is_whole(void *context, const void *macro) {
+    (void)context;
+    return ((const Macro *)macro)->whole;
+}
+
 static bool is_block(void *context, const void *macro) {
     (void)context;
     return ((const Macro *)macro)->is_block;
@@ -461,7 +466,7 @@ static void make_host(ParserHost *host, Source *s) {
     *host = (ParserHost){.context = s,
                          .classify = classify,
                          .macro_binding = binding,
-                         .macro_is_block = is_block,
+                         .macro_is_whole = is_whole, .macro_is_block = is_block,
                          .pull = pull,
                          .after = after,
                          .position = position,
@@ -528,7 +533,7 @@ static void declare_error(Eval *ev, const TokenList *list, uint32_t at) {
     slot_set(ev, scope_declare(ev, name->as.name, head->keyword == KW_local), &v);
 }
 
-Flow run_slow(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink) {
+static Flow expand(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink, bool as_text) {
     Source s;
     Parser p;
     ParserHost host;
@@ -542,7 +547,7 @@ Flow run_slow(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink
     s.in_head = first->kind == TOKEN_DIRECTIVE && first->keyword == KW_macro;
     p.block = sink->kind == SINK_ITEMS ? sink->block : NULL;
     Flow flow = FLOW_NEXT;
-    if (first->kind == TOKEN_DIRECTIVE && first->match && first->keyword != KW_macro) {
+    if (as_text) {
         /* A group: its branches are text like any other. */
         s.at_start = false;
         if (parser_at_end(&p) && !p.failed) goto done;
@@ -578,4 +583,14 @@ done:
     ev->repeats = repeats;
     if (ev->stopped) return FLOW_STOP;
     return flow == FLOW_NEXT ? s.flow : flow;
+}
+
+Flow run_slow(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink) {
+    const Token *first = &program->tokens->items[*at];
+    bool is_group = first->kind == TOKEN_DIRECTIVE && first->match && first->keyword != KW_macro;
+    return expand(ev, program, at, end, sink, is_group);
+}
+
+Flow run_include_as_text(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink) {
+    return expand(ev, program, at, end, sink, true);
 }

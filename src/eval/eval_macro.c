@@ -16,12 +16,26 @@ void run_define_macro(Eval *ev, const Node *node) {
     m->parameters = arena_copy(ev->parse, node->as.macro.parameters,
                                m->parameter_count * sizeof(Name)); /* the tree may be a passing one */
     m->body = node->as.macro.body;
-    m->whole = !node->as.macro.unbalanced && parser_body_is_whole(&m->body);
+    m->half = node->as.macro.unbalanced;
+    ev->half_macros = ev->half_macros || m->half;
+    m->whole = !m->half && parser_body_is_whole(&m->body);
     m->next = ev->macros;
     ev->macros = m;
     Value v = {.kind = VALUE_MACRO, .as.macro = m};
     slot_set(ev, scope_declare(ev, m->name, false), &v);
     ev->macro_stamp++;
+}
+
+bool macro_half_called(const Eval *ev, const TokenList *tokens, uint32_t begin, uint32_t end) {
+    if (!ev->half_macros) return false;
+    for (uint32_t i = begin; i < end; i++) {
+        const Token *t = &tokens->items[i];
+        const Macro *macro;
+        if (t->kind == TOKEN_WORD && !t->keyword && scope_classify(ev, t->as.name, &macro) == NAME_MACRO &&
+            macro->half)
+            return true;
+    }
+    return false;
 }
 
 /* ---- does a call stand for an expression? ---- */

@@ -135,7 +135,12 @@ static Flow run_tokens(Eval *ev, const Body *body, Sink *sink) {
     ev->body = ++ev->body_count;
     for (uint32_t at = body->begin; at < body->end && flow == FLOW_NEXT;) {
         ArenaMark mark = arena_mark(&ev->temp);
+        uint32_t begin = at;
         flow = run_statement(ev, program, &at, body->end, sink);
+        if (flow == FLOW_TEXT) {
+            at = begin;
+            flow = run_include_as_text(ev, program, &at, body->end, sink);
+        }
         if (!(sink->kind == SINK_SINGLE && sink->filled)) arena_reset_to(&ev->temp, mark);
         if (ev->stopped) flow = FLOW_STOP;
     }

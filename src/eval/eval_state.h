@@ -45,6 +45,7 @@ struct Macro {
     const Name *parameters;
     size_t parameter_count, required;
     Body body;
+    bool half;  /* opens brackets that it does not close, or closes others */
     bool whole; /* brackets balance and no operator dangles */
     /* Whether a call stands for one expression and how tightly it binds; found on first need, and again when `stamp` is old. */
     Binding binding;
@@ -89,7 +90,8 @@ typedef struct Sink {
     size_t next;  /* element */
 } Sink;
 
-typedef enum Flow { FLOW_NEXT, FLOW_BREAK, FLOW_STOP } Flow;
+/* FLOW_TEXT: nothing was run, the statement is half of something and must be read together with what follows it. */
+typedef enum Flow { FLOW_NEXT, FLOW_BREAK, FLOW_STOP, FLOW_TEXT } Flow;
 
 /* ---- arrays, splines, files ---- */
 
@@ -160,6 +162,7 @@ struct Eval {
         name_stamp; /* counts changes of what a name means to the parser (its NameClass, or which macro it is) */
     CallRecord *calls;
     Macro *macros;
+    bool half_macros; /* there was one */
     uint32_t call_depth, include_depth;
     uint64_t body, body_count; /* the run of a body that is going on, and how many there were */
     bool repeats;              /* what runs now may run again: within a loop or a macro */
@@ -375,10 +378,14 @@ bool macro_enter(Eval *ev, const Macro *macro, const NodeList *arguments, Span s
                  CallRecord *record);
 void macro_leave(Eval *ev, Scope *scope);
 Binding macro_binding(Eval *ev, const Macro *macro);
+/* Whether these tokens call a macro that is half of something: brackets then close elsewhere than they seem to. */
+bool macro_half_called(const Eval *ev, const TokenList *tokens, uint32_t begin, uint32_t end);
 
 /* ---- eval_expand.c: the slow road ---- */
 /* Reads and runs the statement at *at of `program` with directives and macros expanded, and moves *at past it. */
 Flow run_slow(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink);
+/* The same for an #include that is text like any other: half of a statement, whose other half follows it. */
+Flow run_include_as_text(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink *sink);
 
 /* ---- eval_function.c, eval_spline.c, eval_files.c ---- */
 Value eval_function(Eval *ev, const Node *node);

@@ -106,6 +106,7 @@ static bool continues_expression(const Token *t) {
 
 /* call = identifier macro_arguments: as an item, whatever its macro's body holds are items here too. */
 static Node *call_item(Parser *p, const void *macro) {
+    if (!p->slow && !p->host->macro_is_whole(p->host->context, macro)) return parser_give_up(p);
     Parser before = *p;
     Token name = parser_take(p);
     Node *call = parser_node(p, NODE_CALL, name.span);

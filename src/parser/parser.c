@@ -170,6 +170,9 @@ Body *parser_body(Parser *p, Name block) {
     Body *body = arena_new(p->arena, Body);
     if (!p->slow) {
         if (open.match == 0 || open.match >= p->end) return parser_give_up(p), NULL;
+        if (p->host->holds_half_macro &&
+            p->host->holds_half_macro(p->host->context, p->list, p->at, open.match))
+            return parser_give_up(p), NULL;
         *body = (Body){.tokens = p->list, .begin = p->at, .end = open.match};
         p->at = open.match;
         parser_take(p);

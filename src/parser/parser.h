@@ -37,6 +37,10 @@ typedef struct ParserHost {
     NameClass (*classify)(void *context, Name name, const void **macro);
     /* Whether a call of this macro stands for one expression, and how tightly it binds; BIND_NONE if it does not. */
     Binding (*macro_binding)(void *context, const void *macro);
+    /* Whether the macro's body can be read by itself: it closes what it opens. */
+    bool (*macro_is_whole)(void *context, const void *macro);
+    /* Whether these tokens call a macro that opens or closes brackets of theirs; NULL: none does. */
+    bool (*holds_half_macro)(void *context, const TokenList *tokens, uint32_t begin, uint32_t end);
     bool (*macro_is_block)(void *context, const void *macro); /* after macro_binding() */
     /* Slow road only. The next token, macros expanded and names replaced by their values unless the parser's `raw` is set. */
     Token (*pull)(void *context, Parser *parser);

@@ -43,7 +43,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     keyword_table_init(&keywords, &names, &arena);
     TokenList *list =
         lexer_run(source_add_text(&sources, "fuzz", (const char *)data, size), &keywords, &arena);
-    ParserHost host = {.classify = classify, .macro_binding = binding, .macro_is_block = is_block};
+    ParserHost host = {.classify = classify, .macro_binding = binding, .macro_is_whole = is_block, .macro_is_block = is_block};
     StrBuf out = {0};
     for (uint32_t at = 0; at + 1 < list->count;) {
         Parser p = {.arena = &arena,

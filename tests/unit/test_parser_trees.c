@@ -52,7 +52,7 @@ static Node *parse(Parsed *q, const char *text) {
     keyword_table_init(&q->keywords, &q->names, &q->arena);
     TokenList *list =
         lexer_run(source_add_text(&q->sources, "test", text, strlen(text)), &q->keywords, &q->arena);
-    q->host = (ParserHost){.classify = classify, .macro_binding = binding, .macro_is_block = is_block};
+    q->host = (ParserHost){.classify = classify, .macro_binding = binding, .macro_is_whole = is_block, .macro_is_block = is_block};
     q->parser = (Parser){.arena = &q->arena,
                          .diags = &q->diags,
                          .keywords = &q->keywords,

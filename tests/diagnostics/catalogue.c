@@ -15,8 +15,9 @@ typedef struct Emitter {
     int format; /* 1: the first argument; 0: emits no message of its own (notes, hints, texts) */
 } Emitter;
 static const Emitter emitters[] = {
-    {"diag_error", 3},    {"diag_warning", 3}, {"reader_error", 3}, {"parser_fail", 3}, {"eval_fail", 3},
-    {"compiler_fail", 3}, {"diag_note", 0},    {"diag_hint", 0},    {"strbuf_addf", 0}, {"arena_printf", 0},
+    {"diag_error", 3}, {"diag_warning", 3},  {"reader_error", 3},     {"parser_fail", 3},
+    {"eval_fail", 3},  {"compiler_fail", 3}, {"parser_fail_hint", 4}, {"diag_note", 0},
+    {"diag_hint", 0},  {"strbuf_addf", 0},   {"arena_printf", 0},
 };
 
 const char *catalogue_message(Arena *arena, const char *format) {

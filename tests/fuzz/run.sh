@@ -8,7 +8,7 @@ target=$1 seconds=$2
 shift 2
 build=$root/build-fuzz
 [ -f "$build/build.ninja" ] || cmake -G Ninja -S "$root" -B "$build" -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \
-  -DCMAKE_BUILD_TYPE=RelWithDebInfo -DVTS_FUZZ=ON -DVTS_SANITIZE=ON -DVTS_TESTS=OFF >"$build.log"
+  -DCMAKE_BUILD_TYPE=RelWithDebInfo -DVTS_FUZZ=ON -DVTS_SANITIZE=ON -DVTS_TESTS=OFF >&2
 ninja -C "$build" "fuzz_$target"
 mkdir -p "$build/finds" "$build/corpus-$target"
 exec nice -n 10 "$build/tests/fuzz/fuzz_$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2500 -max_len=6000 \

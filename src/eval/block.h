@@ -92,6 +92,8 @@ typedef bool BlockBuilder(BuildContext *context, const EvalBlock *block, Value *
 /* The builder of `word { … }`, or NULL when such blocks stay VALUE_BLOCK. `known` is set to false when no block of this name
  * exists anywhere in the language. */
 BlockBuilder *block_builder_find(const BuildContext *context, Name word, bool *known);
+/* Whether `#declare Name = word { … }` makes sense, as it does for all but parts of POV-Ray's blocks that have no names there. */
+bool block_may_be_declared(Name word);
 /* The word of a block that an unknown `word { … }` was likely meant to be, or NULL: for a hint. */
 const char *block_word_suggest(const char *word);
 

@@ -152,6 +152,21 @@ BlockBuilder *block_builder_find(const BuildContext *context, Name word, bool *k
     return found ? found->builder : NULL;
 }
 
+bool block_may_be_declared(Name word) {
+    static const char *const words[] = {
+        "radiosity",         "photons",         "background",
+        "global_settings",   "bounded_by",      "clipped_by",
+        "contained_by",      "looks_like",      "warp",
+        "image_map",         "bump_map",        "image_pattern",
+        "reflection",        "subsurface",      "irid",
+        "projected_through", "pigment_pattern", "interior_texture",
+        "material_map",      "tiles",
+    };
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(words); i++)
+        if (strcmp(words[i], word->text) == 0) return false;
+    return true;
+}
+
 const char *block_word_suggest(const char *word) {
     const char *words[VTS_ARRAY_COUNT(block_words)];
     for (size_t i = 0; i < VTS_ARRAY_COUNT(block_words); i++) words[i] = block_words[i].word;

@@ -64,6 +64,8 @@ Value eval_block(Eval *ev, const Node *node, Name declared_as) {
         v = unknown_block(ev, block);
     } else if (ev->diags->failures + ev->silent_errors != errors) {
         v = value_error(); /* what is missing inside was said already */
+    } else if (declared_as && !block_may_be_declared(block->word)) {
+        diag_error(ev->diags, block->word_span, "'%s' cannot be declared", block->word->text);
     } else if (builder) {
         if (!builder(&ev->build, block, &v)) v = value_error();
         if (v.kind == VALUE_BLOCK) v.as.block = block_keep(ev->build.arena, block);

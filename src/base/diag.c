@@ -145,8 +145,8 @@ static size_t character_begin(const char *line, size_t at) {
 static void add_excerpt(StrBuf *out, SourceSet *sources, Span span, SourcePlace place, bool colour) {
     size_t size;
     const char *line = source_line(sources, place.file, place.line, &size);
-    size_t start = span.begin - (size_t)(line - place.file->text);
-    if (start > size) start = size;
+    size_t before = (size_t)(line - place.file->text);
+    size_t start = span.begin > before ? size_min(span.begin - before, size) : 0;
     size_t length = span.end > span.begin ? span.end - span.begin : 1;
     if (start + length > size) length = size > start ? size - start : 1;
     size_t from = 0, shown = size;

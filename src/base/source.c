@@ -84,6 +84,8 @@ static void index_lines(SourceSet *set, SourceFile *file) {
     for (uint32_t i = 0; i < file->size; i++) count += file->text[i] == '\n';
     file->lines = arena_new_array(set->arena, uint32_t, count);
     file->line_count = count;
+    /* A byte order mark is no part of the first line. */
+    if (file->size >= 3 && memcmp(file->text, "\xEF\xBB\xBF", 3) == 0) file->lines[0] = 3;
     uint32_t line = 1;
     for (uint32_t i = 0; i < file->size; i++)
         if (file->text[i] == '\n') file->lines[line++] = i + 1;

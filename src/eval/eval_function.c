@@ -331,6 +331,8 @@ static Value pigment_function(Eval *ev, const Node *node, const Pigment *pigment
                                                                      : pattern ? g->pattern_function
                                                                                : g->pigment_function;
     TapeExternal *external = arena_new(ev->build.arena, TapeExternal);
+    for (const InertNote *note = pigment->inert; note; note = note->next)
+        diag_warning(ev->diags, note->span, "'%s' is not modelled yet: it has no effect", note->word);
     if (make && make(g->context, ev->build.arena, pigment, external))
         return external_function(ev, node, external);
     diag_error(ev->diags, node->span, "this pigment cannot be a function here");

@@ -85,12 +85,21 @@ static Spot warp_spot(const Warp *warp, const Spot *spot) {
     return warped;
 }
 
+/* POV-Ray's limit of coordinates. Patterns never see what is no number: that becomes the origin. */
+static double kept(double x) { return isnan(x) ? 0 : double_clamp(x, -1e17, 1e17); }
+
+static Spot spot_kept(Spot spot) {
+    spot.p = vec3(kept(spot.p.x), kept(spot.p.y), kept(spot.p.z));
+    return spot;
+}
+
 Spot spot_in_pattern(const Pigment *pigment, const Spot *outer, bool warps_itself) {
     Spot spot = spot_back(outer, &pigment->transform);
     for (size_t i = pigment->warp_count; i-- > 0;) {
         spot = warp_spot(&pigment->warps[i], &spot);
         spot = spot_back(&spot, &pigment->warps[i].inner);
     }
-    if (warps_itself || !has_turbulence(pigment)) return spot;
-    return turbulence_warp(&spot, pigment->turbulence, octaves_of(pigment));
+    if (!warps_itself && has_turbulence(pigment))
+        spot = turbulence_warp(&spot, pigment->turbulence, octaves_of(pigment));
+    return spot_kept(spot);
 }

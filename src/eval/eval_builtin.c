@@ -284,6 +284,9 @@ Value eval_constant(Eval *ev, const Node *node) {
     case KW_image_height: return value_float(o->image_height);
     case KW_now: return value_float(days_now());
     case KW_version: return value_float(ev->version);
+    case KW_phase:
+        if (ev->has_phase) return value_float(ev->phase);
+        return eval_fail(ev, node->span, "'phase' is a number only within a texel's phases");
     default: return value_error();
     }
 }

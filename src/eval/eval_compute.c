@@ -131,7 +131,7 @@ static bool compile_unary(Draft *d, int op, const Node *a) {
 }
 
 static bool compile_constant(Draft *d, const Node *node) {
-    if (node->op == KW_now || node->op == KW_version) return false;
+    if (node->op == KW_now || node->op == KW_version || node->op == KW_phase) return false;
     if (node->op == KW_x || node->op == KW_y || node->op == KW_z || node->op == KW_t || node->op == KW_u ||
         node->op == KW_v)
         return false;

@@ -1,5 +1,6 @@
 #include "eval/eval_state.h"
 
+#include <math.h>
 #include <string.h>
 
 /* What goes into a block outlives the statement that made it. */
@@ -121,6 +122,35 @@ static void add_particles(Eval *ev, Sink *sink, const Node *node, BlockItem item
     scope_leave(ev, &scope);
 }
 
+/* phases N { … } of a texel: read once for each phase, with `phase` = 0, 1/N … What is modelled is the first. */
+static void add_phases(Eval *ev, Sink *sink, const Node *node, BlockItem item) {
+    enum { MOST_PHASES = 1024 };
+    double count = item.argument_count == 1 && item.arguments[0].value.kind == VALUE_FLOAT
+                       ? item.arguments[0].value.as.number
+                       : 0;
+    if (!(count >= 1 && count <= MOST_PHASES) || count != floor(count)) {
+        diag_error(ev->diags, item.argument_count ? item.arguments[0].span : node->span,
+                   "'phases' takes a whole number, 1 to %d", MOST_PHASES);
+        return;
+    }
+    double outer = ev->phase;
+    bool had = ev->has_phase, repeats = ev->repeats;
+    size_t errors = ev->diags->failures;
+    ev->repeats = ev->has_phase = true;
+    for (double i = 0; i < count && !ev->stopped && errors == ev->diags->failures; i++) {
+        ArenaMark mark = arena_mark(&ev->temp);
+        ev->phase = i / count;
+        const EvalBlock *body = eval_block_items(ev, item.word, item.word_span, item.span, node->as.word.body);
+        if (i == 0) item.body = body;
+        arena_reset_to(&ev->temp, mark);
+    }
+    ev->phase = outer;
+    ev->has_phase = had;
+    ev->repeats = repeats;
+    *list_push(&ev->blocks, sink->items) = item;
+    sink->word_body = ev->body;
+}
+
 /* A word among statements or elements: half of a block, part of another one, or a name that nobody declared. */
 static void misplaced_word(Eval *ev, const Sink *sink, const Node *node) {
     Name word = node->as.word.word;
@@ -157,6 +187,11 @@ void sink_word(Eval *ev, Sink *sink, const Node *node) {
     }
     if (node->as.word.body && item.word == ev->count_name && sink->block == ev->particles_name) {
         add_particles(ev, sink, node, item);
+        return;
+    }
+    if (node->as.word.body && strcmp(item.word->text, "phases") == 0 && sink->block &&
+        strcmp(sink->block->text, "texel") == 0) {
+        add_phases(ev, sink, node, item);
         return;
     }
     if (node->as.word.body)

@@ -181,6 +181,8 @@ struct Eval {
     uint64_t written;  /* bytes of #write so far */
     Span at;           /* the statement that is running: for what has no place of its own */
     double version;
+    double phase; /* of the texel's phases that are being read */
+    bool has_phase;
     size_t silent_errors; /* erroneous values that were left out of blocks */
     bool stopped, interrupted;
     bool after_declare; /* the last statement was one */

@@ -268,8 +268,8 @@ static Node *primary(Parser *p) {
     if (t->keyword == KW_function) return parser_function(p);
     if (t->keyword == KW_array) return parser_array(p);
     if (parser_peek_after(p)->kind == '{') return parser_block(p);
-    /* spline types are arguments of a spline's evaluation: S(0.5, cubic_spline) */
-    if (t->keyword == KW_linear_spline || t->keyword == KW_quadratic_spline ||
+    /* spline types are arguments of a spline's evaluation: S(0.5, cubic_spline); `phase` is a number in a texel's phases */
+    if (t->keyword == KW_phase || t->keyword == KW_linear_spline || t->keyword == KW_quadratic_spline ||
         t->keyword == KW_cubic_spline || t->keyword == KW_natural_spline)
         return constant(p);
     return parser_fail(p, t->span, "expected a value, found %s", parser_found(p, t));
@@ -480,6 +480,11 @@ Node *parser_full(Parser *p) {
     return p->failed ? NULL : a;
 }
 
+/* `rotate phase*360*y`, but not the pattern's `wood phase 0.5` */
+static bool is_phase_value(const Token *t, int after) {
+    return t->keyword == KW_phase && (after == '*' || after == '/' || after == '}' || after == ',' || after == ')');
+}
+
 /* What can stand for an operand. Names count after a comma; elsewhere when they are known to be values. */
 bool parser_begins_expression(Parser *p, bool after_comma) {
     const Token *t = parser_peek(p);
@@ -503,7 +508,7 @@ bool parser_begins_expression(Parser *p, bool after_comma) {
         case KEYWORD_CONSTANT: return !brace;
         case KEYWORD_COLOR: return parser_begins_color(p);
         case KEYWORD_FUNCTION: return after == '(';
-        default: return t->keyword == KW_function || t->keyword == KW_array;
+        default: return t->keyword == KW_function || t->keyword == KW_array || is_phase_value(t, after);
         }
     }
     if (brace && context_is_block(t->as.name)) return false;

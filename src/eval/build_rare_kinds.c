@@ -298,6 +298,16 @@ static const char *find_file(const BuildContext *context, const char *name, Span
     return path ? arena_strdup(context->arena, path) : NULL;
 }
 
+/* Where includes are looked for, and then where Debian keeps POV-Ray's fonts and others. */
+static const char *find_font(const BuildContext *context, const char *name, Span span) {
+    static const char *const folders[] = {"povray", "dejavu", "liberation", "liberation2", "freefont"};
+    const char *path = find_file(context, name, span);
+    for (size_t i = 0; !path && !strchr(name, '/') && i < VTS_ARRAY_COUNT(folders); i++)
+        path = find_file(
+            context, arena_printf(context->arena, "/usr/share/fonts/truetype/%s/%s", folders[i], name), span);
+    return path;
+}
+
 /* `internal N` are POV-Ray's own fonts: Times, Helvetica and Courier lookalikes, and its logo. */
 static const char *font_name(RareDraft *draft) {
     static const char *const internal[] = {"timrom.ttf", "timrom.ttf", "cyrvetic.ttf", "crystal.ttf",
@@ -317,7 +327,8 @@ bool build_text(BuildContext *context, const EvalBlock *block, Value *out) {
     const char *font = font_name(&draft);
     Span span = draft.row.items[0].span;
     s->as.text.text = arena_strdup(context->arena, draft.row.items[draft.next++].value.as.string.text);
-    s->as.text.font_path = find_file(context, font, span);
+    s->as.text.font_name = arena_strdup(context->arena, font);
+    s->as.text.font_path = find_font(context, font, span);
     if (!s->as.text.font_path)
         diag_warning(context->diags, span, "the font '%s' is not found: another one takes its place", font);
     return rare_float(&draft, "the thickness", &s->as.text.thickness) &&

@@ -116,7 +116,7 @@ void solid_rehash(Solid *s) {
     case SOLID_PRISM: add_prism(&h, s); break;
     case SOLID_SWEEP: add_sweep(&h, s); break;
     case SOLID_TEXT:
-        add_text(&h, s->as.text.font_path);
+        add_text(&h, s->as.text.font_path ? s->as.text.font_path : s->as.text.font_name);
         add_text(&h, s->as.text.text);
         hash_add_double(&h, s->as.text.thickness);
         hash_add_vec3(&h, s->as.text.offset);

@@ -119,10 +119,10 @@ typedef struct Solid {
             size_t count;
         } sweep;
         struct {
-            const char *font_path, *text;
+            const char *font_path, *font_name, *text;
             double thickness;
             Vec3 offset;
-        } text; /* path NULL: no font was found */
+        } text; /* path NULL: no such font was found */
         struct {
             double c[4], slice[4], distance;
             bool hypercomplex;

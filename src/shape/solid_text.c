@@ -25,7 +25,7 @@ static Box3 glyph_box(const FontGlyph *glyph, Vec3 place, double thickness) {
 static const void *prepare(const Object *object, Arena *arena) {
     const Solid *s = object->as.solid;
     TextSolid *text = arena_new(arena, TextSolid);
-    const char *path = s->as.text.font_path ? s->as.text.font_path : font_substitute(NULL);
+    const char *path = s->as.text.font_path ? s->as.text.font_path : font_substitute(s->as.text.font_name);
     if (!path || !font_outline(path, s->as.text.text, arena, &text->line)) return NULL;
     Vec3 *places = arena_new_array(arena, Vec3, text->line.count);
     Box3 *boxes = arena_new_array(arena, Box3, text->line.count);

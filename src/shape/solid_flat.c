@@ -2,7 +2,7 @@
 #include "shape/outline.h"
 #include "shape/solid.h"
 
-enum { PART_CAP = UINT32_MAX };
+static const uint32_t PART_CAP = UINT32_MAX;
 
 /* ---- prism: the outline in x and z, walls along y, or (conic) towards the origin ---- */
 

@@ -2,6 +2,7 @@
 #include "shape/solid.h"
 
 #include <complex.h>
+#include <string.h>
 
 typedef struct Four {
     double c[4];
@@ -27,6 +28,14 @@ static Four quaternion_product(Four a, Four b) {
                    p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0]}};
 }
 
+/* C11's CMPLX(), which not every compiler has. */
+static double complex complex_of(double real, double imaginary) {
+    const double parts[2] = {real, imaginary};
+    double complex z;
+    memcpy(&z, parts, sizeof z);
+    return z;
+}
+
 static double complex call(const Solid *s, double complex z) {
     switch (s->as.julia.function) {
     case JULIA_SQR: return z * z;
@@ -46,15 +55,15 @@ static double complex call(const Solid *s, double complex z) {
     case JULIA_TANH: return ctanh(z);
     case JULIA_ATANH: return catanh(z);
     case JULIA_LOG: return clog(z);
-    case JULIA_PWR: return cpow(z, CMPLX(s->as.julia.exponent[0], s->as.julia.exponent[1]));
+    case JULIA_PWR: return cpow(z, complex_of(s->as.julia.exponent[0], s->as.julia.exponent[1]));
     }
     return z;
 }
 
 /* A hypercomplex number is a pair of complex ones, of its halves (x - w, y + z) and (x + w, y - z). */
 static Four hypercomplex_call(const Solid *s, Four q) {
-    double complex a = call(s, CMPLX(q.c[0] - q.c[3], q.c[1] + q.c[2])),
-                   b = call(s, CMPLX(q.c[0] + q.c[3], q.c[1] - q.c[2]));
+    double complex a = call(s, complex_of(q.c[0] - q.c[3], q.c[1] + q.c[2])),
+                   b = call(s, complex_of(q.c[0] + q.c[3], q.c[1] - q.c[2]));
     return (Four){{(creal(a) + creal(b)) / 2, (cimag(a) + cimag(b)) / 2, (cimag(a) - cimag(b)) / 2,
                    (creal(b) - creal(a)) / 2}};
 }

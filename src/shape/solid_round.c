@@ -36,7 +36,7 @@ static const void *ovus_prepare(const Object *object, Arena *arena) {
     return o;
 }
 
-static double sphere_zeros(const Ray *ray, double y, double radius, double t[2]) {
+static bool sphere_zeros(const Ray *ray, double y, double radius, double t[2]) {
     Vec3 o = vec3(ray->origin.x, ray->origin.y - y, ray->origin.z), d = ray->direction;
     double a = vec3_length_squared(d), shift = -vec3_dot(o, d) / a;
     Vec3 nearest = vec3_madd(o, d, shift);

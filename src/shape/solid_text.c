@@ -4,7 +4,7 @@
 #include "shape/solid.h"
 #include "shape/solid_text.h"
 
-enum { PART_CAP = UINT32_MAX };
+static const uint32_t PART_CAP = UINT32_MAX;
 
 typedef struct TextSolid {
     FontLine line;

@@ -3,7 +3,7 @@
 #include "shape/roots.h"
 #include "shape/solid.h"
 
-enum { PART_LOW = UINT32_MAX, PART_HIGH = UINT32_MAX - 1 };
+static const uint32_t PART_LOW = UINT32_MAX, PART_HIGH = UINT32_MAX - 1;
 
 typedef struct LocalLine {
     Vec3 o, d;           /* d of unit length, o the point of the line nearest to the axis' middle */

@@ -278,7 +278,7 @@ static VtsStatus evaluate(VtsSession *session, const char *path, EvalMode mode) 
     bool film = o->last_frame > o->first_frame || o->frame > 1;
     EvalOptions options = {.geometry = &geometry, .include_dirs = o->include_dirs, .include_dir_count = o->include_dir_count,
                            .stdlib_dir = session->stdlib.size ? session->stdlib.data : NULL,
-                           .declares = declares, .declare_count = o->declare_count, .clock = o->clock, .clock_on = film,
+                           .declares = declares, .declare_count = o->declare_count, .clock = o->clock, .clock_on = film || o->clock_set,
                            .clock_delta = film ? o->clock_delta : 0, .initial_clock = film ? o->first_clock : 0,
                            .final_clock = film ? o->last_clock : 0, .frame_number = film ? o->frame : 0,
                            .initial_frame = film ? o->first_frame : 0, .final_frame = film ? o->last_frame : 0,

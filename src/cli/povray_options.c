@@ -75,11 +75,17 @@ static const char *apply_first_frame(Settings *s, const char *value) {
 static const char *apply_last_frame(Settings *s, const char *value) {
     return frame_number(s, value, &s->animation.last_frame);
 }
+static const char *subset(Settings *s, const char *value, double *out) {
+    s->animation.on = true;
+    return option_double(value, out) && *out >= 0 && *out <= 1e9
+               ? NULL
+               : "the number of a frame, or a share below 1";
+}
 static const char *apply_subset_first(Settings *s, const char *value) {
-    return frame_number(s, value, &s->animation.subset_first);
+    return subset(s, value, &s->animation.subset_first);
 }
 static const char *apply_subset_last(Settings *s, const char *value) {
-    return frame_number(s, value, &s->animation.subset_last);
+    return subset(s, value, &s->animation.subset_last);
 }
 static const char *apply_first_clock(Settings *s, const char *value) {
     return option_double(value, &s->animation.first_clock) ? NULL : "a number";
@@ -222,9 +228,11 @@ static size_t assignment_name(const char *argument) {
     return argument[size] == '=' ? size : 0;
 }
 
+/* name.ini or name.ini[section] */
 static bool is_ini(const char *argument) {
-    const char *dot = strrchr(argument, '.');
-    return dot && strcasecmp(dot, ".ini") == 0;
+    size_t size = strcspn(argument, "[");
+    bool closed = !argument[size] || strchr(argument + size, ']');
+    return closed && size > 4 && strncasecmp(argument + size - 4, ".ini", 4) == 0;
 }
 
 bool povray_recognizes(const char *argument) {
@@ -306,10 +314,18 @@ static int apply_ini_line(Settings *settings, const char *line) {
     return say_idle(settings, line);
 }
 
-/* The lines before the first [section], as POV-Ray does when none is named. */
-static int apply_ini(Settings *settings, const char *path) {
+static bool is_section(const char *line, const char *name, size_t size) {
+    return name && strncasecmp(line + 1, name, size) == 0 && line[1 + size] == ']';
+}
+
+/* The lines before the first [section], and those of the section that is named behind the file's name. */
+static int apply_ini(Settings *settings, const char *argument) {
     char line[1024];
     int status = 0;
+    const char *path = settings_copy(settings, argument, strcspn(argument, "["));
+    const char *section = strchr(argument, '[');
+    size_t section_size = section ? strcspn(++section, "]") : 0;
+    bool applies = true, found = !section;
     FILE *stream = fopen(path, "r");
     if (!stream) {
         complain(settings, "cannot read '%s'", path);
@@ -317,10 +333,15 @@ static int apply_ini(Settings *settings, const char *path) {
     }
     while (status == 0 && fgets(line, sizeof line, stream)) {
         const char *tidy = tidy_line(settings, line);
-        if (*tidy == '[') break;
-        status = apply_ini_line(settings, tidy);
+        if (*tidy == '[') {
+            applies = is_section(tidy, section, section_size);
+            found = found || applies;
+        } else if (applies) {
+            status = apply_ini_line(settings, tidy);
+        }
     }
     fclose(stream);
+    if (!found) complain_warning(settings, "'%s' has no section [%.*s]", path, (int)section_size, section);
     return status;
 }
 

@@ -94,10 +94,19 @@ static const char *finish_animation(const Settings *settings) {
     return NULL;
 }
 
+/* POV-Ray's rule: a share counts from 0, wherever the frames begin; what lies outside of them is cut off. */
+static int subset_frame(const Animation *animation, double asked, int otherwise) {
+    if (asked <= 0) return otherwise;
+    int count = animation->last_frame - animation->first_frame + 1;
+    int frame = asked < 1 ? (int)(asked * count) : (int)asked;
+    return frame < animation->first_frame ? animation->first_frame : frame;
+}
+
 void settings_frames(const Settings *settings, int *first, int *last) {
     const Animation *animation = &settings->animation;
-    *first = animation->subset_first > 0 ? animation->subset_first : animation->first_frame;
-    *last = animation->subset_last > 0 ? animation->subset_last : animation->last_frame;
+    *first = subset_frame(animation, animation->subset_first, animation->first_frame);
+    *last = subset_frame(animation, animation->subset_last, animation->last_frame);
+    if (*last > animation->last_frame) *last = animation->last_frame;
 }
 
 void settings_enter_frame(Settings *settings, int frame) {
@@ -107,12 +116,14 @@ void settings_enter_frame(Settings *settings, int frame) {
     int steps = animation->last_frame - animation->first_frame + animation->cyclic;
     options->frame = frame;
     options->first_frame = animation->first_frame;
-    options->last_frame = animation->last_frame;
+    bool film = animation->last_frame > animation->first_frame;
+    /* Of a cycle POV-Ray counts the frame after the last one too, which is the first again. */
+    options->last_frame = animation->last_frame + (film && animation->cyclic);
     options->first_clock = animation->first_clock;
     options->last_clock = animation->last_clock;
     options->clock_delta = steps > 0 ? (animation->last_clock - animation->first_clock) / steps : 0;
     options->clock = animation->first_clock + (frame - animation->first_frame) * options->clock_delta;
-    options->clock_set = true;
+    options->clock_set = options->clock_set || film;
 }
 
 const char *settings_finish(Settings *settings) {

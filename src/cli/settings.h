@@ -19,8 +19,9 @@ typedef struct TextList {
 /* POV-Ray's animation loop. */
 typedef struct Animation {
     bool on;
-    int first_frame, last_frame;   /* that the clocks belong to */
-    int subset_first, subset_last; /* that are done; 0: all */
+    int first_frame, last_frame; /* that the clocks belong to */
+    double subset_first,
+        subset_last; /* that are done: numbers of frames or, below 1, shares of them all; 0: all */
     double first_clock, last_clock;
     bool cyclic; /* the last clock is that of the frame after the last */
 } Animation;
@@ -29,9 +30,9 @@ typedef struct Settings {
     const char *program; /* how errors call us: "vts render" */
     VtsOptions options;  /* pointers into the lists below are set by settings_finish() */
     TextList scenes;
-    const char *output; /* NULL: by the scene's name */
-    const char *suffix; /* of pictures whose name has none; ".png" */
-    const char *report; /* file, "-" for stdout, or NULL */
+    const char *output;         /* NULL: by the scene's name */
+    const char *suffix;         /* of pictures whose name has none; ".png" */
+    const char *report;         /* file, "-" for stdout, or NULL */
     const char *metrics, *diff; /* of compare; NULL: the usual ones, no picture */
     bool json;
     ProgressStyle progress;

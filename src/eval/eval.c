@@ -106,6 +106,12 @@ SourceStatus eval_load_text(Eval *ev, const char *path, Span span, const SourceF
     return status;
 }
 
+/* The ending may be left out, as in POV-Ray. */
+static const char *with_include_ending(Eval *ev, const char *name, Span span) {
+    const char *path = path_find(ev, arena_printf(&ev->temp, "%s.inc", name), span, NULL, NULL);
+    return path ? path : path_find(ev, arena_printf(&ev->temp, "%s.INC", name), span, NULL, NULL);
+}
+
 TokenList *eval_load_include(Eval *ev, const Node *node, Span *path_span) {
     const char *name;
     *path_span = node->as.operand.a->span;
@@ -123,6 +129,7 @@ TokenList *eval_load_include(Eval *ev, const Node *node, Span *path_span) {
     Diagnostic *refused = NULL;
     StrBuf places = {0};
     const char *path = path_find(ev, name, *path_span, &refused, &places);
+    if (!path && !refused) path = with_include_ending(ev, name, *path_span);
     const SourceFile *file = NULL;
     if (!path && !refused) {
         Diagnostic *d = diag_error(ev->diags, *path_span, "there is no file '%s'", name);

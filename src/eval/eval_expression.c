@@ -59,8 +59,9 @@ static Slot *element_slot(Eval *ev, const Value *base, Span base_span, const Nod
 static Value element_value(Eval *ev, const Slot *slot, ValueKind of, Span span) {
     if (slot && slot->set) return slot_get(ev, slot);
     if (!slot) return value_error();
-    return eval_fail(ev, span, of == VALUE_ARRAY ? "this element of the array was never set"
-                                                 : "the dictionary has no entry of this name");
+    return eval_fail(ev, span,
+                     of == VALUE_ARRAY ? "this element of the array was never set"
+                                       : "the dictionary has no entry of this name");
 }
 
 static Value eval_index(Eval *ev, const Node *node, bool whole) {
@@ -175,6 +176,17 @@ static int component_index(int keyword) {
     }
 }
 
+/* `rgb C` of a whole colour, `rgb <r, g, b, f>`: more than the keyword names. */
+static void check_color_size(Eval *ev, const ColorPart *part, const Value *v) {
+    int keyword = part->component;
+    int size = keyword == KW_rgb || keyword == KW_srgb                                                  ? 3
+               : keyword == KW_rgbf || keyword == KW_srgbf || keyword == KW_rgbt || keyword == KW_srgbt ? 4
+                                                                                                        : 5;
+    if (value_is_numeric(v) && v->kind != VALUE_FLOAT && v->size > size)
+        diag_warning(ev->diags, part->value->span, "'%s' is of %d components, these are %d",
+                     keyword_text((Keyword)keyword), size, v->size);
+}
+
 static void color_from(int keyword, const Value *v, double out[5]) {
     for (int i = 0; i < 5; i++) out[i] = value_component(v, i);
     if (keyword == KW_rgb || keyword == KW_srgb) {
@@ -203,6 +215,7 @@ Value eval_color(Eval *ev, const Node *node) {
                 ok = value_to_vector(ev, &v, part->value->span, c, 5);
             else
                 color_from(part->component, &v, c);
+            check_color_size(ev, part, &v);
         } else {
             ok = value_to_float(ev, &v, part->value->span, &c[component_index(part->component)]) && ok;
         }

@@ -94,7 +94,7 @@ static const char *finish_animation(const Settings *settings) {
     return NULL;
 }
 
-/* POV-Ray's rule: a share counts from 0, wherever the frames begin; what lies outside of them is cut off. */
+/* POV-Ray's rule: a share counts from 0, wherever the frames begin; what lies before them is cut off. */
 static int subset_frame(const Animation *animation, double asked, int otherwise) {
     if (asked <= 0) return otherwise;
     int count = animation->last_frame - animation->first_frame + 1;
@@ -106,7 +106,6 @@ void settings_frames(const Settings *settings, int *first, int *last) {
     const Animation *animation = &settings->animation;
     *first = subset_frame(animation, animation->subset_first, animation->first_frame);
     *last = subset_frame(animation, animation->subset_last, animation->last_frame);
-    if (*last > animation->last_frame) *last = animation->last_frame;
 }
 
 void settings_enter_frame(Settings *settings, int frame) {

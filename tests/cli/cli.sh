@@ -126,6 +126,8 @@ case_animation() {
   [ "$(grep '^>' err | tr '\n' ' ')" = "> 2 0.25 > 3 0.50 " ] || fail "cyclic clocks: $(cat err)"
   run render film.pov +KFF10 +SF9 -s 8x6 -o f.ppm; want_status 0; want_file f09.ppm; want_file f10.ppm
   want_only film.pov f09.ppm f10.ppm
+  run run film.pov +KFI1 +KFF10 +SF0.2 +EF0.35; want_status 0
+  [ "$(grep '^>' err | tr '\n' ' ')" = "> 2 0.11 > 3 0.22 " ] || fail "shares: $(cat err)"
   refused run film.pov +KFI5 +KFF2
   refused run film.pov +KFF3 +EF4
 }
@@ -135,6 +137,8 @@ case_ini() {
   printf '; a comment\n\nWidth = 20 ; pixels\nHeight=10\n+Oini.ppm\nInput_File_Name="scene.vts"\nDisplay=Off\n[other]\nWidth=40\n' >job.ini
   run job.ini; want_status 0; want_in err Display; want_file ini.ppm
   [ "$(sed -n 2p ini.ppm | head -c 5)" = "20 10" ] || fail "job.ini was not obeyed"
+  run 'job.ini[other]'; want_status 0
+  [ "$(sed -n 2p ini.ppm | head -c 5)" = "40 10" ] || fail "job.ini[other] was not obeyed"
   run none.ini; want_status 3
 }
 

@@ -120,9 +120,26 @@ void arena_drop_blocks(Arena *arena, ArenaMark mark) {
     }
 }
 
+static size_t rounded(size_t size) { return (size + ALIGNMENT - 1) & ~(size_t)(ALIGNMENT - 1); }
+
+/* What was pushed last grows where it is, if its block has room. */
+static bool extend(Arena *arena, void *items, size_t size, size_t wanted) {
+    char *end = (char *)items + rounded(size);
+    if (!items || end != (char *)arena->block->data + arena->used) return false;
+    size_t more = rounded(wanted) - rounded(size);
+    if (arena->block->size - arena->used < more) return false;
+    memset(end, 0, more);
+    arena->used += more;
+    return true;
+}
+
 void arena_list_grow_(Arena *arena, void **items, size_t *capacity, size_t count, size_t item_size) {
     size_t grown = *capacity ? *capacity * 2 : 8;
-    if (grown < *capacity) memory_budget_fail(arena->budget);
+    if (grown < *capacity || grown > SIZE_MAX / 2 / item_size) memory_budget_fail(arena->budget);
+    if (arena->block && extend(arena, *items, *capacity * item_size, grown * item_size)) {
+        *capacity = grown;
+        return;
+    }
     void *copy = arena_push_array_(arena, grown, item_size);
     if (count) memcpy(copy, *items, count * item_size);
     *items = copy;

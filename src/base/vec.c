@@ -1,5 +1,7 @@
 #include "base/vec.h"
 
+#include <string.h>
+
 Mat3 mat3_multiply(const Mat3 *a, const Mat3 *b) {
     return (Mat3){{mat3_apply(a, b->c[0]), mat3_apply(a, b->c[1]), mat3_apply(a, b->c[2])}};
 }
@@ -80,6 +82,13 @@ static Transform from_linear(Mat3 linear, Vec3 offset) {
 }
 
 Transform transform_identity(void) { return transform_scale(vec3(1, 1, 1)); }
+
+Transform transform_of(const Affine *affine) { return from_linear(affine->linear, affine->offset); }
+
+bool transform_is_identity(const Transform *t) {
+    static const Mat3 unit = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    return t->offset.x == 0 && t->offset.y == 0 && t->offset.z == 0 && memcmp(&t->linear, &unit, sizeof unit) == 0;
+}
 
 Transform transform_translate(Vec3 by) {
     Transform t = transform_identity();

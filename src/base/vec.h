@@ -26,6 +26,12 @@ typedef struct Sym3f {
 } Sym3f;
 
 /* Affine: p → linear·p + offset, kept with its inverse. */
+/* A linear map and a shift: what a Transform is without its inverse. */
+typedef struct Affine {
+    Mat3 linear;
+    Vec3 offset;
+} Affine;
+
 typedef struct Transform {
     Mat3 linear;
     Vec3 offset;
@@ -119,6 +125,8 @@ Sym3f sym3f_congruence(const Sym3f *s, const Mat3 *m);
 
 /* Transforms as POV-Ray writes them; angles in degrees, left-handed. */
 Transform transform_identity(void);
+Transform transform_of(const Affine *affine);
+bool transform_is_identity(const Transform *t);
 Transform transform_translate(Vec3 by);
 Transform transform_scale(Vec3 by);
 Transform transform_rotate(Vec3 degrees);          /* about x, then y, then z */

@@ -34,6 +34,7 @@ typedef enum BlockItemKind {
     ITEM_VALUE, /* an expression or a nested block: `value` */
     ITEM_WORD,  /* a word with the expressions that follow it: `word`, `arguments`; `body` if a { … } of its own follows */
     ITEM_ENTRY, /* [ … ] of a map: `entry` */
+    ITEM_OBJECTS, /* objects that follow each other in a union and its like: `objects` */
 } BlockItemKind;
 
 typedef struct Argument {
@@ -51,6 +52,7 @@ typedef struct BlockItem {
     size_t argument_count;
     const EvalBlock *body;     /* ITEM_WORD: count 16 { … }; word is the block's keyword too. Else NULL. */
     const EvalBlock *entry;    /* ITEM_ENTRY: the items between the brackets */
+    struct { const Object **items; size_t count, capacity; } objects; /* ITEM_OBJECTS; each says itself where it stands */
 } BlockItem;
 
 struct EvalBlock {

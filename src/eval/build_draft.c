@@ -152,19 +152,14 @@ static void walk_surface(SceneDraft *draft, BuildContext *context, const Surface
     if (surface->object) walk_object(draft, context, surface->object);
 }
 
-static bool has_children(const Object *o) {
-    return o->kind == OBJECT_UNION || o->kind == OBJECT_INTERSECTION || o->kind == OBJECT_DIFFERENCE ||
-           o->kind == OBJECT_MERGE;
-}
-
 static void walk_object(SceneDraft *draft, BuildContext *context, const Object *object) {
     if (!visit(draft, context, object)) return;
-    warn_inert(draft, context, object->inert);
+    warn_inert(draft, context, object_inert(object));
     walk_texture(draft, context, object->texture);
-    if (has_children(object) &&
-        (object->as.children.count == 0 || visit(draft, context, object->as.children.items)))
-        for (size_t i = 0; i < object->as.children.count; i++)
-            walk_object(draft, context, object->as.children.items[i]);
+    if (object_has_group(object) &&
+        visit(draft, context, object->as.group))
+        for (size_t i = 0; i < object->as.group->count; i++)
+            walk_object(draft, context, object->as.group->items[i]);
     if (object->kind == OBJECT_TRIANGLES && visit(draft, context, object->as.mesh))
         for (size_t i = 0; i < object->as.mesh->texture_count; i++)
             walk_texture(draft, context, object->as.mesh->textures[i]);
@@ -182,12 +177,12 @@ static void add_light(SceneDraft *draft, BuildContext *context, const Light *lig
 /* Lights in unions shine where the transforms of the unions around them put them. */
 static void add_lights_of(SceneDraft *draft, BuildContext *context, const Object *object,
                           const Transform *outer) {
-    if (!has_children(object)) return;
-    Transform t = transform_then(&object->transform, outer);
-    for (size_t i = 0; i < object->as.children.light_count; i++)
-        add_light(draft, context, light_placed(context, object->as.children.lights[i], &t));
-    for (size_t i = 0; i < object->as.children.count; i++)
-        add_lights_of(draft, context, object->as.children.items[i], &t);
+    if (!object_has_group(object)) return;
+    Transform own = object_transform(object), t = transform_then(&own, outer);
+    for (size_t i = 0; i < object->as.group->light_count; i++)
+        add_light(draft, context, light_placed(context, object->as.group->lights[i], &t));
+    for (size_t i = 0; i < object->as.group->count; i++)
+        add_lights_of(draft, context, object->as.group->items[i], &t);
 }
 
 static bool surface_is_modelled(const Surface *surface) {
@@ -213,10 +208,9 @@ static void add_object(SceneDraft *draft, BuildContext *context, const Object *o
     add_lights_of(draft, context, object, &identity);
     if (!object_is_modelled(object)) return;
     if (!object->texture && context->default_texture != draft->first_default) {
-        Object *colored = arena_copy(context->arena, object, sizeof *object);
-        colored->texture = context->default_texture;
-        object_rehash(colored);
-        object = colored;
+        Object colored = object_copy(object);
+        colored.texture = context->default_texture;
+        object = object_keep(context->arena, &colored, NULL);
     }
     *list_push(context->arena, &draft->objects) = object;
 }

@@ -5,7 +5,7 @@
 /* ---- triangle, smooth_triangle: meshes of one triangle ---- */
 
 typedef struct TriangleDraft {
-    Object object;
+    ObjectDraft common;
     Vec3 *uvs; /* 3; NULL: none */
 } TriangleDraft;
 
@@ -28,7 +28,7 @@ static void read_corner_textures(Reader *reader, const Word *word, void *target)
     if (count != 3)
         reader_error(reader, word->span, "'texture_list' of a triangle holds three textures");
     else
-        draft->object.texture = word->body->items[0].value.as.texture;
+        draft->common.object.texture = word->body->items[0].value.as.texture;
 }
 
 static bool is_degenerate(const Vec3 *v) {
@@ -40,7 +40,8 @@ static MeshData *one_triangle(Arena *arena, const Vec3 *vertices, const Vec3 *no
     MeshData *mesh = arena_new(arena, MeshData);
     uint32_t(*triangles)[3] = arena_push(arena, sizeof *triangles);
     for (uint32_t i = 0; i < 3; i++) triangles[0][i] = i;
-    *mesh = (MeshData){.vertices = vertices,
+    *mesh = (MeshData){.single = true,
+                       .vertices = vertices,
                        .vertex_count = 3,
                        .normals = normals,
                        .normal_count = normals ? 3 : 0,
@@ -55,7 +56,7 @@ bool build_triangle(BuildContext *context, const EvalBlock *block, Value *out) {
     if (object_is_copy(block)) return build_object(context, block, out);
     bool smooth = strcmp(block->word->text, "smooth_triangle") == 0;
     Reader reader = reader_begin(context, block);
-    TriangleDraft draft = {.object = object_begin(block, OBJECT_TRIANGLES)};
+    TriangleDraft draft = {.common = object_begin(block, OBJECT_TRIANGLES)};
     Vec3 *vertices = arena_new_array(context->arena, Vec3, 3),
          *normals = arena_new_array(context->arena, Vec3, 3);
     for (int i = 0; i < 3; i++)
@@ -67,25 +68,21 @@ bool build_triangle(BuildContext *context, const EvalBlock *block, Value *out) {
         diag_warning(context->diags, block->word_span, "this triangle has no area: it is left out");
         mesh->triangle_count = 0;
     }
-    draft.object.as.mesh = mesh;
+    draft.common.object.as.mesh = mesh;
     reader_add_table(&reader, uv_rules, VTS_ARRAY_COUNT(uv_rules), &draft);
     for (int i = 0; i < 3; i++) normals[i] = vec3_normalize(normals[i]);
-    mesh_rehash(mesh);
-    if (!object_finish(&reader, &draft.object, out)) return false;
-    if (!draft.uvs) return true;
+    if (!object_read(&reader, &draft.common)) return false;
     mesh->uvs = draft.uvs;
-    mesh->uv_count = 3;
+    mesh->uv_count = draft.uvs ? 3 : 0;
     mesh_rehash(mesh);
-    Object *made = arena_copy(context->arena, out->as.object, sizeof *made);
-    object_rehash(made);
-    out->as.object = made;
+    *out = (Value){.kind = VALUE_OBJECT, .as.object = object_make(context, &draft.common)};
     return true;
 }
 
 /* ---- mesh: triangles one by one ---- */
 
 typedef struct MeshDraft {
-    Object object;
+    ObjectDraft common;
     struct {
         const Object **items;
         size_t count, capacity;
@@ -97,9 +94,9 @@ typedef struct MeshDraft {
 static bool on_mesh_value(Reader *reader, const Argument *value, void *target) {
     MeshDraft *draft = target;
     if (value->value.kind != VALUE_OBJECT || value->value.as.object->kind != OBJECT_TRIANGLES)
-        return take_looks(reader->context, value, &draft->object.texture, &draft->object.inert,
-                          &draft->object.transform) ||
-               take_transform(value, &draft->object.transform);
+        return take_looks(reader->context, value, &draft->common.object.texture, &draft->common.rest.inert,
+                          &draft->common.transform) ||
+               take_transform(value, &draft->common.transform);
     const Object *part = value->value.as.object;
     if (part->as.mesh->triangle_count == 0) return true;
     draft->textured |= part->texture != NULL;
@@ -120,7 +117,7 @@ static const Texture **gather_textures(Arena *arena, const MeshDraft *draft, Mes
     const Texture **textures = arena_new_array(arena, const Texture *, draft->parts.count + 1);
     for (size_t i = 0; i < draft->parts.count; i++) {
         const Texture *texture = draft->parts.items[i]->texture;
-        if (!texture) texture = draft->object.texture;
+        if (!texture) texture = draft->common.object.texture;
         if (mesh->texture_count == 0 || textures[mesh->texture_count - 1] != texture)
             textures[mesh->texture_count++] = texture;
         indices[i] = (uint32_t)(mesh->texture_count - 1);
@@ -169,26 +166,21 @@ bool build_mesh(BuildContext *context, const EvalBlock *block, Value *out) {
         diag_error(context->diags, block->word_span, "'mesh' without triangles");
         return false;
     }
-    MeshDraft draft = {.object =
-                           object_begin(block, OBJECT_UNION)}; /* a kind without data until they are joined */
+    MeshDraft draft = {.common = object_begin(block, OBJECT_TRIANGLES)};
     Reader reader = reader_begin(context, block);
     const BlockItem *first = reader_peek(&reader);
-    bool copy = object_is_copy(block) && first->value.as.object->as.mesh &&
-                first->value.as.object->kind == OBJECT_TRIANGLES &&
-                strcmp(first->value.as.object->word, "mesh") == 0;
+    bool copy = object_is_copy(block) && first->value.as.object->kind == OBJECT_TRIANGLES &&
+                !first->value.as.object->as.mesh->single;
     if (copy) return build_object(context, block, out);
     reader_add_table(&reader, mesh_rules, VTS_ARRAY_COUNT(mesh_rules), &draft);
     reader.on_value = on_mesh_value;
     reader.value_target = &draft;
-    if (!object_finish(&reader, &draft.object, out)) return false;
+    if (!object_read(&reader, &draft.common)) return false;
     if (draft.parts.count == 0) {
         reader_error(&reader, block->word_span, "'mesh' without triangles");
         return false;
     }
-    Object *made = arena_copy(context->arena, out->as.object, sizeof *made);
-    made->kind = OBJECT_TRIANGLES;
-    made->as.mesh = join_triangles(context, &draft);
-    object_rehash(made);
-    out->as.object = made;
+    draft.common.object.as.mesh = join_triangles(context, &draft);
+    *out = (Value){.kind = VALUE_OBJECT, .as.object = object_make(context, &draft.common)};
     return true;
 }

@@ -254,15 +254,12 @@ static bool assemble(Reader *reader, Mesh2Draft *draft) {
 bool build_mesh2(BuildContext *context, const EvalBlock *block, Value *out) {
     if (object_is_copy(block)) return build_object(context, block, out);
     Mesh2Draft *draft = arena_new(context->arena, Mesh2Draft);
-    Object object = object_begin(block, OBJECT_UNION); /* a kind without data until all is read */
+    ObjectDraft common = object_begin(block, OBJECT_TRIANGLES);
     Reader reader = reader_begin(context, block);
     reader_add_table(&reader, rules, VTS_ARRAY_COUNT(rules), draft);
-    if (!object_finish(&reader, &object, out) || !assemble(&reader, draft)) return false;
+    if (!object_read(&reader, &common) || !assemble(&reader, draft)) return false;
     mesh_rehash(&draft->mesh);
-    Object *made = arena_copy(context->arena, out->as.object, sizeof *made);
-    made->kind = OBJECT_TRIANGLES;
-    made->as.mesh = &draft->mesh;
-    object_rehash(made);
-    out->as.object = made;
+    common.object.as.mesh = &draft->mesh;
+    *out = (Value){.kind = VALUE_OBJECT, .as.object = object_make(context, &common)};
     return true;
 }

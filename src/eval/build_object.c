@@ -2,27 +2,25 @@
 
 #include <string.h>
 
-Object object_begin(const EvalBlock *block, ObjectKind kind) {
-    return (Object){
-        .span = block->span, .kind = kind, .word = block->word->text, .transform = transform_identity()};
+ObjectDraft object_begin(const EvalBlock *block, ObjectKind kind) {
+    return (ObjectDraft){
+        .object = {.span = block->span, .kind = (uint8_t)kind}, .transform = transform_identity(), .word = block->word->text};
 }
 
-#define FIELD(name) offsetof(Object, name)
+#define FIELD(name) offsetof(ObjectDraft, name)
 #define IGNORED(word)                                                                                        \
     { word, WORD_IGNORED, 0, NULL, false }
 #define INERT(word)                                                                                          \
-    { word, WORD_INERT, FIELD(inert), NULL, false }
+    { word, WORD_INERT, FIELD(rest.inert), NULL, false }
 /* Later transforms move what bounds and clips too: it is kept in the object's own space. */
-static const Object *in_object_space(const BuildContext *context, const Object *part, const Object *object) {
-    if (transform_is_identity(&object->transform)) return part;
-    Object *moved = arena_copy(context->arena, part, sizeof *part);
-    Transform back = transform_inverse(&object->transform);
-    moved->transform = transform_then(&part->transform, &back);
-    object_rehash(moved);
-    return moved;
+static const Object *in_object_space(const BuildContext *context, const Object *part, const Transform *place) {
+    if (transform_is_identity(place)) return part;
+    Transform back = transform_inverse(place), own = object_transform(part);
+    Transform moved = transform_then(&own, &back);
+    return object_keep(context->arena, part, &moved);
 }
 
-static void read_objects(Reader *reader, const Word *word, const Object *object, ObjectList *list) {
+static void read_objects(Reader *reader, const Word *word, const ObjectDraft *draft, ObjectList *list) {
     if (word->body && word->body->count == 0) reader_error(reader, word->span, "'%s' is empty", word->text);
     const EvalBlock *body = word->body;
     if (!body || (body->count == 1 && body->items[0].kind == ITEM_WORD)) return;
@@ -32,7 +30,7 @@ static void read_objects(Reader *reader, const Word *word, const Object *object,
         const Argument value = {body->items[i].value, body->items[i].span};
         const Object *part =
             body->items[i].kind == ITEM_VALUE ? object_from_value(reader->context, &value) : NULL;
-        if (part) items[list->count++] = in_object_space(reader->context, part, object);
+        if (part) items[list->count++] = in_object_space(reader->context, part, &draft->transform);
     }
     list->items = items;
 }
@@ -45,16 +43,16 @@ static bool says(const Word *word, const char *text) {
 }
 
 static void read_bounded_by(Reader *reader, const Word *word, void *target) {
-    Object *object = target;
-    if (says(word, "clipped_by")) object->bounded_by = object->clipped_by;
-    read_objects(reader, word, object, &object->bounded_by);
+    ObjectDraft *draft = target;
+    if (says(word, "clipped_by")) draft->rest.bounded_by = draft->rest.clipped_by;
+    read_objects(reader, word, draft, &draft->rest.bounded_by);
 }
 
 static void read_clipped_by(Reader *reader, const Word *word, void *target) {
-    Object *object = target;
-    inert_add(reader->context, &object->inert, "clipped_by", word->span);
-    if (says(word, "bounded_by")) object->clipped_by = object->bounded_by;
-    read_objects(reader, word, object, &object->clipped_by);
+    ObjectDraft *draft = target;
+    inert_add(reader->context, &draft->rest.inert, "clipped_by", word->span);
+    if (says(word, "bounded_by")) draft->rest.clipped_by = draft->rest.bounded_by;
+    read_objects(reader, word, draft, &draft->rest.clipped_by);
 }
 
 /* Modifiers without effect here that only some objects take. */
@@ -68,7 +66,7 @@ static void read_restricted(Reader *reader, const Word *word, void *target) {
         {"cutaway_textures", " intersection difference object "},
         {"inside_vector", " mesh mesh2 object "},
     };
-    const char *kind = ((Object *)target)->word;
+    const char *kind = ((const ObjectDraft *)target)->word;
     grammar_word(reader, word);
     for (size_t i = 0; i < VTS_ARRAY_COUNT(restricted); i++)
         if (strcmp(restricted[i].word, word->text) == 0 &&
@@ -77,10 +75,10 @@ static void read_restricted(Reader *reader, const Word *word, void *target) {
 }
 
 static const WordRule rules[] = {
-    {"no_shadow", WORD_MARK, FIELD(no_shadow), NULL, false},
-    {"no_image", WORD_FLAG, FIELD(no_image), NULL, false},
-    {"inverse", WORD_MARK, FIELD(inverse), NULL, false},
-    {"hollow", WORD_FLAG, FIELD(hollow), NULL, false},
+    {"no_shadow", WORD_MARK, FIELD(object.no_shadow), NULL, false},
+    {"no_image", WORD_FLAG, FIELD(object.no_image), NULL, false},
+    {"inverse", WORD_MARK, FIELD(object.inverse), NULL, false},
+    {"hollow", WORD_FLAG, FIELD(rest.hollow), NULL, false},
     {"bounded_by", WORD_CUSTOM, 0, read_bounded_by, false},
     {"clipped_by", WORD_CUSTOM, 0, read_clipped_by, false},
     IGNORED("no_reflection"),
@@ -98,27 +96,38 @@ static const WordRule rules[] = {
 };
 
 bool object_on_value(Reader *reader, const Argument *value, void *target) {
-    Object *object = target;
+    ObjectDraft *draft = target;
     if (value->value.kind == VALUE_COLOR) {
         diag_warning(reader->context->diags, value->span,
                      "a colour belongs into a pigment: it is ignored here");
         return true;
     }
-    return take_looks(reader->context, value, &object->texture, &object->inert, &object->transform) ||
-           take_transform(value, &object->transform);
+    return take_looks(reader->context, value, &draft->object.texture, &draft->rest.inert, &draft->transform) ||
+           take_transform(value, &draft->transform);
 }
 
-bool object_finish(Reader *reader, Object *object, Value *out) {
-    reader_add_table(reader, rules, VTS_ARRAY_COUNT(rules), object);
-    reader_add_table(reader, transform_rules, transform_rule_count, &object->transform);
+bool object_read(Reader *reader, ObjectDraft *draft) {
+    reader_add_table(reader, rules, VTS_ARRAY_COUNT(rules), draft);
+    reader_add_table(reader, transform_rules, transform_rule_count, &draft->transform);
     if (!reader->on_value) {
         reader->on_value = object_on_value;
-        reader->value_target = object;
+        reader->value_target = draft;
     }
-    if (reader->failed || !reader_run(reader)) return false;
-    Object *made = arena_copy(reader->context->arena, object, sizeof *object);
-    object_rehash(made);
-    *out = (Value){.kind = VALUE_OBJECT, .as.object = made};
+    return !reader->failed && reader_run(reader);
+}
+
+const Object *object_make(const BuildContext *context, const ObjectDraft *draft) {
+    Object object = draft->object;
+    const ObjectRest *rest = &draft->rest;
+    object.rest = rest->inert || rest->hollow || rest->clipped_by.count || rest->bounded_by.count
+                      ? arena_copy(context->arena, rest, sizeof *rest)
+                      : NULL;
+    return object_keep(context->arena, &object, &draft->transform);
+}
+
+bool object_finish(Reader *reader, ObjectDraft *draft, Value *out) {
+    if (!object_read(reader, draft)) return false;
+    *out = (Value){.kind = VALUE_OBJECT, .as.object = object_make(reader->context, draft)};
     return true;
 }
 
@@ -128,30 +137,24 @@ bool object_is_copy(const EvalBlock *block) {
 
 const Object *object_from_value(const BuildContext *context, const Argument *value) {
     if (value->value.kind == VALUE_OBJECT) return value->value.as.object;
-    Object object = {.span = value->span, .transform = transform_identity()};
+    Object object = {.span = value->span};
     if (value->value.kind == VALUE_SURFACE) {
         object.kind = OBJECT_SURFACE;
-        object.word = "surface";
         object.as.surface = value->value.as.surface;
         object.texture = object.as.surface->texture;
     } else if (value->value.kind == VALUE_TEXEL) {
         object.kind = OBJECT_TEXEL;
-        object.word = "texel";
         object.as.texel = value->value.as.texel;
     } else {
         return NULL;
     }
-    Object *made = arena_copy(context->arena, &object, sizeof object);
-    object_rehash(made);
-    return made;
+    return object_keep(context->arena, &object, NULL);
 }
 
 /* object { LIGHT transforms } */
 static bool build_light_copy(Reader *reader, const Light *light, Value *out) {
-    Object carrier =
-        object_begin(reader->block, OBJECT_UNION); /* takes the modifiers; only its transform matters */
-    Value ignored;
-    if (!object_finish(reader, &carrier, &ignored)) return false;
+    ObjectDraft carrier = object_begin(reader->block, OBJECT_UNION); /* takes the modifiers; only its transform matters */
+    if (!object_read(reader, &carrier)) return false;
     *out = (Value){.kind = VALUE_LIGHT, .as.light = light_placed(reader->context, light, &carrier.transform)};
     return true;
 }
@@ -189,9 +192,10 @@ bool build_object(BuildContext *context, const EvalBlock *block, Value *out) {
                         "an object", value.value.kind);
         return false;
     }
-    Object object = *source;
-    object.span = block->span;
-    return object_finish(&reader, &object, out);
+    ObjectDraft draft = {.object = object_copy(source), .transform = object_transform(source), .word = block->word->text};
+    draft.object.span = block->span;
+    if (source->rest) draft.rest = *source->rest;
+    return object_finish(&reader, &draft, out);
 }
 
 /* ---- union, merge, intersection, difference ---- */
@@ -207,7 +211,7 @@ typedef struct LightList {
 } LightList;
 
 typedef struct CsgDraft {
-    Object object;
+    ObjectDraft common;
     ChildList children;
     LightList lights;
 } CsgDraft;
@@ -220,7 +224,7 @@ static bool on_csg_value(Reader *reader, const Argument *value, void *target) {
     else if (value->value.kind == VALUE_LIGHT)
         *list_push(reader->context->arena, &draft->lights) = value->value.as.light;
     else
-        return object_on_value(reader, value, &draft->object);
+        return object_on_value(reader, value, &draft->common);
     return true;
 }
 
@@ -231,33 +235,42 @@ static ObjectKind csg_kind(const char *word) {
     return OBJECT_UNION;
 }
 
+static size_t objects_in(const EvalBlock *block) {
+    size_t count = 0;
+    for (size_t i = 0; i < block->count; i++)
+        count += block->items[i].kind == ITEM_OBJECTS ? block->items[i].objects.count : block->items[i].kind == ITEM_VALUE;
+    return count;
+}
+
 bool build_csg(BuildContext *context, const EvalBlock *block, Value *out) {
-    CsgDraft draft = {.object = object_begin(block, csg_kind(block->word->text))};
+    CsgDraft draft = {.common = object_begin(block, csg_kind(block->word->text))};
     Reader reader = reader_begin(context, block);
     static const WordRule group_rules[] = {IGNORED("global_lights")};
     bool group = strcmp(block->word->text, "light_group") == 0;
     if (group) reader_add_table(&reader, group_rules, VTS_ARRAY_COUNT(group_rules), &draft);
     reader.on_value = on_csg_value;
     reader.value_target = &draft;
-    if (!object_finish(&reader, &draft.object, out)) return false;
+    draft.children.capacity = objects_in(block);
+    draft.children.items = arena_new_array(context->arena, const Object *, draft.children.capacity);
+    if (!object_read(&reader, &draft.common)) return false;
     if (draft.children.count + draft.lights.count < 2 && !group)
         diag_warning(context->diags, block->word_span, "'%s' should hold at least 2 objects, found %zu",
                      block->word->text, draft.children.count + draft.lights.count);
-    Object *made = arena_copy(context->arena, out->as.object, sizeof *made);
-    made->as.children.items = draft.children.items;
-    made->as.children.count = draft.children.count;
-    made->as.children.lights = draft.lights.items;
-    made->as.children.light_count = draft.lights.count;
-    object_rehash(made);
-    out->as.object = made;
+    ObjectGroup *made = arena_new(context->arena, ObjectGroup);
+    *made = (ObjectGroup){.items = draft.children.items,
+                          .count = draft.children.count,
+                          .lights = draft.lights.items,
+                          .light_count = draft.lights.count};
+    object_group_settle(made);
+    draft.common.object.as.group = made;
+    *out = (Value){.kind = VALUE_OBJECT, .as.object = object_make(context, &draft.common)};
     return true;
 }
 
 bool build_unmodelled(BuildContext *context, const EvalBlock *block, Value *out) {
-    Object *object = arena_new(context->arena, Object);
-    *object = object_begin(block, OBJECT_UNMODELLED);
-    inert_add(context, &object->inert, object->word, block->word_span);
-    object_rehash(object);
-    *out = (Value){.kind = VALUE_OBJECT, .as.object = object};
+    ObjectDraft draft = object_begin(block, OBJECT_UNMODELLED);
+    draft.object.as.word = draft.word;
+    inert_add(context, &draft.rest.inert, draft.word, block->word_span);
+    *out = (Value){.kind = VALUE_OBJECT, .as.object = object_make(context, &draft)};
     return true;
 }

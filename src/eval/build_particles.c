@@ -63,16 +63,14 @@ bool build_particles(BuildContext *context, const EvalBlock *block, Value *out) 
     static const WordRule rules[] = {{"count", WORD_CUSTOM, 0, read_count, false}};
     if (object_is_copy(block)) return build_object(context, block, out);
     ParticleList list = {0};
-    Object object = object_begin(block, OBJECT_PARTICLES);
+    ObjectDraft draft = object_begin(block, OBJECT_PARTICLES);
     Reader reader = reader_begin(context, block);
     reader_add_table(&reader, rules, VTS_ARRAY_COUNT(rules), &list);
-    if (!object_finish(&reader, &object, out)) return false;
+    if (!object_read(&reader, &draft)) return false;
     if (list.count == 0)
         diag_warning(context->diags, block->word_span, "'particles' without particles draws nothing");
-    Object *made = arena_copy(context->arena, out->as.object, sizeof *made);
-    made->as.particles.items = list.items;
-    made->as.particles.count = list.count;
-    object_rehash(made);
-    out->as.object = made;
+    draft.object.as.particles.items = list.items;
+    draft.object.as.particles.count = list.count;
+    *out = (Value){.kind = VALUE_OBJECT, .as.object = object_make(context, &draft)};
     return true;
 }

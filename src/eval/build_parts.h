@@ -10,7 +10,6 @@ extern const WordRule transform_rules[];
 extern const size_t transform_rule_count;
 /* Takes a VALUE_TRANSFORM: composes it onto `onto`. */
 bool take_transform(const Argument *value, Transform *onto);
-bool transform_is_identity(const Transform *t);
 BlockBuilder build_transform;
 
 /* ---- build_grammar.c: what is read and not modelled (grammar.def) ---- */
@@ -56,11 +55,22 @@ bool take_looks(BuildContext *context, const Argument *value, const Texture **te
                 const InertNote **inert, const Transform *place);
 
 /* ---- build_object.c ---- */
-/* Takes looks and transforms; target: an Object. */
+/* An object while its block is read. */
+typedef struct ObjectDraft {
+    Object object;
+    Transform transform; /* becomes the object's place */
+    ObjectRest rest;
+    const char *word; /* the block's */
+} ObjectDraft;
+ObjectDraft object_begin(const EvalBlock *block, ObjectKind kind);
+/* Takes looks and transforms; target: an ObjectDraft. */
 bool object_on_value(Reader *reader, const Argument *value, void *target);
-/* Modifiers of all objects; target: an Object. Reads to the end of the block, stores the object in *out. */
-bool object_finish(Reader *reader, Object *object, Value *out);
-Object object_begin(const EvalBlock *block, ObjectKind kind);
+/* Reads to the end of the block, with the modifiers of all objects; false after a diagnostic. */
+bool object_read(Reader *reader, ObjectDraft *draft);
+/* The finished object. */
+const Object *object_make(const BuildContext *context, const ObjectDraft *draft);
+/* Both: for objects whose own numbers stand before the modifiers. */
+bool object_finish(Reader *reader, ObjectDraft *draft, Value *out);
 /* The block is `sphere { S … }` with a declared object S: a copy of S with modifiers. */
 bool object_is_copy(const EvalBlock *block);
 BlockBuilder build_object, build_csg, build_unmodelled;

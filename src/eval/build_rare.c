@@ -274,7 +274,7 @@ static const WordRule picture_rules[] = {
 /* ---- values ---- */
 
 static bool take_blob_part(RareDraft *draft, const Object *object) {
-    BlobPart part = {.transform = object->transform};
+    BlobPart part = {.transform = object_transform(object)};
     if (object->kind == OBJECT_SPHERE) {
         part.base = part.cap = object->as.sphere.center;
         part.radius = object->as.sphere.radius;
@@ -301,15 +301,15 @@ static bool on_rare_value(Reader *reader, const Argument *value, void *target) {
     case VALUE_OBJECT:
         if (draft->takes_parts) return take_blob_part(draft, value->value.as.object);
         return false;
-    default: return object_on_value(reader, value, &draft->object);
+    default: return object_on_value(reader, value, &draft->common);
     }
 }
 
-bool rare_begin(RareDraft *draft, Reader *reader, Value *out) {
+bool rare_begin(RareDraft *draft, Reader *reader) {
     const char *word = reader->block->word->text;
     draft->reader = reader;
-    draft->object = object_begin(reader->block, OBJECT_UNMODELLED);
-    if (vec3_length_squared(draft->turned) > 0) draft->object.transform = transform_rotate(draft->turned);
+    draft->common = object_begin(reader->block, OBJECT_SOLID);
+    if (vec3_length_squared(draft->turned) > 0) draft->common.transform = transform_rotate(draft->turned);
     reader_add_table(reader, rules, VTS_ARRAY_COUNT(rules), draft);
     if (strcmp(word, "julia_fractal") == 0)
         reader_add_table(reader, julia_rules, VTS_ARRAY_COUNT(julia_rules), draft);
@@ -317,8 +317,8 @@ bool rare_begin(RareDraft *draft, Reader *reader, Value *out) {
         reader_add_table(reader, picture_rules, VTS_ARRAY_COUNT(picture_rules), draft);
     reader->on_value = on_rare_value;
     reader->value_target = draft;
-    inert_add(reader->context, &draft->object.inert, word, reader->block->word_span);
-    return object_finish(reader, &draft->object, out);
+    inert_add(reader->context, &draft->common.rest.inert, word, reader->block->word_span);
+    return object_read(reader, &draft->common);
 }
 
 bool rare_end(RareDraft *draft, Value *out) {
@@ -326,11 +326,9 @@ bool rare_end(RareDraft *draft, Value *out) {
     if (draft->reader->failed) return false;
     if (draft->next < draft->row.count) return row_error(draft, "no more numbers here");
     Solid *solid = arena_copy(arena, &draft->solid, sizeof *solid);
+    solid->word = draft->common.word;
     solid_rehash(solid);
-    Object *made = arena_copy(arena, out->as.object, sizeof *made);
-    made->kind = OBJECT_SOLID;
-    made->as.solid = solid;
-    object_rehash(made);
-    out->as.object = made;
+    draft->common.object.as.solid = solid;
+    *out = (Value){.kind = VALUE_OBJECT, .as.object = object_make(draft->reader->context, &draft->common)};
     return true;
 }

@@ -7,7 +7,7 @@
 /* All that such a block may say. */
 typedef struct RareDraft {
     Reader *reader;
-    Object object;
+    ObjectDraft common;
     Solid solid;
     struct {
         Argument *items;
@@ -31,7 +31,7 @@ typedef struct RareDraft {
 
 /* Reads the block with all modifiers of objects; then the row can be read; then rare_end() makes the object of
  * draft->solid. False after a diagnostic. */
-bool rare_begin(RareDraft *draft, Reader *reader, Value *out);
+bool rare_begin(RareDraft *draft, Reader *reader);
 bool rare_end(RareDraft *draft, Value *out);
 
 /* The next value of the row; `what` names it in messages. False after a diagnostic. */

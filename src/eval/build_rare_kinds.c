@@ -9,7 +9,7 @@
     if (object_is_copy(block)) return build_object(context, block, out);                                     \
     Reader reader = reader_begin(context, block);                                                            \
     RareDraft draft = {__VA_ARGS__};                                                                         \
-    if (!rare_begin(&draft, &reader, out)) return false
+    if (!rare_begin(&draft, &reader)) return false
 
 /* ---- algebraic ---- */
 
@@ -227,12 +227,10 @@ bool build_blob(BuildContext *context, const EvalBlock *block, Value *out) {
 
 /* POV-Ray's default container. */
 static const Object *unit_container(const BuildContext *context) {
-    Object box = {.kind = OBJECT_BOX, .word = "box", .transform = transform_identity()};
+    Object box = {.kind = OBJECT_BOX};
     box.as.box.corner1 = vec3_splat(-1);
     box.as.box.corner2 = vec3_splat(1);
-    Object *made = arena_copy(context->arena, &box, sizeof box);
-    object_rehash(made);
-    return made;
+    return object_keep(context->arena, &box, NULL);
 }
 
 static bool next_function(RareDraft *draft, int parameters, const Tape **out) {

@@ -291,8 +291,11 @@ bool word_int(Reader *reader, const Word *word, size_t index, int *out) {
 bool word_vector(Reader *reader, const Word *word, size_t index, Vec3 *out) {
     const Argument *argument = word_argument(reader, word, index, "a vector");
     if (!argument) return false;
-    if (argument->value.kind == VALUE_VECTOR &&
-        argument->value.size == 3) { /* the common case, without a text for errors */
+    /* The common cases, without a text for errors. */
+    if (argument->value.kind == VALUE_FLOAT) {
+        *out = vec3_splat(argument->value.as.number);
+        if (vec3_is_finite(*out)) return true;
+    } else if (argument->value.kind == VALUE_VECTOR && argument->value.size == 3) {
         const double *c = argument->value.as.components;
         *out = vec3(c[0], c[1], c[2]);
         if (vec3_is_finite(*out)) return true;
@@ -441,6 +444,15 @@ static void read_value(Reader *reader, const BlockItem *item) {
         refuse_value(reader, item);
 }
 
+static void read_objects(Reader *reader, const BlockItem *item) {
+    for (size_t i = 0; i < item->objects.count; i++) {
+        const Object *object = item->objects.items[i];
+        const BlockItem one = {
+            .kind = ITEM_VALUE, .span = object->span, .value = {.kind = VALUE_OBJECT, .as.object = object}};
+        read_value(reader, &one);
+    }
+}
+
 bool reader_run(Reader *reader) {
     const BlockItem *item;
     while ((item = reader_peek(reader))) {
@@ -451,6 +463,8 @@ bool reader_run(Reader *reader) {
                          reader->block->word->text);
         else if (item_as_word(item, &word))
             reader_word(reader, &word);
+        else if (item->kind == ITEM_OBJECTS)
+            read_objects(reader, item);
         else
             read_value(reader, item);
         if (diag_full(reader->context->diags)) break;

@@ -33,27 +33,27 @@ static bool read_strength(Reader *reader, double *out) {
 bool build_sphere(BuildContext *context, const EvalBlock *block, Value *out) {
     if (object_is_copy(block)) return build_object(context, block, out);
     Reader reader = reader_begin(context, block);
-    Object object = object_begin(block, OBJECT_SPHERE);
-    return reader_vector(&reader, "the center", &object.as.sphere.center, NULL) &&
-           read_radius(&reader, "the radius", &object.as.sphere.radius) && read_strength(&reader, &object.as.sphere.strength) &&
-           object_finish(&reader, &object, out);
+    ObjectDraft draft = object_begin(block, OBJECT_SPHERE);
+    return reader_vector(&reader, "the center", &draft.object.as.sphere.center, NULL) &&
+           read_radius(&reader, "the radius", &draft.object.as.sphere.radius) && read_strength(&reader, &draft.object.as.sphere.strength) &&
+           object_finish(&reader, &draft, out);
 }
 
 bool build_box(BuildContext *context, const EvalBlock *block, Value *out) {
     if (object_is_copy(block)) return build_object(context, block, out);
     Reader reader = reader_begin(context, block);
-    Object object = object_begin(block, OBJECT_BOX);
+    ObjectDraft draft = object_begin(block, OBJECT_BOX);
     Vec3 a, b;
     if (!reader_vector(&reader, "the first corner", &a, NULL) ||
         !reader_vector(&reader, "the second corner", &b, NULL))
         return false;
-    object.as.box.corner1 = vec3_min(a, b);
-    object.as.box.corner2 = vec3_max(a, b);
-    return object_finish(&reader, &object, out);
+    draft.object.as.box.corner1 = vec3_min(a, b);
+    draft.object.as.box.corner2 = vec3_max(a, b);
+    return object_finish(&reader, &draft, out);
 }
 
 static void read_open(Reader *reader, const Word *word, void *target) {
-    if (word_arguments(reader, word, 0, 0)) ((Object *)target)->as.cone.open = true;
+    if (word_arguments(reader, word, 0, 0)) ((ObjectDraft *)target)->object.as.cone.open = true;
 }
 
 static bool read_cone_ends(Reader *reader, Object *object) {
@@ -81,10 +81,10 @@ bool build_cone(BuildContext *context, const EvalBlock *block, Value *out) {
     static const WordRule cone_rules[] = {{"open", WORD_CUSTOM, 0, read_open, false}};
     if (object_is_copy(block)) return build_object(context, block, out);
     Reader reader = reader_begin(context, block);
-    Object object = object_begin(block, block->word->text[1] == 'o' ? OBJECT_CONE : OBJECT_CYLINDER);
-    if (!read_cone_ends(&reader, &object) || !read_strength(&reader, &object.as.cone.strength)) return false;
-    reader_add_table(&reader, cone_rules, VTS_ARRAY_COUNT(cone_rules), &object);
-    return object_finish(&reader, &object, out);
+    ObjectDraft draft = object_begin(block, block->word->text[1] == 'o' ? OBJECT_CONE : OBJECT_CYLINDER);
+    if (!read_cone_ends(&reader, &draft.object) || !read_strength(&reader, &draft.object.as.cone.strength)) return false;
+    reader_add_table(&reader, cone_rules, VTS_ARRAY_COUNT(cone_rules), &draft);
+    return object_finish(&reader, &draft, out);
 }
 
 static bool read_normal(Reader *reader, const char *what, Vec3 *normal, double *length) {
@@ -103,34 +103,34 @@ static bool read_normal(Reader *reader, const char *what, Vec3 *normal, double *
 bool build_plane(BuildContext *context, const EvalBlock *block, Value *out) {
     if (object_is_copy(block)) return build_object(context, block, out);
     Reader reader = reader_begin(context, block);
-    Object object = object_begin(block, OBJECT_PLANE);
+    ObjectDraft draft = object_begin(block, OBJECT_PLANE);
     double length;
-    return read_normal(&reader, "the normal", &object.as.plane.normal, &length) &&
-           reader_float(&reader, "the distance", &object.as.plane.distance, NULL) &&
-           object_finish(&reader, &object, out);
+    return read_normal(&reader, "the normal", &draft.object.as.plane.normal, &length) &&
+           reader_float(&reader, "the distance", &draft.object.as.plane.distance, NULL) &&
+           object_finish(&reader, &draft, out);
 }
 
 bool build_disc(BuildContext *context, const EvalBlock *block, Value *out) {
     if (object_is_copy(block)) return build_object(context, block, out);
     Reader reader = reader_begin(context, block);
-    Object object = object_begin(block, OBJECT_DISC);
+    ObjectDraft draft = object_begin(block, OBJECT_DISC);
     double length;
-    if (!reader_vector(&reader, "the center", &object.as.disc.center, NULL) ||
-        !read_normal(&reader, "the normal", &object.as.disc.normal, &length) ||
-        !read_radius(&reader, "the radius", &object.as.disc.radius))
+    if (!reader_vector(&reader, "the center", &draft.object.as.disc.center, NULL) ||
+        !read_normal(&reader, "the normal", &draft.object.as.disc.normal, &length) ||
+        !read_radius(&reader, "the radius", &draft.object.as.disc.radius))
         return false;
     Argument hole;
     if (reader_take_value(&reader, VALUE_FLOAT, &hole) &&
-        argument_float(&reader, &hole, "the radius of the hole", &object.as.disc.hole_radius))
-        object.as.disc.hole_radius = fabs(object.as.disc.hole_radius);
-    return object_finish(&reader, &object, out);
+        argument_float(&reader, &hole, "the radius of the hole", &draft.object.as.disc.hole_radius))
+        draft.object.as.disc.hole_radius = fabs(draft.object.as.disc.hole_radius);
+    return object_finish(&reader, &draft, out);
 }
 
 bool build_torus(BuildContext *context, const EvalBlock *block, Value *out) {
     if (object_is_copy(block)) return build_object(context, block, out);
     Reader reader = reader_begin(context, block);
-    Object object = object_begin(block, OBJECT_TORUS);
-    return read_radius(&reader, "the major radius", &object.as.torus.major_radius) &&
-           read_radius(&reader, "the minor radius", &object.as.torus.minor_radius) &&
-           object_finish(&reader, &object, out);
+    ObjectDraft draft = object_begin(block, OBJECT_TORUS);
+    return read_radius(&reader, "the major radius", &draft.object.as.torus.major_radius) &&
+           read_radius(&reader, "the minor radius", &draft.object.as.torus.minor_radius) &&
+           object_finish(&reader, &draft, out);
 }

@@ -207,7 +207,8 @@ static SurfaceUv natural_uv(const Object *object) {
 /* object { SURFACE … } in a surface is that surface, placed and coloured. */
 static bool take_placed_surface(Surface *s, const Object *object) {
     *s = *object->as.surface;
-    s->transform = transform_then(&s->transform, &object->transform);
+    Transform place = object_transform(object);
+    s->transform = transform_then(&s->transform, &place);
     if (object->texture) s->texture = object->texture;
     return true;
 }

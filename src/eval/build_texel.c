@@ -34,7 +34,7 @@ static void set_bounds(Reader *reader, TexelDraft *draft, Box3 box, Span span) {
 }
 
 static void note_unmodelled(Reader *reader, TexelDraft *draft, const Object *object) {
-    for (const InertNote *note = object->inert; note; note = note->next)
+    for (const InertNote *note = object_inert(object); note; note = note->next)
         inert_add(reader->context, &draft->texel.inert, note->word, note->span);
 }
 

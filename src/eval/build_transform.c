@@ -4,12 +4,6 @@
 
 static void compose(Transform *onto, Transform next) { *onto = transform_then(onto, &next); }
 
-bool transform_is_identity(const Transform *t) {
-    static const Mat3 unit = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    return t->offset.x == 0 && t->offset.y == 0 && t->offset.z == 0 &&
-           memcmp(&t->linear, &unit, sizeof unit) == 0;
-}
-
 bool take_transform(const Argument *value, Transform *onto) {
     if (value->value.kind != VALUE_TRANSFORM) return false;
     compose(onto, *value->value.as.transform);

@@ -2,9 +2,17 @@
 
 #include <string.h>
 
+/* Blocks whose builders know ITEM_OBJECTS. */
+static bool gathers(Name word) {
+    static const char *const words[] = {"union", "merge", "intersection", "difference", "light_group", "mesh"};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(words); i++)
+        if (strcmp(words[i], word->text) == 0) return true;
+    return false;
+}
+
 const EvalBlock *eval_block_items(Eval *ev, Name word, Span word_span, Span span, const Body *body) {
     ItemList items = {0};
-    Sink sink = {.kind = SINK_ITEMS, .block = word, .items = &items};
+    Sink sink = {.kind = SINK_ITEMS, .block = word, .gathers = gathers(word), .items = &items};
     run_body(ev, body, &sink);
     EvalBlock *block = arena_new(&ev->blocks, EvalBlock);
     *block = (EvalBlock){
@@ -27,6 +35,8 @@ const EvalBlock *block_keep(Arena *arena, const EvalBlock *from) {
         items[i].value = keep_value(arena, items[i].value);
         items[i].body = block_keep(arena, items[i].body);
         items[i].entry = block_keep(arena, items[i].entry);
+        items[i].objects.items =
+            arena_copy(arena, items[i].objects.items, items[i].objects.count * sizeof(const Object *));
         if (items[i].argument_count == 0) continue;
         Argument *arguments =
             arena_copy(arena, items[i].arguments, items[i].argument_count * sizeof(Argument));

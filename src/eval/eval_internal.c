@@ -104,7 +104,7 @@ const Tape *object_inside_tape(const BuildContext *context, const Object *object
     *e = (TapeExternal){
         .name = "inside", .input_count = 3, .output_count = 1, .eval = eval_inside, .data = query};
     e->hash = hash_begin(0x696E7369);
-    hash_add_hash(&e->hash, object->hash);
+    hash_add_hash(&e->hash, object_hash(object));
     TapeBuilder *tape = tape_builder_create(context->arena, 3);
     TapeRef in[3], out;
     for (int i = 0; i < 3; i++) in[i] = tape_input(tape, i);

@@ -30,8 +30,24 @@ static void add_argument(Eval *ev, BlockItem *item, Value v, Span span) {
     item->arguments = all;
 }
 
+enum { LARGEST_RUN = 4096 }; /* longer lists would be copied again and again as they grow */
+
+/* Objects of a large union take a pointer each, not a whole item. */
+static bool joins_objects(Eval *ev, const Sink *sink, const Value *v) {
+    if (!sink->gathers || v->kind != VALUE_OBJECT || sink->items->count == 0) return false;
+    BlockItem *last = &sink->items->items[sink->items->count - 1];
+    if (last->kind == ITEM_VALUE && last->value.kind == VALUE_OBJECT) {
+        *last = (BlockItem){.kind = ITEM_OBJECTS, .span = last->span, .value = last->value};
+        *list_push(&ev->blocks, &last->objects) = last->value.as.object;
+    }
+    if (last->kind != ITEM_OBJECTS || last->objects.count == LARGEST_RUN) return false;
+    *list_push(&ev->blocks, &last->objects) = v->as.object;
+    return true;
+}
+
 static void add_item(Eval *ev, Sink *sink, Value v, Span span) {
     v = keep(ev, v);
+    if (joins_objects(ev, sink, &v)) return;
     if (continues_word(ev, sink, &v))
         add_argument(ev, &sink->items->items[sink->items->count - 1], v, span);
     else

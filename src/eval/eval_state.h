@@ -83,6 +83,7 @@ typedef struct Sink {
     SinkKind kind;
     Name block;         /* SINK_ITEMS */
     ItemList *items;    /* SINK_ITEMS */
+    bool gathers;       /* SINK_ITEMS: a block of objects, of which there may be very many */
     uint64_t word_body; /* SINK_ITEMS: the run of a body that brought the last word */
     Value value;        /* SINK_SINGLE */
     bool filled;

@@ -44,12 +44,12 @@ typedef struct SkinList {
 } SkinList;
 
 static void find_placed_texels(const Object *object, const Transform *parent, const Texture *inherited, Arena *arena, SkinList *out) {
-    Transform to_world = transform_then(&object->transform, parent);
+    Transform own = object_transform(object), to_world = transform_then(&own, parent);
     const Texture *texture = object->texture ? object->texture : inherited;
     if (object->kind == OBJECT_TEXEL) *list_push(arena, out) = skin_of_texel(object, &to_world, texture, arena);
     if (object->kind == OBJECT_UNION || object->kind == OBJECT_MERGE)
-        for (size_t i = 0; i < object->as.children.count; i++)
-            find_placed_texels(object->as.children.items[i], &to_world, texture, arena, out);
+        for (size_t i = 0; i < object->as.group->count; i++)
+            find_placed_texels(object->as.group->items[i], &to_world, texture, arena, out);
 }
 
 static Quadrature quadrature_of(const char *name) {

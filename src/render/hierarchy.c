@@ -109,12 +109,12 @@ static void add_surface(Builder *b, const Object *object, const Transform *to_wo
 
 /* Flattens the tree of objects: each leaf gets its own part, the transform to the scene and the texture it inherits. */
 static void add_object(Builder *b, const Object *object, const Transform *parent, const Texture *inherited) {
-    Transform to_world = transform_then(&object->transform, parent);
+    Transform own = object_transform(object), to_world = transform_then(&own, parent);
     const Texture *texture = object->texture ? object->texture : inherited;
     switch (object->kind) {
     case OBJECT_UNION:
     case OBJECT_MERGE:
-        for (size_t i = 0; i < object->as.children.count; i++) add_object(b, object->as.children.items[i], &to_world, texture);
+        for (size_t i = 0; i < object->as.group->count; i++) add_object(b, object->as.group->items[i], &to_world, texture);
         return;
     case OBJECT_SPHERE: case OBJECT_BOX: case OBJECT_CYLINDER: case OBJECT_CONE: case OBJECT_DISC: case OBJECT_TORUS:
         add_part(b, &b->hierarchy->parts, object, &to_world, make_look(b, texture));
@@ -131,7 +131,7 @@ static void add_object(Builder *b, const Object *object, const Transform *parent
     case OBJECT_DIFFERENCE:
     case OBJECT_SOLID:
     case OBJECT_UNMODELLED:
-        diag_warning(b->diags, object->span, "'%s' is not drawn in this version: it has no effect here", object->word);
+        diag_warning(b->diags, object->span, "'%s' is not drawn in this version: it has no effect here", object_word(object));
         return;
     }
 }
@@ -244,7 +244,8 @@ static Box3 scene_box(const Scene *scene) {
     for (size_t i = 0; i < scene->object_count; i++) {
         const Object *object = scene->objects[i];
         Box3 own = shape_bounds(object);
-        if (vec3_is_finite(own.min) && vec3_is_finite(own.max)) box = box3_union(box, box3_transform(&object->transform, own));
+        Transform place = object_transform(object);
+        if (vec3_is_finite(own.min) && vec3_is_finite(own.max)) box = box3_union(box, box3_transform(&place, own));
     }
     return box3_is_empty(box) ? (Box3){{0, 0, 0}, {1, 0, 0}} : box;
 }

@@ -195,6 +195,7 @@ typedef enum ObjectKind {
 
 typedef struct MeshData {
     Hash128 hash;
+    bool single; /* a triangle or smooth_triangle */
     const Vec3 *vertices;
     size_t vertex_count;
     const Vec3 *normals;                    /* per index of normal_triangles; NULL: flat */
@@ -233,17 +234,36 @@ typedef struct ObjectList {
     size_t count;
 } ObjectList;
 
-struct Object {
-    Span span;
-    Hash128 hash;             /* shape, transform and textures of it and its children */
-    Hash128 shape_hash;       /* of `as` alone: geometry before the transform, without looks */
-    ObjectKind kind;
-    const char *word;         /* the keyword that made it */
-    Transform transform;      /* object space → parent's space */
-    const Texture *texture;   /* NULL: the parent's, at last the default */
-    bool no_shadow, no_image, inverse, hollow;
+/* What a union and its like hold; shared by all copies. */
+typedef struct ObjectGroup {
+    const Object *const *items;
+    size_t count;
+    /* Copied to Scene.lights, transformed; here they only remember where they came from. */
+    const Light *const *lights;
+    size_t light_count;
+    /* Kept by scene_hash.c once they were asked for. */
+    Hash128 shape_hash, hash;
+    bool hashed;
+    int unhashed_depth; /* groups within each other that are not hashed yet, this one included */
+} ObjectGroup;
+
+/* What few objects have. */
+typedef struct ObjectRest {
     ObjectList clipped_by, bounded_by; /* in object space */
     const InertNote *inert;
+    bool hollow;
+} ObjectRest;
+
+/* There may be millions of them, most of which are copies that differ in their place alone: what is rare or shared is behind pointers, and
+ * objects in the scene's arena end behind the member of `as` that their kind uses (object_keep() makes them). So objects are not assigned
+ * to each other, but copied with object_copy(). */
+struct Object {
+    Span span;
+    uint8_t kind; /* ObjectKind */
+    bool no_shadow, no_image, inverse;
+    const Affine *place;    /* object space → parent's space; NULL: the same */
+    const Texture *texture; /* NULL: the parent's, at last the default */
+    const ObjectRest *rest; /* or NULL */
     union {
         struct { Vec3 center; double radius; double strength; /* in a blob */ } sphere;
         struct { Vec3 corner1, corner2; } box;
@@ -253,13 +273,29 @@ struct Object {
         struct { double major_radius, minor_radius; } torus;
         const MeshData *mesh;
         const Solid *solid;
-        /* Lights of a union are copied to Scene.lights, transformed; here they only remember where they came from. */
-        struct { const Object *const *items; size_t count; const Light *const *lights; size_t light_count; } children;
+        const ObjectGroup *group; /* of OBJECT_UNION, INTERSECTION, DIFFERENCE, MERGE */
         struct { const Particle *items; size_t count; } particles;
         const Surface *surface;
         const TexelDef *texel;
+        const char *word; /* of OBJECT_UNMODELLED */
     } as;
 };
+
+/* ---- scene_object.c ---- */
+
+bool object_has_group(const Object *object);
+/* Object space → parent's space, with its inverse. */
+Transform object_transform(const Object *object);
+/* The keyword that makes such objects. */
+const char *object_word(const Object *object);
+/* Empty lists where there are none. */
+ObjectList object_clipped_by(const Object *object);
+ObjectList object_bounded_by(const Object *object);
+const InertNote *object_inert(const Object *object);
+/* The object as a whole struct, to be changed. */
+Object object_copy(const Object *object);
+/* Puts an object into the arena; its `place` becomes a copy of `transform` (NULL: as it is). */
+const Object *object_keep(Arena *arena, const Object *object, const Transform *transform);
 
 /* ---- volumetric textures ---- */
 

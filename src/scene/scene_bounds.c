@@ -82,16 +82,16 @@ static Box3 bounds_under(const Object *object, const Transform *outer);
 
 static Box3 union_bounds(const Object *o, const Transform *t) {
     Box3 box = box3_empty();
-    for (size_t i = 0; i < o->as.children.count; i++)
-        box = box3_union(box, bounds_under(o->as.children.items[i], t));
+    for (size_t i = 0; i < o->as.group->count; i++)
+        box = box3_union(box, bounds_under(o->as.group->items[i], t));
     return box;
 }
 
 static Box3 intersection_bounds(const Object *o, const Transform *t) {
     Box3 box = everything();
-    for (size_t i = 0; i < o->as.children.count; i++) {
-        if (o->as.children.items[i]->inverse) continue;
-        Box3 child = bounds_under(o->as.children.items[i], t);
+    for (size_t i = 0; i < o->as.group->count; i++) {
+        if (o->as.group->items[i]->inverse) continue;
+        Box3 child = bounds_under(o->as.group->items[i], t);
         box = (Box3){vec3_max(box.min, child.min), vec3_min(box.max, child.max)};
     }
     return box3_is_empty(box) ? box3_empty() : box;
@@ -114,7 +114,7 @@ static Box3 particles_bounds(const Object *o, const Transform *t) {
 }
 
 static Box3 bounds_under(const Object *o, const Transform *outer) {
-    Transform t = transform_then(&o->transform, outer);
+    Transform own = object_transform(o), t = transform_then(&own, outer);
     switch (o->kind) {
     case OBJECT_SPHERE: return sphere_bounds(o, &t);
     case OBJECT_BOX:
@@ -130,7 +130,7 @@ static Box3 bounds_under(const Object *o, const Transform *outer) {
     case OBJECT_MERGE: return union_bounds(o, &t);
     case OBJECT_INTERSECTION: return intersection_bounds(o, &t);
     case OBJECT_DIFFERENCE:
-        return o->as.children.count ? bounds_under(o->as.children.items[0], &t) : box3_empty();
+        return o->as.group->count ? bounds_under(o->as.group->items[0], &t) : box3_empty();
     case OBJECT_PARTICLES: return particles_bounds(o, &t);
     case OBJECT_SURFACE: return surface_bounds(o->as.surface, &t);
     case OBJECT_TEXEL:

@@ -182,12 +182,38 @@ static void add_objects(Hash128 *h, const ObjectList *list) {
     for (size_t i = 0; i < list->count; i++) hash_add_hash(h, object_geometry_hash(list->items[i]));
 }
 
-static Hash128 shape_hash(const Object *o) {
+/* Groups are shared by their copies, which may be shared again: hashed once, however many ways lead to them. */
+static const ObjectGroup *hashed_group(const ObjectGroup *group) {
+    if (group->hashed) return group;
+    ObjectGroup *g = (ObjectGroup *)(uintptr_t)group; /* the answers are kept in the group */
+    g->shape_hash = hash_begin(KIND_SHAPE);
+    g->hash = hash_begin(KIND_OBJECT);
+    for (size_t i = 0; i < g->count; i++) {
+        hash_add_hash(&g->shape_hash, object_geometry_hash(g->items[i]));
+        hash_add_hash(&g->hash, object_hash(g->items[i]));
+    }
+    g->hashed = true;
+    g->unhashed_depth = 0;
+    return g;
+}
+
+enum { DEEPEST_UNHASHED = 64 };
+
+void object_group_settle(ObjectGroup *group) {
+    group->unhashed_depth = 1;
+    for (size_t i = 0; i < group->count; i++)
+        if (object_has_group(group->items[i]))
+            group->unhashed_depth = int_max(group->unhashed_depth, group->items[i]->as.group->unhashed_depth + 1);
+    if (group->unhashed_depth > DEEPEST_UNHASHED) hashed_group(group);
+}
+
+Hash128 object_shape_hash(const Object *o) {
     Hash128 h = hash_begin(KIND_SHAPE);
     hash_add_u64(&h, o->kind);
     hash_add_u64(&h, o->inverse);
-    add_objects(&h, &o->clipped_by);
-    add_objects(&h, &o->bounded_by);
+    ObjectList clipped_by = object_clipped_by(o), bounded_by = object_bounded_by(o);
+    add_objects(&h, &clipped_by);
+    add_objects(&h, &bounded_by);
     switch (o->kind) {
     case OBJECT_SPHERE:
         hash_add_vec3(&h, o->as.sphere.center);
@@ -218,43 +244,36 @@ static Hash128 shape_hash(const Object *o) {
     case OBJECT_INTERSECTION:
     case OBJECT_DIFFERENCE:
     case OBJECT_MERGE:
-        for (size_t i = 0; i < o->as.children.count; i++)
-            hash_add_hash(&h, object_geometry_hash(o->as.children.items[i]));
+        hash_add_hash(&h, hashed_group(o->as.group)->shape_hash);
         break;
     case OBJECT_PARTICLES: add_particles(&h, o->as.particles.items, o->as.particles.count); break;
     case OBJECT_SURFACE: hash_add_hash(&h, o->as.surface->hash); break;
     case OBJECT_TEXEL: hash_add_hash(&h, o->as.texel->hash); break;
     case OBJECT_SOLID: hash_add_hash(&h, o->as.solid->hash); break;
-    case OBJECT_UNMODELLED: add_text(&h, o->word); break;
+    case OBJECT_UNMODELLED: add_text(&h, o->as.word); break;
     }
     return h;
 }
 
 Hash128 object_geometry_hash(const Object *o) {
     Hash128 h = hash_begin(KIND_GEOMETRY);
-    hash_add_hash(&h, o->shape_hash);
-    hash_add_transform(&h, &o->transform);
+    Transform place = object_transform(o);
+    hash_add_hash(&h, object_shape_hash(o));
+    hash_add_transform(&h, &place);
     return h;
 }
 
-static bool has_children(const Object *o) {
-    return o->kind == OBJECT_UNION || o->kind == OBJECT_INTERSECTION || o->kind == OBJECT_DIFFERENCE ||
-           o->kind == OBJECT_MERGE;
-}
-
-void object_rehash(Object *o) {
-    o->shape_hash = shape_hash(o);
+Hash128 object_hash(const Object *o) {
     Hash128 h = hash_begin(KIND_OBJECT);
     hash_add_hash(&h, object_geometry_hash(o));
     add_texture(&h, o->texture);
-    hash_add_u64(&h, (uint64_t)o->no_shadow | (uint64_t)o->no_image << 1 | (uint64_t)o->hollow << 2);
-    if (has_children(o))
-        for (size_t i = 0; i < o->as.children.count; i++) hash_add_hash(&h, o->as.children.items[i]->hash);
+    hash_add_u64(&h, (uint64_t)o->no_shadow | (uint64_t)o->no_image << 1 | (uint64_t)(o->rest && o->rest->hollow) << 2);
+    if (object_has_group(o)) hash_add_hash(&h, hashed_group(o->as.group)->hash);
     if (o->kind == OBJECT_TRIANGLES && o->as.mesh->triangle_textures) {
         hash_add(&h, o->as.mesh->triangle_textures, o->as.mesh->triangle_count * sizeof(uint32_t));
         for (size_t i = 0; i < o->as.mesh->texture_count; i++) add_texture(&h, o->as.mesh->textures[i]);
     }
-    o->hash = h;
+    return h;
 }
 
 void layer_rehash(TexelLayer *layer) {
@@ -275,7 +294,7 @@ void texel_rehash(TexelDef *texel) {
         const TexelLayer *layer = &texel->layers[i];
         hash_add_hash(&h, layer->hash);
         add_texture(&h, layer->texture);
-        for (size_t k = 0; k < layer->content_count; k++) hash_add_hash(&h, layer->contents[k]->hash);
+        for (size_t k = 0; k < layer->content_count; k++) hash_add_hash(&h, object_hash(layer->contents[k]));
     }
     for (size_t i = 0; i < texel->choice_count; i++) hash_add_hash(&h, texel->choices[i]->hash);
     texel->hash = h;

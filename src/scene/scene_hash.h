@@ -13,8 +13,13 @@ void pigment_rehash(Pigment *pigment);
 void finish_rehash(Finish *finish);
 void texture_rehash(Texture *texture);
 void mesh_rehash(MeshData *mesh); /* without its textures */
-/* `hash` and `shape_hash`. */
-void object_rehash(Object *object);
+/* Objects do not keep theirs (but groups do, when they are first asked: not from two threads at once). Shape, place and looks of the
+ * object and all in it; */
+Hash128 object_hash(const Object *object);
+/* the geometry before the place, without looks. */
+Hash128 object_shape_hash(const Object *object);
+/* To be called when a group is complete: hashes it now if it is deep, so that asking later never goes far down. */
+void object_group_settle(ObjectGroup *group);
 void layer_rehash(TexelLayer *layer);
 void texel_rehash(TexelDef *texel);
 void surface_rehash(Surface *surface);

@@ -202,7 +202,7 @@ static void add_shape(const Printer *p, const Object *o) {
     case OBJECT_UNION:
     case OBJECT_MERGE:
     case OBJECT_INTERSECTION:
-    case OBJECT_DIFFERENCE: strbuf_addf(p->out, " of %zu", o->as.children.count); break;
+    case OBJECT_DIFFERENCE: strbuf_addf(p->out, " of %zu", o->as.group->count); break;
     case OBJECT_PARTICLES: strbuf_addf(p->out, " of %zu", o->as.particles.count); break;
     case OBJECT_TEXEL: strbuf_addf(p->out, " %s", o->as.texel->name); break;
     case OBJECT_SURFACE:
@@ -227,34 +227,23 @@ static void print_particles(Printer *p, const Object *o) {
     }
 }
 
-static bool has_children(const Object *o) {
-    return o->kind == OBJECT_UNION || o->kind == OBJECT_INTERSECTION || o->kind == OBJECT_DIFFERENCE ||
-           o->kind == OBJECT_MERGE;
-}
-
-static const char *kind_name(const Object *o) {
-    static const char *const names[] = {
-        "sphere", "box",          "cylinder",   "cone",  "plane",     "disc",    "torus", "mesh",
-        "union",  "intersection", "difference", "merge", "particles", "surface", "texel", "unmodelled"};
-    return names[o->kind];
-}
-
 static void print_object(Printer *p, const Object *o) {
-    begin_line(p, kind_name(o));
+    Transform place = object_transform(o);
+    begin_line(p, o->kind == OBJECT_UNMODELLED ? "unmodelled" : object_word(o));
     add_shape(p, o);
-    add_transform(p, &o->transform);
+    add_transform(p, &place);
     add_flag(p, "no_shadow", o->no_shadow);
     add_flag(p, "no_image", o->no_image);
     add_flag(p, "inverse", o->inverse);
-    add_inert(p, o->inert);
+    add_inert(p, object_inert(o));
     end_line(p);
     p->depth++;
     print_texture(p, o->texture);
     if (o->kind == OBJECT_PARTICLES) print_particles(p, o);
     if (o->kind == OBJECT_SURFACE) print_surface(p, o->as.surface);
-    if (has_children(o)) {
-        for (size_t i = 0; i < o->as.children.count; i++) print_object(p, o->as.children.items[i]);
-        for (size_t i = 0; i < o->as.children.light_count; i++) print_light(p, o->as.children.lights[i]);
+    if (object_has_group(o)) {
+        for (size_t i = 0; i < o->as.group->count; i++) print_object(p, o->as.group->items[i]);
+        for (size_t i = 0; i < o->as.group->light_count; i++) print_light(p, o->as.group->lights[i]);
     }
     p->depth--;
 }

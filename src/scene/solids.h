@@ -72,6 +72,7 @@ typedef enum JuliaFunction {
 
 typedef struct Solid {
     SolidKind kind;
+    const char *word; /* the keyword that made it */
     Hash128 hash;
     union {
         /* Σ c·xⁱyʲzᵏ, in POV-Ray's order: i from the order down, then j, then k */

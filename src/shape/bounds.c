@@ -24,12 +24,13 @@ static bool inside_torus(const Object *object, Vec3 p) {
 }
 
 static bool inside_child(const Object *child, Vec3 p) {
-    return shape_inside(child, transform_point_back(&child->transform, p));
+    Transform place = object_transform(child);
+    return shape_inside(child, transform_point_back(&place, p));
 }
 
 static bool inside_children(const Object *object, Vec3 p) {
-    size_t count = object->as.children.count, holding = 0;
-    const Object *const *items = object->as.children.items;
+    size_t count = object->as.group->count, holding = 0;
+    const Object *const *items = object->as.group->items;
     for (size_t i = 0; i < count; i++) holding += inside_child(items[i], p);
     switch (object->kind) {
     case OBJECT_INTERSECTION: return count > 0 && holding == count;
@@ -122,11 +123,16 @@ static Box3 moved_bounds(const Transform *transform, Box3 box) {
     return box3_is_empty(box) || is_infinite(box) ? box : box3_transform(transform, box);
 }
 
+static Box3 child_bounds(const Object *child) {
+    Transform place = object_transform(child);
+    return moved_bounds(&place, shape_bounds(child));
+}
+
 static Box3 surface_bounds(const Surface *surface) {
     Box3 box = box3_empty();
     if (surface->deform) return shape_bounds_infinite();
     if (surface->kind == SURFACE_OBJECT) {
-        box = moved_bounds(&surface->object->transform, shape_bounds(surface->object));
+        box = child_bounds(surface->object);
     } else {
         size_t count = (size_t)(surface->nu + 1) * (size_t)(surface->nv + 1);
         for (size_t i = 0; i < count; i++) box = box3_add_point(box, surface->points[i]);
@@ -134,12 +140,10 @@ static Box3 surface_bounds(const Surface *surface) {
     return moved_bounds(&surface->transform, box);
 }
 
-static Box3 child_bounds(const Object *child) { return moved_bounds(&child->transform, shape_bounds(child)); }
-
 static Box3 union_bounds(const Object *object) {
     Box3 box = box3_empty();
-    for (size_t i = 0; i < object->as.children.count; i++) {
-        Box3 child = child_bounds(object->as.children.items[i]);
+    for (size_t i = 0; i < object->as.group->count; i++) {
+        Box3 child = child_bounds(object->as.group->items[i]);
         if (!box3_is_empty(child)) box = box3_union(box, child);
     }
     return box;
@@ -147,9 +151,9 @@ static Box3 union_bounds(const Object *object) {
 
 static Box3 intersection_bounds(const Object *object) {
     Box3 box = shape_bounds_infinite();
-    if (object->as.children.count == 0) return box3_empty();
-    for (size_t i = 0; i < object->as.children.count; i++) {
-        const Object *item = object->as.children.items[i];
+    if (object->as.group->count == 0) return box3_empty();
+    for (size_t i = 0; i < object->as.group->count; i++) {
+        const Object *item = object->as.group->items[i];
         Box3 child = item->inverse ? shape_bounds_infinite() : child_bounds(item);
         box = (Box3){vec3_max(box.min, child.min), vec3_min(box.max, child.max)};
     }
@@ -157,8 +161,8 @@ static Box3 intersection_bounds(const Object *object) {
 }
 
 static Box3 difference_bounds(const Object *object) {
-    if (object->as.children.count == 0) return box3_empty();
-    const Object *first = object->as.children.items[0];
+    if (object->as.group->count == 0) return box3_empty();
+    const Object *first = object->as.group->items[0];
     return first->inverse ? shape_bounds_infinite() : child_bounds(first);
 }
 

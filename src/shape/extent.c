@@ -77,8 +77,7 @@ static Box3 points_box(const Vec3 *points, size_t count, const Transform *t) {
 static Box3 mesh_box(const Object *o, const Transform *t) {
     const MeshData *mesh = o->as.mesh;
     const Transform identity = transform_identity();
-    bool single = o->word && (o->word[0] == 't' || o->word[0] == 's'); /* triangle, smooth_triangle */
-    if (single) return widened(points_box(mesh->vertices, mesh->vertex_count, t), 1e-10);
+    if (mesh->single) return widened(points_box(mesh->vertices, mesh->vertex_count, t), 1e-10);
     return moved(t, points_box(mesh->vertices, mesh->vertex_count, &identity));
 }
 
@@ -245,8 +244,9 @@ static Box3 solid_box(Extent *extent, const Object *o, const Transform *t) {
 
 /* Half a space whose border is square to an axis. */
 static bool plane_cut(const Object *o, bool flipped, Box3 *out) {
-    Vec3 n = transform_normal(&o->transform, o->as.plane.normal);
-    Vec3 p = transform_point(&o->transform, vec3_scale(o->as.plane.normal, o->as.plane.distance));
+    Transform place = object_transform(o);
+    Vec3 n = transform_normal(&place, o->as.plane.normal);
+    Vec3 p = transform_point(&place, vec3_scale(o->as.plane.normal, o->as.plane.distance));
     n = vec3_normalize(flipped != o->inverse ? vec3_negate(n) : n);
     double c[3] = {n.x, n.y, n.z}, lo[3], hi[3];
     bool square = false;
@@ -260,11 +260,9 @@ static bool plane_cut(const Object *o, bool flipped, Box3 *out) {
     return square;
 }
 
-static bool is_identity(const Transform *t) {
-    const Transform identity = transform_identity();
-    for (int i = 0; i < 3; i++)
-        if (vec3_length_squared(vec3_sub(t->linear.c[i], identity.linear.c[i])) > 0) return false;
-    return vec3_length_squared(t->offset) == 0;
+static bool is_unmoved(const Object *o) {
+    Transform place = object_transform(o);
+    return transform_is_identity(&place);
 }
 
 /* A child that an intersection can lean on; false: it narrows nothing. */
@@ -272,7 +270,7 @@ static bool narrowing_box(Extent *extent, const Object *child, bool flipped, Box
     if (child->kind == OBJECT_PLANE) return plane_cut(child, flipped, out);
     if (flipped != child->inverse) return false;
     if (child->kind == OBJECT_SOLID && child->as.solid->kind == SOLID_QUADRIC &&
-        is_identity(&child->transform)) {
+        is_unmoved(child)) {
         *out = quadric_box(child->as.solid);
         return true;
     }
@@ -282,10 +280,10 @@ static bool narrowing_box(Extent *extent, const Object *child, bool flipped, Box
 
 static Box3 common_box(Extent *extent, const Object *o) {
     Box3 box = infinite();
-    for (size_t i = 0; i < o->as.children.count; i++) {
+    for (size_t i = 0; i < o->as.group->count; i++) {
         Box3 child;
         bool flipped = o->kind == OBJECT_DIFFERENCE && i > 0;
-        if (narrowing_box(extent, o->as.children.items[i], flipped, &child)) box = common(box, child);
+        if (narrowing_box(extent, o->as.group->items[i], flipped, &child)) box = common(box, child);
     }
     return box3_is_empty(box) || !is_finite(box) ? infinite() : box;
 }
@@ -295,11 +293,6 @@ static Box3 list_box(Extent *extent, const Object *const *items, size_t count) {
     for (size_t i = 0; i < count && is_finite(box3_is_empty(box) ? (Box3){{0, 0, 0}, {0, 0, 0}} : box); i++)
         box = box3_union(box, object_box(extent, items[i]));
     return box3_is_empty(box) ? infinite() : box;
-}
-
-static bool is_set(const Object *o) {
-    return o->kind == OBJECT_UNION || o->kind == OBJECT_MERGE || o->kind == OBJECT_INTERSECTION ||
-           o->kind == OBJECT_DIFFERENCE;
 }
 
 static Box3 shape_box(Extent *extent, const Object *o, const Transform *t) {
@@ -315,8 +308,8 @@ static Box3 shape_box(Extent *extent, const Object *o, const Transform *t) {
     case OBJECT_DIFFERENCE: return moved(t, common_box(extent, o));
     case OBJECT_UNION:
     case OBJECT_MERGE:
-        if (o->as.children.light_count) return infinite();
-        return moved(t, list_box(extent, o->as.children.items, o->as.children.count));
+        if (o->as.group->light_count) return infinite();
+        return moved(t, list_box(extent, o->as.group->items, o->as.group->count));
     default: return moved(t, shape_bounds(o));
     }
 }
@@ -326,12 +319,13 @@ static Box3 object_box(Extent *extent, const Object *o) {
     if (extent->budget == 0 || extent->depth > DEEPEST) return infinite();
     extent->budget--;
     extent->depth++;
-    Box3 box = shape_box(extent, o, &o->transform);
-    const ObjectList *lists[] = {&o->clipped_by, &o->bounded_by};
-    bool yields = is_set(o) && o->kind != OBJECT_INTERSECTION && o->kind != OBJECT_DIFFERENCE;
+    Transform place = object_transform(o);
+    Box3 box = shape_box(extent, o, &place);
+    const ObjectList lists[] = {object_clipped_by(o), object_bounded_by(o)};
+    bool yields = object_has_group(o) && o->kind != OBJECT_INTERSECTION && o->kind != OBJECT_DIFFERENCE;
     for (size_t i = 0; i < 2; i++) {
-        if (!lists[i]->count || (!yields && is_finite(box))) continue;
-        Box3 bound = moved(&o->transform, list_box(extent, lists[i]->items, lists[i]->count));
+        if (!lists[i].count || (!yields && is_finite(box))) continue;
+        Box3 bound = moved(&place, list_box(extent, lists[i].items, lists[i].count));
         if (is_finite(bound)) box = bound;
     }
     extent->depth--;

@@ -20,8 +20,8 @@ static double value_at(const Solid *s, Vec3 p) {
 }
 
 static Ray container_ray(const Solid *s, const Ray *ray) {
-    const Transform *t = &s->as.isosurface.container->transform;
-    return (Ray){transform_point_back(t, ray->origin), transform_vector_back(t, ray->direction)};
+    Transform t = object_transform(s->as.isosurface.container);
+    return (Ray){transform_point_back(&t, ray->origin), transform_vector_back(&t, ray->direction)};
 }
 
 static double value_on(const Solid *s, const Ray *ray, double t) {
@@ -81,10 +81,11 @@ static Vec3 normal(const void *data, Vec3 p, const SolidTag *tag) {
     const Solid *s = data;
     const Object *container = s->as.isosurface.container;
     if (tag->part != PART_SURFACE) {
-        const Ray here = {transform_point_back(&container->transform, p), vec3_splat(0)};
+        Transform place = object_transform(container);
+        const Ray here = {transform_point_back(&place, p), vec3_splat(0)};
         const ShapeCrossing crossing = {0, (uint8_t)tag->u, false};
         return vec3_normalize(
-            transform_normal(&container->transform, shape_hit_at(container, &here, &crossing).normal));
+            transform_normal(&place, shape_hit_at(container, &here, &crossing).normal));
     }
     double h = 1e-6 * double_max(1, double_max(fabs(p.x), double_max(fabs(p.y), fabs(p.z))));
     Vec3 g = {difference(s, p, vec3(1, 0, 0), h), difference(s, p, vec3(0, 1, 0), h),
@@ -95,13 +96,14 @@ static Vec3 normal(const void *data, Vec3 p, const SolidTag *tag) {
 static bool inside(const void *data, Vec3 p) {
     const Solid *s = data;
     const Object *container = s->as.isosurface.container;
-    return shape_inside(container, transform_point_back(&container->transform, p)) != container->inverse &&
-           value_at(s, p) < 0;
+    Transform place = object_transform(container);
+    return shape_inside(container, transform_point_back(&place, p)) != container->inverse && value_at(s, p) < 0;
 }
 
 static Box3 bounds(const void *data) {
     const Object *container = ((const Solid *)data)->as.isosurface.container;
-    return box3_transform(&container->transform, shape_bounds(container));
+    Transform place = object_transform(container);
+    return box3_transform(&place, shape_bounds(container));
 }
 
 const SolidOps solid_isosurface_ops = {

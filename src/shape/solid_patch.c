@@ -163,7 +163,9 @@ static bool within(double x, double from, double size) {
 }
 
 static bool contained(const ParamSurface *s, Vec3 p) {
-    return !s->container || shape_inside(s->container, transform_point_back(&s->container->transform, p));
+    if (!s->container) return true;
+    Transform place = object_transform(s->container);
+    return shape_inside(s->container, transform_point_back(&place, p));
 }
 
 static void visit_cell(void *context, uint32_t cell) {

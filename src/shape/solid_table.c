@@ -31,7 +31,7 @@ const SolidOps *solid_ops(const Object *object) {
     case OBJECT_DISC:
     case OBJECT_TORUS: return &solid_plain_ops;
     case OBJECT_TRIANGLES:
-        return object->as.mesh->triangle_count == 1 && object->word && object->word[0] != 'm'
+        return object->as.mesh->single && object->as.mesh->triangle_count == 1
                    ? &solid_triangle_ops
                    : &solid_mesh_ops;
     case OBJECT_SURFACE: return &solid_surface_ops;

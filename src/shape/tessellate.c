@@ -72,10 +72,10 @@ static bool push_shape(const Walk *walk, const Object *object, double tolerance)
 }
 
 static bool push_tree(const Walk *walk, const Object *object, const Transform *outer) {
-    Transform whole = transform_then(&object->transform, outer);
+    Transform own = object_transform(object), whole = transform_then(&own, outer);
     if (object->kind == OBJECT_UNION || object->kind == OBJECT_MERGE) {
-        for (size_t i = 0; i < object->as.children.count; i++) {
-            if (!push_tree(walk, object->as.children.items[i], &whole)) return false;
+        for (size_t i = 0; i < object->as.group->count; i++) {
+            if (!push_tree(walk, object->as.group->items[i], &whole)) return false;
         }
         return true;
     }

@@ -1,5 +1,6 @@
 #include "shape/trace.h"
 
+#include "scene/scene_hash.h"
 #include "shape/box_tree.h"
 #include "shape/solid.h"
 
@@ -27,7 +28,7 @@ typedef struct PlacedList {
 
 /* What is prepared for a shape, in its own space. */
 struct Core {
-    Hash128 hash; /* Object.shape_hash */
+    Hash128 hash; /* object_shape_hash() */
     const Object *object;
     const SolidOps *ops;
     const void *data;
@@ -75,21 +76,19 @@ static void remember(ShapeTracer *tracer, Core *core) {
 
 static const Core *core_of(ShapeTracer *tracer, const Object *object, int depth);
 
+static Placed placed_as(const Object *object, const Core *core) {
+    Transform place = object_transform(object);
+    return (Placed){place, transform_is_singular(&place), core};
+}
+
 static PlacedList place_all(ShapeTracer *tracer, const Object *const *items, size_t count, int depth) {
     Placed *placed = arena_new_array(tracer->arena, Placed, count);
     PlacedList list = {placed, 0};
     for (size_t i = 0; i < count; i++) {
         const Core *core = core_of(tracer, items[i], depth + 1);
-        if (core)
-            placed[list.count++] =
-                (Placed){items[i]->transform, transform_is_singular(&items[i]->transform), core};
+        if (core) placed[list.count++] = placed_as(items[i], core);
     }
     return list;
-}
-
-static bool is_set(const Object *o) {
-    return o->kind == OBJECT_UNION || o->kind == OBJECT_MERGE || o->kind == OBJECT_INTERSECTION ||
-           o->kind == OBJECT_DIFFERENCE;
 }
 
 static bool is_finite_box(Box3 box) { return vec3_is_finite(box.min) && vec3_is_finite(box.max); }
@@ -117,19 +116,21 @@ static void gather_children(ShapeTracer *tracer, Core *core) {
 
 /* NULL for sets within sets without end. */
 static const Core *core_of(ShapeTracer *tracer, const Object *object, int depth) {
-    Core **slot = find_slot(tracer, object->shape_hash);
+    Hash128 hash = object_shape_hash(object);
+    Core **slot = find_slot(tracer, hash);
     if (*slot) return depth + (*slot)->depth > DEEPEST ? NULL : *slot;
     if (depth > DEEPEST) return NULL;
     Core *core = arena_new(tracer->arena, Core);
-    *core = (Core){.hash = object->shape_hash,
+    *core = (Core){.hash = hash,
                    .object = object,
                    .ops = solid_ops(object),
                    .data = object,
                    .bounds = box3_empty()};
-    core->clips = place_all(tracer, object->clipped_by.items, object->clipped_by.count, depth);
-    core->guards = place_all(tracer, object->bounded_by.items, object->bounded_by.count, depth);
-    if (is_set(object)) {
-        core->children = place_all(tracer, object->as.children.items, object->as.children.count, depth);
+    ObjectList clips = object_clipped_by(object), guards = object_bounded_by(object);
+    core->clips = place_all(tracer, clips.items, clips.count, depth);
+    core->guards = place_all(tracer, guards.items, guards.count, depth);
+    if (object_has_group(object)) {
+        core->children = place_all(tracer, object->as.group->items, object->as.group->count, depth);
         gather_children(tracer, core);
     } else if (core->ops->cross) {
         if (core->ops->prepare) core->data = core->ops->prepare(object, tracer->arena);
@@ -196,7 +197,7 @@ static bool core_inside(const Core *core, Vec3 p, uint64_t *budget) {
     bool inside = false;
     for (size_t i = 0; i < core->clips.count; i++)
         if (!placed_inside(&core->clips.items[i], p, budget)) return false;
-    if (is_set(core->object))
+    if (object_has_group(core->object))
         inside = set_inside(core, p, budget);
     else if (core->data && core->ops->inside)
         inside = core->ops->inside(core->data, p);
@@ -331,7 +332,7 @@ static bool visit_placed(Search *search, const Placed *placed, const Ray *parent
     if (!box_tree_clip(&core->bounds, &ray, &near, &far) || !meets_guards(search, core, &ray)) return false;
     const Filter clip = {filters, core, 0, ray, WITHIN_CLIPS};
     if (core->clips.count) filters = &clip;
-    bool found = (is_set(core->object) ? visit_set : visit_leaf)(search, core, &ray,
+    bool found = (object_has_group(core->object) ? visit_set : visit_leaf)(search, core, &ray,
                                                                  flipped != core->object->inverse, filters);
     if (found) search->normal = vec3_normalize(transform_normal(&placed->transform, search->normal));
     return found;
@@ -343,7 +344,7 @@ bool shape_trace(ShapeTracer *tracer, const Object *object, const Ray *ray, doub
     const Core *core = core_of(tracer, object, 0);
     double length = vec3_length(ray->direction);
     if (!core || !vec3_is_finite(ray->origin) || !isfinite(length) || !(length > 0)) return false;
-    const Placed placed = {object->transform, transform_is_singular(&object->transform), core};
+    const Placed placed = placed_as(object, core);
     Search search = {.t_min = t_min, .t = VTS_INFINITY, .budget = MOST_VISITS};
     if (!visit_placed(&search, &placed, ray, false, NULL)) return false;
     *hit = (TraceHit){search.t, vec3_madd(ray->origin, ray->direction, search.t), search.normal};
@@ -352,7 +353,7 @@ bool shape_trace(ShapeTracer *tracer, const Object *object, const Ray *ray, doub
 
 bool shape_trace_inside(ShapeTracer *tracer, const Object *object, Vec3 point) {
     const Core *core = core_of(tracer, object, 0);
-    const Placed placed = {object->transform, transform_is_singular(&object->transform), core};
+    const Placed placed = placed_as(object, core);
     uint64_t budget = MOST_VISITS;
     return core && vec3_is_finite(point) && placed_inside(&placed, point, &budget);
 }

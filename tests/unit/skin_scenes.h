@@ -164,7 +164,7 @@ static inline void skin_scene_fill(SkinScene *s, int resolution, size_t count, d
         }
     }
     s->leaf_mesh = (MeshData){.vertices = v, .vertex_count = 3 * count, .triangles = (const uint32_t(*)[3])t, .triangle_count = count};
-    s->leaves = (Object){.kind = OBJECT_TRIANGLES, .word = "mesh", .transform = transform_identity(), .as.mesh = &s->leaf_mesh};
+    s->leaves = (Object){.kind = OBJECT_TRIANGLES, .as.mesh = &s->leaf_mesh};
     s->leaf_list[0] = &s->leaves;
     s->layer = (TexelLayer){.contents = s->leaf_list, .content_count = 1};
     s->texel = (TexelDef){.name = "leaves", .bounds = {{0, 0, 0}, {1, 1, 1}}, .resolution = resolution, .cyclic = cyclic,
@@ -183,7 +183,7 @@ static inline void skin_scene_ball(SkinScene *s, const BallMesh *b, Vec3 center,
     }
     s->mesh = (MeshData){.vertices = v, .vertex_count = b->vertex_count, .triangles = b->triangles, .triangle_count = b->triangle_count,
                          .height_vectors = h};
-    s->object = (Object){.kind = OBJECT_TRIANGLES, .word = "mesh", .transform = transform_identity(), .as.mesh = &s->mesh};
+    s->object = (Object){.kind = OBJECT_TRIANGLES, .as.mesh = &s->mesh};
     s->surface = (Surface){.kind = SURFACE_OBJECT, .object = &s->object, .uv = SURFACE_UV_SPHERICAL, .uv_axis = {0, 1, 0},
                            .object_height_vectors = h, .subdivide = 1, .transform = transform_identity()};
 }

@@ -1,4 +1,5 @@
 /* Swept particles against integrals of their trajectories. */
+#include "object_parts.h"
 #include "base/random.h"
 #include "grow/particles.h"
 #include "shape/tessellate.h"
@@ -245,7 +246,8 @@ static void odd_particles_leave_finite_triangles_or_none(void **state) {
 static void a_tree_takes_particles_through_its_hook(void **state) {
     const Particle blade = {
         .velocity = {0, 1, 0}, .life = 1, .width_foot = 0.1, .width_tip = 0.1, .profile = BLADE_FLAT};
-    Object object = {.kind = OBJECT_PARTICLES, .transform = transform_scale(vec3_splat(3))};
+    const Transform triple = transform_scale(vec3_splat(3));
+    Object object = {.kind = OBJECT_PARTICLES, .place = PLACE(triple)};
     const TessellateOptions options = {.tolerance = 0.01, .particles = particles_tessellate};
     TriangleSoup soup = {0};
     ShapeRefusal refusal;

@@ -1,4 +1,5 @@
 /* Explicit objects under the hierarchy, against intersecting each of them. */
+#include "object_parts.h"
 #include "base/random.h"
 #include "render/hierarchy.h"
 #include "shape/intersect.h"
@@ -38,7 +39,7 @@ static void world_begin(World *w) {
 
 static Object *world_add(World *w, ObjectKind kind) {
     size_t i = w->scene.object_count++;
-    w->objects[i] = (Object){.kind = kind, .word = "object", .transform = transform_identity()};
+    w->objects[i] = (Object){.kind = (uint8_t)kind};
     w->list[i] = &w->objects[i];
     return &w->objects[i];
 }
@@ -67,7 +68,8 @@ static void add_random_solids(World *w, RandomStream *r, int count, double sprea
     static const ObjectKind kinds[] = {OBJECT_SPHERE, OBJECT_BOX, OBJECT_CYLINDER, OBJECT_CONE, OBJECT_DISC, OBJECT_TORUS};
     for (int i = 0; i < count; i++) {
         Object *o = world_add(w, kinds[i % 6]);
-        o->transform = random_transform(r, spread);
+        const Transform place = random_transform(r, spread);
+        o->place = arena_copy(&w->arena, PLACE(place), sizeof(Affine));
         switch (o->kind) {
         case OBJECT_SPHERE: o->as.sphere.radius = 1; break;
         case OBJECT_BOX: o->as.box.corner1 = vec3(-1, -.5, -1), o->as.box.corner2 = vec3(1, .7, .4); break;
@@ -90,11 +92,12 @@ static bool brute_force(const World *w, const Ray *ray, double t_max, bool shado
     for (size_t i = 0; i < w->scene.object_count; i++) {
         const Object *o = w->list[i];
         if (shadow ? o->no_shadow : o->no_image) continue;
-        Ray local = {transform_point_back(&o->transform, ray->origin), transform_vector_back(&o->transform, ray->direction)};
+        const Transform place = object_transform(o);
+        Ray local = {transform_point_back(&place, ray->origin), transform_vector_back(&place, ray->direction)};
         ShapeHit hit;
         if (!shape_intersect(o, &local, 1e-9, *t, &hit)) continue;
         *t = hit.t;
-        *normal = vec3_normalize(transform_normal(&o->transform, hit.normal));
+        *normal = vec3_normalize(transform_normal(&place, hit.normal));
         *nearest = o;
     }
     return *nearest != NULL;
@@ -118,7 +121,7 @@ static void solids_are_hit_exactly(void **state) {
         assert_int_equal(hierarchy_object_count(w.hierarchy), 61);
         int hits = 0, shadows = 0;
         for (int i = 0; i < 20000; i++) {
-            Vec3 target = i % 3 ? w.objects[i % 60].transform.offset : random_vec(&r, spreads[k]);
+            Vec3 target = i % 3 ? object_transform(&w.objects[i % 60]).offset : random_vec(&r, spreads[k]);
             Ray ray = {random_vec(&r, 2 * spreads[k]), {0, 0, 0}};
             ray.direction = vec3_normalize(vec3_add(vec3_sub(target, ray.origin), random_vec(&r, .8)));
             double t, t_max = i % 4 ? VTS_INFINITY : 2 * spreads[k] * random_next_unit(&r);
@@ -202,19 +205,20 @@ static void smooth_normals_are_interpolated(void **state) {
         world_begin(&w);
         Object *o = world_add(&w, OBJECT_TRIANGLES);
         o->as.mesh = &mesh;
-        o->transform = random_transform(&r, 3);
+        const Transform place = random_transform(&r, 3);
+        o->place = PLACE(place);
         world_build(&w);
         double worst = 0;
         int hits = 0;
         for (int i = 0; i < 2000; i++) {
             Ray ray = {random_vec(&r, 10), {0, 0, 0}};
-            ray.direction = vec3_normalize(vec3_sub(transform_point(&o->transform, random_vec(&r, .5)), ray.origin));
+            ray.direction = vec3_normalize(vec3_sub(transform_point(&place, random_vec(&r, .5)), ray.origin));
             SurfaceHit hit;
             if (!hierarchy_intersect(w.hierarchy, &ray, 1e-9, VTS_INFINITY, &hit)) continue;
             hits++;
-            Vec3 local = transform_point_back(&o->transform, vec3_madd(ray.origin, ray.direction, hit.t));
+            Vec3 local = transform_point_back(&place, vec3_madd(ray.origin, ray.direction, hit.t));
             assert_true(fabs(vec3_length(local) - 1) < .03);
-            Vec3 n = vec3_normalize(transform_normal(&o->transform, local));
+            Vec3 n = vec3_normalize(transform_normal(&place, local));
             if (vec3_dot(n, ray.direction) > 0) n = vec3_negate(n);
             assert_true(vec3_dot(hit.normal, ray.direction) <= 0);
             if (vec3_dot(n, ray.direction) < -.2) worst = fmax(worst, vec3_length(vec3_sub(n, hit.normal)));
@@ -231,15 +235,17 @@ static void unions_are_flattened(void **state) {
     World w;
     world_begin(&w);
     Texture own = w.texture;
-    Object ball = {.kind = OBJECT_SPHERE, .word = "sphere", .transform = transform_translate(vec3(2, 0, 0)), .as.sphere = {{0, 0, 0}, 1}};
-    Object box = {.kind = OBJECT_BOX, .word = "box", .transform = transform_identity(), .as.box = {{-1, -1, -1}, {1, 1, 1}}, .texture = &own};
+    const Transform right = transform_translate(vec3(2, 0, 0));
+    Object ball = {.kind = OBJECT_SPHERE, .place = PLACE(right), .as.sphere = {{0, 0, 0}, 1}};
+    Object box = {.kind = OBJECT_BOX, .as.box = {{-1, -1, -1}, {1, 1, 1}}, .texture = &own};
     const Object *inner[] = {&ball, &box};
     Object *o = world_add(&w, OBJECT_UNION);
     Texture outer = w.texture;
     o->texture = &outer;
-    o->as.children.items = inner, o->as.children.count = 2;
+    o->as.group = GROUP(inner, 2);
     Transform turn = transform_rotate(vec3(0, 90, 0)), move = transform_translate(vec3(0, 0, 10));
-    o->transform = transform_then(&turn, &move); /* <2, 0, 0> comes to <0, 0, -2> + <0, 0, 10> */
+    const Transform place = transform_then(&turn, &move);
+    o->place = PLACE(place); /* <2, 0, 0> comes to <0, 0, -2> + <0, 0, 10> */
     world_build(&w);
     Ray at_ball = {{0, 0, 0}, {0, 0, 1}}, at_box = {{.9, 0, 20}, {0, 0, -1}};
     SurfaceHit a, b;

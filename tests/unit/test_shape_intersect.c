@@ -1,4 +1,5 @@
 /* Exact hits against brute force in long double: every solid as one function that is negative inside, marched along the ray. */
+#include "object_parts.h"
 #include "base/random.h"
 #include "shape/intersect.h"
 #include "shape/tessellate.h"
@@ -84,8 +85,7 @@ static Vec3 random_vec(RandomStream *random) {
 }
 
 static Object random_solid(RandomStream *random, int i) {
-    Object object = {.kind = (ObjectKind[]){OBJECT_SPHERE, OBJECT_BOX, OBJECT_CONE, OBJECT_TORUS}[i % 4],
-                     .transform = transform_identity()};
+    Object object = {.kind = (ObjectKind[]){OBJECT_SPHERE, OBJECT_BOX, OBJECT_CONE, OBJECT_TORUS}[i % 4]};
     switch (object.kind) {
     case OBJECT_SPHERE:
         object.as.sphere.center = random_vec(random);
@@ -520,13 +520,12 @@ static void bounds_are_tight_and_hold_trees(void **state) {
         double slack = 0.03 * solid_size(&object);
         assert_true(vec3_length(vec3_sub(held.min, box.min)) < slack &&
                     vec3_length(vec3_sub(held.max, box.max)) < slack);
-        child.transform = transform_rotate(vec3_scale(random_vec(&random), 180));
-        tree.transform = transform_identity();
-        tree.as.children.items = items;
-        tree.as.children.count = 1;
+        const Transform turn = transform_rotate(vec3_scale(random_vec(&random), 180));
+        child.place = PLACE(turn);
+        tree.as.group = GROUP(items, 1);
         box = shape_bounds(&tree);
         for (size_t v = 0; v < soup.vertices.count; v++) {
-            Vec3 p = transform_point(&child.transform, soup.vertices.items[v].position);
+            Vec3 p = transform_point(&turn, soup.vertices.items[v].position);
             Vec3 below = vec3_sub(p, box.min), above = vec3_sub(box.max, p);
             assert_true(fmin(fmin(below.x, below.y), below.z) > -options.tolerance &&
                         fmin(fmin(above.x, above.y), above.z) > -options.tolerance);
@@ -534,20 +533,19 @@ static void bounds_are_tight_and_hold_trees(void **state) {
     }
     arena_destroy(&arena);
     const Object plane = {
-        .kind = OBJECT_PLANE, .as.plane = {{0, 1, 0}, 2}, .transform = transform_identity()};
+        .kind = OBJECT_PLANE, .as.plane = {{0, 1, 0}, 2}};
     const Object *items[1] = {&plane};
-    Object tree = {.kind = OBJECT_UNION, .transform = transform_identity()};
-    tree.as.children.items = items;
-    tree.as.children.count = 1;
+    Object tree = {.kind = OBJECT_UNION};
+    tree.as.group = GROUP(items, 1);
     assert_true(isinf(shape_bounds(&tree).max.x) && isinf(shape_bounds(&tree).min.y));
 }
 
 static void csg_insides(void **state) {
     (void)state;
-    Object ball = {
-        .kind = OBJECT_SPHERE, .transform = transform_translate(vec3(1, 0, 0)), .as.sphere = {{0, 0, 0}, 1}};
+    const Transform right = transform_translate(vec3(1, 0, 0));
+    Object ball = {.kind = OBJECT_SPHERE, .place = PLACE(right), .as.sphere = {{0, 0, 0}, 1}};
     Object cube = {
-        .kind = OBJECT_BOX, .transform = transform_identity(), .as.box = {{-1, -1, -1}, {1, 1, 1}}};
+        .kind = OBJECT_BOX, .as.box = {{-1, -1, -1}, {1, 1, 1}}};
     const Object *items[2] = {&cube, &ball};
     const Vec3 points[4] = {{0.5, 0, 0}, {-0.5, 0, 0}, {1.5, 0, 0}, {5, 0, 0}}; /* both, cube, ball, none */
     static const struct {
@@ -558,15 +556,13 @@ static void csg_insides(void **state) {
                   {OBJECT_DIFFERENCE, {false, true, false, false}},
                   {OBJECT_MERGE, {true, true, true, false}}};
     for (int k = 0; k < 8; k++) {
-        Object tree = {.kind = cases[k / 2].kind, .transform = transform_identity(), .inverse = k & 1};
-        tree.as.children.items = items;
-        tree.as.children.count = 2;
+        Object tree = {.kind = cases[k / 2].kind, .inverse = k & 1};
+        tree.as.group = GROUP(items, 2);
         for (int i = 0; i < 4; i++)
             assert_int_equal(shape_inside(&tree, points[i]), cases[k / 2].expected[i] != tree.inverse);
     }
-    Object both = {.kind = OBJECT_INTERSECTION, .transform = transform_identity()};
-    both.as.children.items = items;
-    both.as.children.count = 2;
+    Object both = {.kind = OBJECT_INTERSECTION};
+    both.as.group = GROUP(items, 2);
     assert_true(shape_bounds(&both).min.x == 0 && shape_bounds(&both).max.x == 1);
     ball.inverse = true;
     assert_true(shape_bounds(&both).min.x == -1 && shape_inside(&both, points[1]) &&

@@ -1,5 +1,6 @@
 /* Rays against every kind of solid, proved by what is inside: the surface is met where, and only where, the inside begins or
  * ends, and normals stand on it. Where shapes of different kinds are the same body, they give the same numbers. */
+#include "object_parts.h"
 #include "scene/scene_hash.h"
 #include "shape/extent.h"
 #include "shape/roots.h"
@@ -35,30 +36,29 @@ static int teardown(void **context) {
     return 0;
 }
 
+static void move(Object *object, Transform transform) { object->place = arena_copy(&arena, PLACE(transform), sizeof(Affine)); }
+
 static Object solid_object(Solid solid) {
     Solid *kept = arena_copy(&arena, &solid, sizeof solid);
     solid_rehash(kept);
     Object object = {
-        .kind = OBJECT_SOLID, .word = "solid", .transform = transform_identity(), .as.solid = kept};
-    object_rehash(&object);
+        .kind = OBJECT_SOLID, .as.solid = kept};
     return object;
 }
 
 /* ---- the bodies ---- */
 
 static Object sphere(Vec3 center, double radius) {
-    Object o = {.kind = OBJECT_SPHERE, .word = "sphere", .transform = transform_identity()};
+    Object o = {.kind = OBJECT_SPHERE};
     o.as.sphere.center = center;
     o.as.sphere.radius = radius;
-    object_rehash(&o);
     return o;
 }
 
 static Object container_box(Vec3 lo, Vec3 hi) {
-    Object o = {.kind = OBJECT_BOX, .word = "box", .transform = transform_identity()};
+    Object o = {.kind = OBJECT_BOX};
     o.as.box.corner1 = lo;
     o.as.box.corner2 = hi;
-    object_rehash(&o);
     return o;
 }
 
@@ -202,18 +202,15 @@ static Object isosurface(bool wavy, double half) {
 static Object set_of(ObjectKind kind, const Object *children, size_t count) {
     const Object **items = arena_new_array(&arena, const Object *, count);
     for (size_t i = 0; i < count; i++) items[i] = arena_copy(&arena, &children[i], sizeof *children);
-    Object o = {.kind = kind, .word = "set", .transform = transform_identity()};
-    o.as.children.items = items;
-    o.as.children.count = count;
-    object_rehash(&o);
+    Object o = {.kind = (uint8_t)kind};
+    o.as.group = arena_copy(&arena, GROUP(items, count), sizeof(ObjectGroup));
     return o;
 }
 
 static Object some_set(ObjectKind kind) {
     Object children[3] = {sphere(vec3(0, 0, 0), 0.8),
                           container_box(vec3(-0.2, -0.3, -0.9), vec3(0.9, 0.6, 0.5)), unit_poly()};
-    children[2].transform = transform_scale(vec3(0.5, 0.9, 0.4));
-    object_rehash(&children[2]);
+    move(&children[2], transform_scale(vec3(0.5, 0.9, 0.4)));
     return set_of(kind, children, 3);
 }
 
@@ -290,7 +287,7 @@ static void prove(Object o, const char *name, double size, double near_error, bo
     moves[1] = transform_then(&moves[1], &shift);
     int met = 0;
     for (int i = 0; i < 120; i++) {
-        o.transform = moves[i % 2];
+        move(&o, moves[i % 2]);
         Vec3 from = vec3_scale(vec3_normalize(random_point(1)), 3), to = random_point(size);
         const Ray ray = {from, vec3_normalize(vec3_sub(to, from))};
         TraceHit hit;
@@ -354,7 +351,6 @@ static void test_sets(void **context) {
     prove(some_set(OBJECT_UNION), "union", 0.8, 1e-8, false);
     Object turned_out = some_set(OBJECT_UNION);
     turned_out.inverse = true;
-    object_rehash(&turned_out);
     prove(turned_out, "inverse union", 0.8, 1e-8, true);
     Object nested[2] = {some_set(OBJECT_DIFFERENCE), some_blob()};
     prove(set_of(OBJECT_DIFFERENCE, nested, 2), "difference of sets", 0.8, 1e-7, true);
@@ -394,21 +390,19 @@ static void test_spheres(void **context) {
 
 static void test_tori(void **context) {
     (void)context;
-    Object ring = {.kind = OBJECT_TORUS, .word = "torus", .transform = transform_identity()};
+    Object ring = {.kind = OBJECT_TORUS};
     ring.as.torus.major_radius = 0.8;
     ring.as.torus.minor_radius = 0.3;
-    object_rehash(&ring);
     same_hits(ring, quartic_torus(0.8, 0.3), 1e-9, "torus");
 }
 
 static void test_cylinders(void **context) {
     static const Point2 wall[] = {{0, -0.5}, {0.7, -0.5}, {0.7, 0.6}, {0, 0.6}};
     (void)context;
-    Object plain = {.kind = OBJECT_CYLINDER, .word = "cylinder", .transform = transform_identity()};
+    Object plain = {.kind = OBJECT_CYLINDER};
     plain.as.cone.base = vec3(0, -0.5, 0);
     plain.as.cone.cap = vec3(0, 0.6, 0);
     plain.as.cone.base_radius = plain.as.cone.cap_radius = 0.7;
-    object_rehash(&plain);
     same_hits(plain, turned(SOLID_LATHE, CURVE_LINEAR, wall, 4), 1e-9, "lathe");
 }
 
@@ -482,9 +476,8 @@ static Object ball_mesh(uint32_t rows, uint32_t columns) {
                        .triangle_count = count,
                        .inside_vector = {0.123, 0.456, 0.789}};
     mesh_rehash(mesh);
-    Object o = {.kind = OBJECT_TRIANGLES, .word = "mesh", .transform = transform_identity()};
+    Object o = {.kind = OBJECT_TRIANGLES};
     o.as.mesh = mesh;
-    object_rehash(&o);
     return o;
 }
 
@@ -508,8 +501,7 @@ static void test_many_copies(void **context) {
     Object *balls = arena_new_array(&arena, Object, SIDE * SIDE), ball = sphere(vec3(0, 0, 0), 0.4);
     for (int i = 0; i < SIDE * SIDE; i++) {
         balls[i] = ball;
-        balls[i].transform = transform_translate(vec3(i % SIDE, 0, i / SIDE));
-        object_rehash(&balls[i]);
+        move(&balls[i], transform_translate(vec3(i % SIDE, 0, i / SIDE)));
     }
     Object all = set_of(OBJECT_UNION, balls, SIDE * SIDE);
     ShapeTracer *tracer = shape_tracer_create(&arena);
@@ -545,7 +537,7 @@ static void test_hostile(void **context) {
     shape_trace(tracer, &deep, &ray, 0, &hit);
     shape_extent(tracer, &deep);
     Object flat = sphere(vec3(0, 0, 0), 1);
-    flat.transform = transform_scale(vec3(1, 0, 1));
+    move(&flat, transform_scale(vec3(1, 0, 1)));
     assert_false(shape_trace(tracer, &flat, &ray, 0, &hit));
 }
 

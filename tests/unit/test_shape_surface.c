@@ -37,7 +37,7 @@ static Surface of_object(const Object *object) {
     return (Surface){.kind = SURFACE_OBJECT, .object = object, .transform = transform_identity()};
 }
 
-static Object object_of(ObjectKind kind) { return (Object){.kind = kind, .transform = transform_identity()}; }
+static Object object_of(ObjectKind kind) { return (Object){.kind = (uint8_t)kind}; }
 
 static Object ball(void) {
     Object object = object_of(OBJECT_SPHERE);

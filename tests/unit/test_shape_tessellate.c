@@ -1,4 +1,5 @@
 /* Tessellations against closed forms: closedness, area, volume, tolerance, normals, texture coordinates. */
+#include "object_parts.h"
 #include "base/random.h"
 #include "shape/tessellate.h"
 #include "shape/tessellate_solids.h"
@@ -84,7 +85,7 @@ static void assert_near(double value, double expected, double tolerance) {
 }
 
 static Object object_of(ObjectKind kind) {
-    Object object = {.kind = kind, .word = "test", .transform = transform_identity()};
+    Object object = {.kind = kind};
     return object;
 }
 
@@ -281,7 +282,8 @@ static void tolerance_is_kept_and_not_wasted(void **state) {
 static void tolerance_is_that_of_the_output(void **state) {
     Arena *arena = test_arena(state);
     Object ball = sphere(vec3(0, 0, 0), 1), large = ball;
-    large.transform = transform_scale(vec3(100, 1, 100));
+    const Transform wide = transform_scale(vec3(100, 1, 100));
+    large.place = PLACE(wide);
     ball.as.sphere.radius = 100;
     TriangleSoup a = soup_of(arena, &ball, 0.1, 0), b = soup_of(arena, &large, 0.1, 0);
     assert_int_equal(a.triangles.count, b.triangles.count);
@@ -316,7 +318,7 @@ static void attributes_survive_any_transform(void **state) {
                          cone(vec3(3, 0, 0), 0, vec3(0, 1, 0), 0.5, false)};
     for (int i = 0; i < 6; i++) {
         for (int k = 0; k < 3; k++) {
-            objects[i].transform = transforms[k];
+            objects[i].place = PLACE(transforms[k]);
             TriangleSoup soup = soup_of(arena, &objects[i], 0.02, 0);
             check_attributes(&soup);
             if (i != 4) assert_true(is_watertight(arena, &soup) && soup_volume(&soup) > 0);
@@ -326,7 +328,8 @@ static void attributes_survive_any_transform(void **state) {
 
 static void flattened_solids_are_finite(void **state) {
     Object ball = sphere(vec3(0, 0, 0), 1);
-    ball.transform = transform_scale(vec3(1, 0, 1));
+    const Transform flat = transform_scale(vec3(1, 0, 1));
+    ball.place = PLACE(flat);
     TriangleSoup soup = soup_of(test_arena(state), &ball, 0.01, 0);
     for (size_t i = 0; i < soup.vertices.count; i++) {
         assert_true(vec3_is_finite(soup.vertices.items[i].position) &&
@@ -405,17 +408,16 @@ static double random_tree(Arena *arena, RandomStream *random, int depth, Object 
         *out = box(vec3(0, 0, 0), vec3(1, 2, 3)), volume = 6;
     else if (depth == 0)
         *out = sphere(vec3(1, 2, 3), 0.5), volume = 4 * VTS_PI / 3 * 0.125;
+    const Object **items = arena_new_array(arena, const Object *, 4);
     for (size_t i = 0; depth > 0 && i < 4; i++) {
-        const Object **items = i ? (const Object **)(uintptr_t)out->as.children.items
-                                 : arena_new_array(arena, const Object *, 4);
         Object *child = arena_new(arena, Object);
         volume += random_tree(arena, random, depth - 1, child);
         items[i] = child;
-        out->as.children.items = items;
-        out->as.children.count = i + 1;
     }
-    out->transform = random_transform(random);
-    return volume * fabs(mat3_determinant(&out->transform.linear));
+    if (depth > 0) out->as.group = arena_copy(arena, GROUP(items, 4), sizeof(ObjectGroup));
+    const Transform place = random_transform(random);
+    out->place = arena_copy(arena, PLACE(place), sizeof(Affine));
+    return volume * fabs(mat3_determinant(&place.linear));
 }
 
 static void random_trees_have_their_volume_and_are_closed(void **state) {
@@ -444,8 +446,7 @@ static void what_has_no_triangles_is_refused_with_its_place(void **state) {
         TriangleSoup soup = {0};
         ShapeRefusal refusal = {0};
         bad.span = (Span){1, 100, 110};
-        tree.as.children.items = children;
-        tree.as.children.count = 2;
+        tree.as.group = GROUP(children, 2);
         assert_false(tessellate(&tree, NULL, &options, test_arena(state), &soup, &refusal));
         assert_non_null(refusal.reason);
         assert_int_equal(refusal.span.begin, 100);

@@ -102,15 +102,19 @@ static const Argument *eval_arguments(Eval *ev, const NodeList *list, bool *ok) 
     return out;
 }
 
+enum {
+    MOST_PARTICLES = 4000000
+}; /* the items of each stay in memory, about half a kilobyte, until all are read */
+
 /* particles { count N { … } }: one item for each particle, with `index` counting. */
 static void add_particles(Eval *ev, Sink *sink, const Node *node, BlockItem item) {
+    uint64_t loops = ev->options->limits.loops, most = loops < MOST_PARTICLES ? loops : MOST_PARTICLES;
     double count = item.argument_count == 1 && item.arguments[0].value.kind == VALUE_FLOAT
                        ? item.arguments[0].value.as.number
                        : -1;
-    if (!(count >= 0) || count != (double)(uint64_t)count || count > (double)ev->options->limits.loops) {
+    if (!(count >= 0) || count != (double)(uint64_t)count || count > (double)most) {
         diag_error(ev->diags, item.argument_count ? item.arguments[0].span : node->span,
-                   "'count' takes a whole number of particles, up to %llu",
-                   (unsigned long long)ev->options->limits.loops);
+                   "'count' takes a whole number of particles, up to %llu", (unsigned long long)most);
         return;
     }
     Scope scope;

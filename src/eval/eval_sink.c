@@ -112,7 +112,7 @@ static void add_particles(Eval *ev, Sink *sink, const Node *node, BlockItem item
     double count = item.argument_count == 1 && item.arguments[0].value.kind == VALUE_FLOAT
                        ? item.arguments[0].value.as.number
                        : -1;
-    if (!(count >= 0) || count != (double)(uint64_t)count || count > (double)most) {
+    if (!(count >= 0 && count <= (double)most) || count != (double)(uint64_t)count) {
         diag_error(ev->diags, item.argument_count ? item.arguments[0].span : node->span,
                    "'count' takes a whole number of particles, up to %llu", (unsigned long long)most);
         return;

@@ -75,8 +75,7 @@ bool build_triangle(BuildContext *context, const EvalBlock *block, Value *out) {
     mesh->uvs = draft.uvs;
     mesh->uv_count = draft.uvs ? 3 : 0;
     mesh_rehash(mesh);
-    *out = (Value){.kind = VALUE_OBJECT, .as.object = object_make(context, &draft.common)};
-    return true;
+    return object_make(&reader, &draft.common, out);
 }
 
 /* ---- mesh: triangles one by one ---- */
@@ -181,6 +180,5 @@ bool build_mesh(BuildContext *context, const EvalBlock *block, Value *out) {
         return false;
     }
     draft.common.object.as.mesh = join_triangles(context, &draft);
-    *out = (Value){.kind = VALUE_OBJECT, .as.object = object_make(context, &draft.common)};
-    return true;
+    return object_make(&reader, &draft.common, out);
 }

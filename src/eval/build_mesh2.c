@@ -260,6 +260,5 @@ bool build_mesh2(BuildContext *context, const EvalBlock *block, Value *out) {
     if (!object_read(&reader, &common) || !assemble(&reader, draft)) return false;
     mesh_rehash(&draft->mesh);
     common.object.as.mesh = &draft->mesh;
-    *out = (Value){.kind = VALUE_OBJECT, .as.object = object_make(context, &common)};
-    return true;
+    return object_make(&reader, &common, out);
 }

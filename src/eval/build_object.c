@@ -75,9 +75,9 @@ static void read_restricted(Reader *reader, const Word *word, void *target) {
 }
 
 static const WordRule rules[] = {
-    {"no_shadow", WORD_MARK, FIELD(object.no_shadow), NULL, false},
-    {"no_image", WORD_FLAG, FIELD(object.no_image), NULL, false},
-    {"inverse", WORD_MARK, FIELD(object.inverse), NULL, false},
+    {"no_shadow", WORD_MARK, FIELD(no_shadow), NULL, false},
+    {"no_image", WORD_FLAG, FIELD(no_image), NULL, false},
+    {"inverse", WORD_MARK, FIELD(inverse), NULL, false},
     {"hollow", WORD_FLAG, FIELD(rest.hollow), NULL, false},
     {"bounded_by", WORD_CUSTOM, 0, read_bounded_by, false},
     {"clipped_by", WORD_CUSTOM, 0, read_clipped_by, false},
@@ -116,19 +116,28 @@ bool object_read(Reader *reader, ObjectDraft *draft) {
     return !reader->failed && reader_run(reader);
 }
 
-const Object *object_make(const BuildContext *context, const ObjectDraft *draft) {
+bool object_make(Reader *reader, const ObjectDraft *draft, Value *out) {
+    Arena *arena = reader->context->arena;
     Object object = draft->object;
     const ObjectRest *rest = &draft->rest;
+    object.no_shadow = draft->no_shadow;
+    object.no_image = draft->no_image;
+    object.inverse = draft->inverse;
     object.rest = rest->inert || rest->hollow || rest->clipped_by.count || rest->bounded_by.count
-                      ? arena_copy(context->arena, rest, sizeof *rest)
+                      ? arena_copy(arena, rest, sizeof *rest)
                       : NULL;
-    return object_keep(context->arena, &object, &draft->transform);
+    int depth = object_depth_by_parts(&object);
+    if (depth > OBJECT_DEEPEST) {
+        reader_error(reader, reader->block->word_span, "objects are nested more than %d deep", OBJECT_DEEPEST);
+        return false;
+    }
+    object.depth = (uint16_t)depth;
+    *out = (Value){.kind = VALUE_OBJECT, .as.object = object_keep(arena, &object, &draft->transform)};
+    return true;
 }
 
 bool object_finish(Reader *reader, ObjectDraft *draft, Value *out) {
-    if (!object_read(reader, draft)) return false;
-    *out = (Value){.kind = VALUE_OBJECT, .as.object = object_make(reader->context, draft)};
-    return true;
+    return object_read(reader, draft) && object_make(reader, draft, out);
 }
 
 bool object_is_copy(const EvalBlock *block) {
@@ -148,6 +157,13 @@ const Object *object_from_value(const BuildContext *context, const Argument *val
     } else {
         return NULL;
     }
+    int depth = object_depth_by_parts(&object);
+    if (depth > OBJECT_DEEPEST) {
+        diag_error(context->diags, value->span, "objects are nested more than %d deep", OBJECT_DEEPEST);
+        object = (Object){.span = value->span, .kind = OBJECT_UNMODELLED, .as.word = "object"};
+        depth = 1;
+    }
+    object.depth = (uint16_t)depth;
     return object_keep(context->arena, &object, NULL);
 }
 
@@ -194,6 +210,9 @@ bool build_object(BuildContext *context, const EvalBlock *block, Value *out) {
     }
     ObjectDraft draft = {.object = object_copy(source), .transform = object_transform(source), .word = block->word->text};
     draft.object.span = block->span;
+    draft.no_shadow = source->no_shadow;
+    draft.no_image = source->no_image;
+    draft.inverse = source->inverse;
     if (source->rest) draft.rest = *source->rest;
     return object_finish(&reader, &draft, out);
 }
@@ -263,14 +282,13 @@ bool build_csg(BuildContext *context, const EvalBlock *block, Value *out) {
                           .light_count = draft.lights.count};
     object_group_settle(made);
     draft.common.object.as.group = made;
-    *out = (Value){.kind = VALUE_OBJECT, .as.object = object_make(context, &draft.common)};
-    return true;
+    return object_make(&reader, &draft.common, out);
 }
 
 bool build_unmodelled(BuildContext *context, const EvalBlock *block, Value *out) {
     ObjectDraft draft = object_begin(block, OBJECT_UNMODELLED);
     draft.object.as.word = draft.word;
     inert_add(context, &draft.rest.inert, draft.word, block->word_span);
-    *out = (Value){.kind = VALUE_OBJECT, .as.object = object_make(context, &draft)};
-    return true;
+    Reader reader = reader_begin(context, block);
+    return object_make(&reader, &draft, out);
 }

@@ -71,6 +71,5 @@ bool build_particles(BuildContext *context, const EvalBlock *block, Value *out) 
         diag_warning(context->diags, block->word_span, "'particles' without particles draws nothing");
     draft.object.as.particles.items = list.items;
     draft.object.as.particles.count = list.count;
-    *out = (Value){.kind = VALUE_OBJECT, .as.object = object_make(context, &draft)};
-    return true;
+    return object_make(&reader, &draft, out);
 }

@@ -60,6 +60,7 @@ typedef struct ObjectDraft {
     Object object;
     Transform transform; /* becomes the object's place */
     ObjectRest rest;
+    bool no_shadow, no_image, inverse;
     const char *word; /* the block's */
 } ObjectDraft;
 ObjectDraft object_begin(const EvalBlock *block, ObjectKind kind);
@@ -67,8 +68,8 @@ ObjectDraft object_begin(const EvalBlock *block, ObjectKind kind);
 bool object_on_value(Reader *reader, const Argument *value, void *target);
 /* Reads to the end of the block, with the modifiers of all objects; false after a diagnostic. */
 bool object_read(Reader *reader, ObjectDraft *draft);
-/* The finished object. */
-const Object *object_make(const BuildContext *context, const ObjectDraft *draft);
+/* The finished object as a value; false after a diagnostic. */
+bool object_make(Reader *reader, const ObjectDraft *draft, Value *out);
 /* Both: for objects whose own numbers stand before the modifiers. */
 bool object_finish(Reader *reader, ObjectDraft *draft, Value *out);
 /* The block is `sphere { S … }` with a declared object S: a copy of S with modifiers. */

@@ -329,6 +329,5 @@ bool rare_end(RareDraft *draft, Value *out) {
     solid->word = draft->common.word;
     solid_rehash(solid);
     draft->common.object.as.solid = solid;
-    *out = (Value){.kind = VALUE_OBJECT, .as.object = object_make(draft->reader->context, &draft->common)};
-    return true;
+    return object_make(draft->reader, &draft->common, out);
 }

@@ -254,13 +254,16 @@ typedef struct ObjectRest {
     bool hollow;
 } ObjectRest;
 
+enum { OBJECT_DEEPEST = 1000 }; /* whoever walks a tree of objects may call itself that often */
+
 /* There may be millions of them, most of which are copies that differ in their place alone: what is rare or shared is behind pointers, and
  * objects in the scene's arena end behind the member of `as` that their kind uses (object_keep() makes them). So objects are not assigned
  * to each other, but copied with object_copy(). */
 struct Object {
     Span span;
     uint8_t kind; /* ObjectKind */
-    bool no_shadow, no_image, inverse;
+    bool no_shadow : 1, no_image : 1, inverse : 1;
+    uint16_t depth; /* objects within each other, this one included; at most OBJECT_DEEPEST */
     const Affine *place;    /* object space → parent's space; NULL: the same */
     const Texture *texture; /* NULL: the parent's, at last the default */
     const ObjectRest *rest; /* or NULL */
@@ -294,6 +297,8 @@ ObjectList object_bounded_by(const Object *object);
 const InertNote *object_inert(const Object *object);
 /* The object as a whole struct, to be changed. */
 Object object_copy(const Object *object);
+/* How deep an object is whose parts (of its group, what clips and bounds it, its surface, texel, container) are already there. */
+int object_depth_by_parts(const Object *object);
 /* Puts an object into the arena; its `place` becomes a copy of `transform` (NULL: as it is). */
 const Object *object_keep(Arena *arena, const Object *object, const Transform *transform);
 

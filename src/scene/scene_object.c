@@ -55,6 +55,34 @@ static size_t object_size(ObjectKind kind) {
     return offsetof(Object, as) + member;
 }
 
+static int deepest(const Object *const *items, size_t count) {
+    int depth = 0;
+    for (size_t i = 0; i < count; i++) depth = int_max(depth, items[i]->depth);
+    return depth;
+}
+
+static int depth_of_texel(const TexelDef *texel) {
+    int depth = 0;
+    for (size_t i = 0; i < texel->layer_count; i++)
+        depth = int_max(depth, deepest(texel->layers[i].contents, texel->layers[i].content_count));
+    for (size_t i = 0; i < texel->choice_count; i++) depth = int_max(depth, depth_of_texel(texel->choices[i]));
+    return depth;
+}
+
+static int depth_of_solid(const Solid *solid) {
+    return solid->kind == SOLID_ISOSURFACE && solid->as.isosurface.container ? solid->as.isosurface.container->depth : 0;
+}
+
+int object_depth_by_parts(const Object *o) {
+    ObjectList clips = object_clipped_by(o), guards = object_bounded_by(o);
+    int depth = int_max(deepest(clips.items, clips.count), deepest(guards.items, guards.count));
+    if (object_has_group(o) && o->as.group) depth = int_max(depth, deepest(o->as.group->items, o->as.group->count));
+    if (o->kind == OBJECT_SURFACE && o->as.surface->object) depth = int_max(depth, o->as.surface->object->depth);
+    if (o->kind == OBJECT_TEXEL) depth = int_max(depth, depth_of_texel(o->as.texel));
+    if (o->kind == OBJECT_SOLID) depth = int_max(depth, depth_of_solid(o->as.solid));
+    return depth + 1;
+}
+
 Object object_copy(const Object *object) {
     Object copy;
     memset(&copy, 0, sizeof copy);

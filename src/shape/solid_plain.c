@@ -16,7 +16,7 @@ static Vec3 normal(const void *data, Vec3 point, const SolidTag *tag) {
 
 /* A disc divides space as its plane does, and an open cylinder holds what a closed one would. On a sphere is not in it: POV-Ray. */
 static bool inside(const void *data, Vec3 point) {
-    Object object = *(const Object *)data;
+    Object object = object_copy(data);
     if (object.kind == OBJECT_DISC)
         return vec3_dot(vec3_sub(point, object.as.disc.center), object.as.disc.normal) <= 0;
     if (object.kind == OBJECT_SPHERE)

@@ -64,7 +64,7 @@ static void draft_soup(const TriangleSoup *soup, Arena *arena, SurfaceDraft *out
 /* The surface's own height vectors win over those of its mesh. */
 static bool tessellate_with_heights(const Surface *surface, const TessellateOptions *options, Arena *arena,
                                     TriangleSoup *soup, ShapeRefusal *refusal) {
-    Object object = *surface->object;
+    Object object = object_copy(surface->object);
     MeshData mesh;
     if (object.kind == OBJECT_TRIANGLES && surface->object_height_vectors) {
         mesh = *object.as.mesh;

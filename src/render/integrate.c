@@ -1,7 +1,6 @@
 #include "render/integrate.h"
 
 #include "base/random.h"
-#include "pattern/pattern.h"
 
 #include <string.h>
 
@@ -14,12 +13,6 @@ struct ShadeRecord {
     uint32_t skin;
     SkinPoint point;  /* where shadows start: a guess */
     Vec3f ambient;    /* light that no shadow takes away */
-};
-
-struct LightRay {
-    Vec3 direction;  /* unit, towards the light */
-    double distance; /* VTS_INFINITY for parallel light */
-    Vec3f color;     /* arriving, unshadowed */
 };
 
 /* A segment that lets less than this through ends the march: a step of 8-bit pictures at most. */
@@ -44,39 +37,6 @@ void tracer_init(Tracer *tracer, const CompiledScene *compiled, Arena *arena) {
         skin_march_init(&tracer->marches[i], &compiled->skins[i], arena);
         skin_march_init(&tracer->shadow_marches[i], &compiled->skins[i], arena);
     }
-}
-
-/* ---- lights ---- */
-
-static double spot_factor(const Light *light, Vec3 to_light) {
-    Vec3 axis = vec3_normalize(vec3_sub(light->point_at, light->location));
-    double cosine = -vec3_dot(axis, to_light);
-    double inner = cos(light->radius * VTS_RADIANS), outer = cos(light->falloff * VTS_RADIANS);
-    if (cosine <= outer) return 0;
-    double edge = 1;
-    if (cosine < inner) { /* POV-Ray's cubic between falloff and radius */
-        double x = (cosine - outer) / (inner - outer);
-        edge = x * x * (3 - 2 * x);
-    }
-    return edge * (light->tightness > 0 ? pow(cosine, light->tightness) : 1);
-}
-
-static LightRay light_ray(const Light *light, Vec3 point) {
-    LightRay ray = {.color = vec3f_from_color(light->color)};
-    if (light->kind == LIGHT_PARALLEL) {
-        ray.direction = light->to_light;
-        ray.distance = VTS_INFINITY;
-        return ray;
-    }
-    Vec3 to = vec3_sub(light->location, point);
-    ray.distance = vec3_length(to);
-    ray.direction = ray.distance > 0 ? vec3_scale(to, 1 / ray.distance) : vec3(0, 1, 0);
-    double factor = 1;
-    if (light->fade_power > 0 && light->fade_distance > 0)
-        factor = 2 / (1 + pow(ray.distance / light->fade_distance, light->fade_power));
-    if (light->kind == LIGHT_SPOT) factor *= spot_factor(light, ray.direction);
-    ray.color = vec3f_scale(ray.color, (float)factor);
-    return ray;
 }
 
 /* ---- shadows ---- */
@@ -133,10 +93,7 @@ static Vec3f shade_segment(const Tracer *tr, const Cone *cone, const SkinSegment
         ambient = vec3f_madd(ambient, vec3f_add(vec3f_mul(look->ambient, color), vec3f_mul(look->emission, color)), hit->share);
         for (size_t l = 0; l < lights; l++) {
             NdfShade shade = ndf_shade(tr->compiled->quadrature, &hit->s, view, vec3f_from(rays[l].direction), &look->sheet);
-            Vec3f tone = vec3f_scale(color, shade.diffuse);
-            Vec3f metal = vec3f_add(vec3f_scale(color, look->metallic), vec3f_scale(vec3f(1, 1, 1), 1 - look->metallic));
-            tone = vec3f_madd(tone, metal, shade.highlight);
-            direct[l] = vec3f_madd(direct[l], vec3f_mul(tone, rays[l].color), hit->share);
+            direct[l] = vec3f_madd(direct[l], vec3f_mul(shade_tone(&shade, look, color), rays[l].color), hit->share);
         }
     }
     return ambient;
@@ -284,9 +241,7 @@ static Vec3f shade_surface(Tracer *tr, const Cone *cone, const SurfaceHit *hit, 
         NdfShade shade = sheet_shade(vec3f_from(hit->normal), vec3f_from(vec3_negate(cone->direction)), vec3f_from(ray.direction),
                                      &hit->look->sheet);
         if (shade.diffuse <= 0 && shade.highlight <= 0) continue;
-        Vec3f metal = vec3f_add(vec3f_scale(color, hit->look->metallic), vec3f_scale(vec3f(1, 1, 1), 1 - hit->look->metallic));
-        Vec3f tone = vec3f_madd(vec3f_scale(color, shade.diffuse), metal, shade.highlight);
-        tone = vec3f_mul(tone, ray.color);
+        Vec3f tone = vec3f_mul(shade_tone(&shade, hit->look, color), ray.color);
         float visible = 1;
         if (reaching * luminance(tone) > SHADOW_WORTH) {
             double outside = vec3_dot(ray.direction, hit->flat) > 0 ? bias : -bias;
@@ -295,21 +250,6 @@ static Vec3f shade_surface(Tracer *tr, const Cone *cone, const SurfaceHit *hit, 
         sum = vec3f_madd(sum, tone, visible);
     }
     return sum;
-}
-
-static Vec3f background(const Scene *scene, const Cone *cone) {
-    if (!scene->sky_layer_count) return vec3f_from_color(scene->background);
-    Color sky = sky_color(scene->sky_layers, scene->sky_layer_count, cone->direction, cone->spread);
-    return vec3f_from_color(color_over(sky, scene->background));
-}
-
-/* POV-Ray's constant fog: exp(−t / distance). */
-static Vec3f add_fog(const Scene *scene, Vec3f color, float alpha, double t) {
-    if (!scene->has_fog || scene->fog.distance <= 0) return color;
-    float keep = isfinite(t) ? (float)exp(-t / scene->fog.distance) : 0;
-    float filter = (float)scene->fog.color.transmit;
-    keep = keep + (1 - keep) * filter;
-    return vec3f_madd(vec3f_scale(color, keep), vec3f_from_color(scene->fog.color), (1 - keep) * alpha);
 }
 
 Radiance trace_cone(Tracer *tr, const Cone *cone, const SurfaceHit *hit, float *reaching) {
@@ -325,15 +265,15 @@ Radiance trace_cone(Tracer *tr, const Cone *cone, const SurfaceHit *hit, float *
     }
     for (size_t l = 0; l < scene->light_count; l++) color = vec3f_add(color, add_shadowed(tr, cone, count, l));
     float covered = 1 - transmittance;
-    if (count && covered > 0) color = add_fog(scene, color, covered, mean_t / (double)covered);
+    if (count && covered > 0) color = fog_over(scene, color, covered, mean_t / (double)covered);
     *reaching = transmittance;
     Radiance out = {color, covered};
     if (transmittance <= 0) return out;
     if (hit) {
-        out.color = vec3f_madd(out.color, add_fog(scene, shade_surface(tr, cone, hit, transmittance), 1, hit->t), transmittance);
+        out.color = vec3f_madd(out.color, fog_over(scene, shade_surface(tr, cone, hit, transmittance), 1, hit->t), transmittance);
         out.alpha = 1;
     } else {
-        out.color = vec3f_madd(out.color, add_fog(scene, background(scene, cone), 1, VTS_INFINITY), transmittance);
+        out.color = vec3f_madd(out.color, fog_over(scene, sky_radiance(scene, cone->direction, cone->spread), 1, VTS_INFINITY), transmittance);
     }
     return out;
 }

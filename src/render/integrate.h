@@ -3,11 +3,11 @@
 #define VTS_RENDER_INTEGRATE_H
 
 #include "render/compile.h"
+#include "render/lighting.h"
 
 enum { MOST_SHADE_RECORDS = 1024 };
 
 typedef struct ShadeRecord ShadeRecord;
-typedef struct LightRay LightRay;
 
 /* What one worker needs; sized once, so that tracing allocates nothing. */
 typedef struct Tracer {

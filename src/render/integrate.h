@@ -3,6 +3,7 @@
 #define VTS_RENDER_INTEGRATE_H
 
 #include "render/compile.h"
+#include "render/film.h"
 #include "render/lighting.h"
 
 enum { MOST_SHADE_RECORDS = 1024 };
@@ -22,11 +23,6 @@ typedef struct Tracer {
     uint64_t seed;             /* of what is sampled in this pixel */
     TraceCounters counters;
 } Tracer;
-
-typedef struct Radiance {
-    Vec3f color;   /* multiplied by alpha */
-    float alpha;   /* 1 - what of the background shows */
-} Radiance;
 
 void tracer_init(Tracer *tracer, const CompiledScene *compiled, Arena *arena);
 

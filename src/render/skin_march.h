@@ -10,6 +10,13 @@ typedef struct TraceCounters {
     uint64_t camera_rays, shadow_rays, steps, voxels_visited;
 } TraceCounters;
 
+static inline void trace_counters_add(TraceCounters *sum, const TraceCounters *c) {
+    sum->camera_rays += c->camera_rays;
+    sum->shadow_rays += c->shadow_rays;
+    sum->steps += c->steps;
+    sum->voxels_visited += c->voxels_visited;
+}
+
 typedef struct MarchSettings {
     OpacityModel opacity;
     float voxel_width;    /* side of the voxels to use, in footprints of the cone: 1 = voxels as wide as the cone */

@@ -1,0 +1,36 @@
+/* From what pixels see to a picture: tiles over the workers, exposure, progress, interruption. */
+#ifndef VTS_RENDER_FILM_H
+#define VTS_RENDER_FILM_H
+
+#include "base/pool.h"
+#include "base/progress.h"
+#include "base/vec.h"
+#include "image/image.h"
+
+#include <stdatomic.h>
+
+typedef struct Radiance {
+    Vec3f color;   /* multiplied by alpha */
+    float alpha;   /* 1 - what of the background shows */
+} Radiance;
+
+typedef struct RenderOptions {
+    Pool *pool;
+    const Progress *progress;
+    const atomic_bool *interrupted; /* may be NULL; pixels after it became true stay black */
+    int region[4];   /* x0, y0, x1, y1 in pixels, x1 and y1 exclusive */
+    int samples;     /* cones per pixel side where one is not enough; 0: by max_error. Of the reference: rays a pixel */
+    uint64_t seed;   /* of what is sampled */
+    double exposure; /* EV */
+    bool alpha;      /* keep the background transparent */
+} RenderOptions;
+
+/* What the pixel with its upper left corner at (px, py) sees. Called by worker `worker` of the pool; must not depend on it. */
+typedef Radiance FilmPixel(void *context, int worker, int px, int py);
+
+/* Exposes the region (R G B, or R G B A with alpha; `out` is initialised here). False when cancelled or out of memory (text
+ * in `error`, which may be NULL); `out` then holds nothing. */
+bool film_expose(const RenderOptions *options, const char *stage, FilmPixel *pixel, void *context, MemoryBudget *memory, Image *out,
+                 StrBuf *error);
+
+#endif

@@ -150,17 +150,15 @@ static void place(Camera *c, const Transform *t) {
 }
 
 /* A flat or skewed frame is legal, but rarely meant. */
-static bool check_frame(Reader *reader, const Camera *c) {
+static void check_frame(Reader *reader, const Camera *c) {
     double volume = vec3_dot(vec3_cross(c->up, c->direction), c->right);
     double lengths = vec3_length(c->up) * vec3_length(c->direction) * vec3_length(c->right);
-    if (!(lengths > 0) || fabs(volume) < 1e-12 * lengths) {
-        reader_error(reader, reader->block->word_span, "the camera's direction, right and up span no space");
-        return false;
-    }
-    if (fabs(volume) < (1 - 1e-8) * lengths)
+    if (!(lengths > 0) || fabs(volume) < 1e-12 * lengths)
+        diag_warning(reader->context->diags, reader->block->word_span,
+                     "the camera's direction, right and up span no space");
+    else if (fabs(volume) < (1 - 1e-8) * lengths)
         diag_warning(reader->context->diags, reader->block->word_span,
                      "the camera's vectors are not perpendicular");
-    return true;
 }
 
 static bool on_value(Reader *reader, const Argument *value, void *target) {
@@ -207,5 +205,6 @@ bool build_camera(BuildContext *context, const EvalBlock *block, Value *out) {
     if (draft.has_look_at && !apply_look_at(&reader, &draft)) return false;
     if (!copy) apply_orthographic(&draft);
     place(&draft.camera, &draft.transform);
-    return check_frame(&reader, &draft.camera) && store(context, block, draft.camera, out);
+    check_frame(&reader, &draft.camera);
+    return store(context, block, draft.camera, out);
 }

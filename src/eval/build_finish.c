@@ -74,12 +74,26 @@ static void read_reflection(Reader *reader, const Word *word, void *target) {
         body.value_target = &colors;
         reader_run(&body);
         reader_end_nested(reader, &body);
-    } else if (word_arguments(reader, word, 1, 1) && word_color(reader, word, 0, &colors.colors[0])) {
+    } else if (word_arguments(reader, word, 0, 1) && word->count &&
+               word_color(reader, word, 0, &colors.colors[0])) {
         colors.count = 1;
     }
     if (colors.count == 0) return;
     finish->reflection_max = colors.colors[colors.count - 1];
     finish->reflection_min = colors.count == 2 ? colors.colors[0] : finish->reflection_max;
+}
+
+/* POV-Ray lets the colour be missing: nothing changes then. */
+static void optional_color(Reader *reader, const Word *word, Color *out) {
+    if (word_arguments(reader, word, 0, 1) && word->count) word_color(reader, word, 0, out);
+}
+
+static void read_ambient(Reader *reader, const Word *word, void *target) {
+    optional_color(reader, word, &((Finish *)target)->ambient);
+}
+
+static void read_emission(Reader *reader, const Word *word, void *target) {
+    optional_color(reader, word, &((Finish *)target)->emission);
 }
 
 static void read_metallic(Reader *reader, const Word *word, void *target) {
@@ -90,8 +104,8 @@ static void read_metallic(Reader *reader, const Word *word, void *target) {
 
 #define FIELD(name) offsetof(Finish, name)
 static const WordRule rules[] = {
-    {"ambient", WORD_COLOR, FIELD(ambient), NULL, false},
-    {"emission", WORD_COLOR, FIELD(emission), NULL, false},
+    {"ambient", WORD_CUSTOM, FIELD(ambient), read_ambient, false},
+    {"emission", WORD_CUSTOM, FIELD(emission), read_emission, false},
     {"diffuse", WORD_CUSTOM, FIELD(diffuse), read_diffuse, false},
     {"brilliance", WORD_FLOAT, FIELD(brilliance), NULL, false},
     {"specular", WORD_CUSTOM, FIELD(specular), read_specular, false},

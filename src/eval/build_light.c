@@ -67,11 +67,9 @@ const Light *light_placed(const BuildContext *context, const Light *light, const
 static bool finish(Reader *reader, LightDraft *draft, Value *out) {
     Light *light = &draft->light;
     if (draft->parallel && light->kind == LIGHT_POINT) light->kind = LIGHT_PARALLEL;
-    if (light->kind != LIGHT_POINT && vec3_length_squared(vec3_sub(light->location, light->point_at)) == 0) {
-        reader_error(reader, reader->block->word_span,
-                     "this light has no direction: it stands where it points at");
-        return false;
-    }
+    if (light->kind != LIGHT_POINT && vec3_length_squared(vec3_sub(light->location, light->point_at)) == 0)
+        diag_warning(reader->context->diags, reader->block->word_span,
+                     "this light has no direction, for it stands where it points at: it lights nothing");
     *out = (Value){.kind = VALUE_LIGHT, .as.light = light_placed(reader->context, light, &draft->transform)};
     return true;
 }

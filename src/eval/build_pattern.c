@@ -167,9 +167,13 @@ static void read_magnet(Reader *reader, const Word *word, void *target) {
 
 static void read_exponent(Reader *reader, const Word *word, void *target) {
     FractalSettings *f = &((PigmentDraft *)target)->pigment.fractal;
-    if (!word_arguments(reader, word, 1, 1) || !word_int(reader, word, 0, &f->exponent)) return;
-    if (f->exponent < 2 || f->exponent > 33)
-        reader_error(reader, word->arguments[0].span, "'exponent' of a fractal lies between 2 and 33");
+    double exponent;
+    if (!word_arguments(reader, word, 1, 1) || !word_float(reader, word, 0, &exponent)) return;
+    bool known = exponent >= 2 && exponent < 34;
+    if (!known)
+        diag_warning(reader->context->diags, word->arguments[0].span,
+                     "'exponent' of a fractal lies between 2 and 33: 2 is taken for %g", exponent);
+    f->exponent = known ? (int)exponent : 2;
 }
 
 static void read_colouring(Reader *reader, const Word *word, int most, int *type, double *factor) {
@@ -291,7 +295,9 @@ static void read_wave(Reader *reader, const Word *word, void *target) {
 static void read_metric(Reader *reader, const Word *word, void *target) {
     double *metric = &((PigmentDraft *)target)->pigment.crackle.metric;
     if (!word_arguments(reader, word, 1, 1) || !word_float(reader, word, 0, metric)) return;
-    if (*metric < 1) reader_error(reader, word->arguments[0].span, "'metric' of crackle is 1 or more");
+    if (*metric < 1)
+        diag_warning(reader->context->diags, word->arguments[0].span,
+                     "a 'metric' of crackle below 1 measures no distances");
 }
 
 static void read_function_body(Reader *reader, const Word *word, void *target) {

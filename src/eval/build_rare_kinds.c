@@ -88,12 +88,13 @@ bool build_superellipsoid(BuildContext *context, const EvalBlock *block, Value *
     BEGIN(.solid.kind = SOLID_SUPERELLIPSOID);
     Point2 e;
     if (!rare_point2(&draft, "the exponents <e, n>", &e)) return false;
-    if (!(e.x > 0 && e.y > 0)) {
-        reader_error(&reader, block->word_span, "the exponents of 'superellipsoid' must be positive");
+    if (!(e.x >= 0 && e.y >= 0)) {
+        reader_error(&reader, block->word_span, "the exponents of 'superellipsoid' must not be negative");
         return false;
     }
-    draft.solid.as.superellipsoid.east_west = e.x;
-    draft.solid.as.superellipsoid.north_south = e.y;
+    static const double least = 1e-3; /* as sharp as can be told from 0 */
+    draft.solid.as.superellipsoid.east_west = double_max(e.x, least);
+    draft.solid.as.superellipsoid.north_south = double_max(e.y, least);
     return rare_end(&draft, out);
 }
 

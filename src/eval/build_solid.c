@@ -35,8 +35,8 @@ bool build_sphere(BuildContext *context, const EvalBlock *block, Value *out) {
     Reader reader = reader_begin(context, block);
     ObjectDraft draft = object_begin(block, OBJECT_SPHERE);
     return reader_vector(&reader, "the center", &draft.object.as.sphere.center, NULL) &&
-           read_radius(&reader, "the radius", &draft.object.as.sphere.radius) && read_strength(&reader, &draft.object.as.sphere.strength) &&
-           object_finish(&reader, &draft, out);
+           read_radius(&reader, "the radius", &draft.object.as.sphere.radius) &&
+           read_strength(&reader, &draft.object.as.sphere.strength) && object_finish(&reader, &draft, out);
 }
 
 bool build_box(BuildContext *context, const EvalBlock *block, Value *out) {
@@ -82,7 +82,8 @@ bool build_cone(BuildContext *context, const EvalBlock *block, Value *out) {
     if (object_is_copy(block)) return build_object(context, block, out);
     Reader reader = reader_begin(context, block);
     ObjectDraft draft = object_begin(block, block->word->text[1] == 'o' ? OBJECT_CONE : OBJECT_CYLINDER);
-    if (!read_cone_ends(&reader, &draft.object) || !read_strength(&reader, &draft.object.as.cone.strength)) return false;
+    if (!read_cone_ends(&reader, &draft.object) || !read_strength(&reader, &draft.object.as.cone.strength))
+        return false;
     reader_add_table(&reader, cone_rules, VTS_ARRAY_COUNT(cone_rules), &draft);
     return object_finish(&reader, &draft, out);
 }
@@ -96,6 +97,19 @@ static bool read_normal(Reader *reader, const char *what, Vec3 *normal, double *
         return false;
     }
     *normal = vec3_scale(*normal, 1 / *length);
+    return true;
+}
+
+/* POV-Ray draws nothing of a disc without a normal. */
+static bool read_disc_normal(Reader *reader, ObjectDraft *draft, bool *flat) {
+    Vec3 *normal = &draft->object.as.disc.normal;
+    Span span;
+    if (!reader_vector(reader, "the normal", normal, &span)) return false;
+    *flat = vec3_length_squared(*normal) > 0;
+    if (!*flat)
+        diag_warning(reader->context->diags, span,
+                     "the normal of 'disc' has no length: nothing will be seen");
+    *normal = *flat ? vec3_normalize(*normal) : vec3(0, 1, 0);
     return true;
 }
 
@@ -114,11 +128,12 @@ bool build_disc(BuildContext *context, const EvalBlock *block, Value *out) {
     if (object_is_copy(block)) return build_object(context, block, out);
     Reader reader = reader_begin(context, block);
     ObjectDraft draft = object_begin(block, OBJECT_DISC);
-    double length;
+    bool flat;
     if (!reader_vector(&reader, "the center", &draft.object.as.disc.center, NULL) ||
-        !read_normal(&reader, "the normal", &draft.object.as.disc.normal, &length) ||
+        !read_disc_normal(&reader, &draft, &flat) ||
         !read_radius(&reader, "the radius", &draft.object.as.disc.radius))
         return false;
+    if (!flat) draft.object.as.disc.radius = 0;
     Argument hole;
     if (reader_take_value(&reader, VALUE_FLOAT, &hole) &&
         argument_float(&reader, &hole, "the radius of the hole", &draft.object.as.disc.hole_radius))

@@ -162,6 +162,10 @@ static Value substr(Eval *ev, const Node *node) {
     size_t characters = char_count(text, length);
     first = trunc(first);
     count = trunc(count);
+    if (first == 0 && count >= 0 && count - 1 <= (double)characters) { /* POV-Ray's answer to who counts from 0 */
+        diag_warning(ev->diags, node->span, "substr() counts characters from 1: from 0 on it gives none");
+        return value_string(ev, "", 0);
+    }
     if (!(first >= 1 && count >= 0 && first - 1 + count <= (double)characters))
         return eval_fail(ev, node->span, "substr(): characters %g to %g of a string of %zu", first,
                          first + count - 1, characters);

@@ -238,10 +238,10 @@ static void lex_word(Lexer *lx) {
     t->keyword = (uint16_t)keyword_of(lx->keywords, name);
 }
 
-/* POV-Ray passes over a '#' before a brace, or before a keyword that is no directive. */
+/* POV-Ray passes over a '#' before a brace or another '#', or before a keyword that is no directive. */
 static bool is_idle(Lexer *lx) {
     uint32_t begin = lx->at;
-    if (lx->text[begin] == '}') return true;
+    if (lx->text[begin] == '}' || lx->text[begin] == '#') return true;
     if (!is_word_start(lx->text[begin])) return false;
     Keyword keyword = keyword_of(lx->keywords, take_word(lx));
     lx->at = begin;

@@ -51,5 +51,5 @@ double crackle_number(const Pigment *pigment, Vec3 p) {
     const double form[3] = {c->form.x, c->form.y, c->form.z};
     for (int k = 0; k < 3; k++)
         if (form[k] != 0) value += form[k] * length_of(nearest.sums[k] + offset, c->metric);
-    return double_clamp(value, 0, 1);
+    return isnan(value) ? 0 : double_clamp(value, 0, 1); /* with metric 0 all distances are infinite */
 }

@@ -274,14 +274,15 @@ static VtsStatus evaluate(VtsSession *session, const char *path, EvalMode mode) 
     struct EvalDeclare *declares = arena_new_array(&session->parse, struct EvalDeclare, o->declare_count);
     for (size_t i = 0; i < o->declare_count; i++) declares[i] = (struct EvalDeclare){o->declares[i].name, o->declares[i].value};
     EvalGeometry geometry = hooks_geometry(&session->scene_arena);
-    /* As in POV-Ray, what counts frames is 0 where there is one picture and no film. */
-    bool film = o->last_frame > o->first_frame || o->frame > 1;
+    /* As in POV-Ray, what counts frames is 0 where there is no film; but a picture alone is the first of one, so that scenes which
+     * take their part of a table by the frame's number can be read and drawn. */
+    bool film = o->last_frame > o->first_frame || o->frame > 1, counted = film || !mode.is_program;
     EvalOptions options = {.geometry = &geometry, .include_dirs = o->include_dirs, .include_dir_count = o->include_dir_count,
                            .stdlib_dir = session->stdlib.size ? session->stdlib.data : NULL,
                            .declares = declares, .declare_count = o->declare_count, .clock = o->clock, .clock_on = film || o->clock_set,
                            .clock_delta = film ? o->clock_delta : 0, .initial_clock = film ? o->first_clock : 0,
-                           .final_clock = film ? o->last_clock : 0, .frame_number = film ? o->frame : 0,
-                           .initial_frame = film ? o->first_frame : 0, .final_frame = film ? o->last_frame : 0,
+                           .final_clock = film ? o->last_clock : 0, .frame_number = counted ? o->frame : 0,
+                           .initial_frame = counted ? o->first_frame : 0, .final_frame = counted ? o->last_frame : 0,
                            .image_width = o->width, .image_height = o->height, .limits = eval_limits_default(),
                            .allow_read = o->allow_read, .allow_read_count = o->allow_read_count, .allow_write = o->allow_write,
                            .allow_write_count = o->allow_write_count, .keep_writes_in_memory = mode.writes_in_memory, .is_program = mode.is_program,

@@ -120,6 +120,8 @@ case_povray() {
 
 case_animation() {
   printf '#debug concat("> ", str(frame_number,0,0), " ", str(clock,0,2), "\\n")\nbackground { rgb clock }\n' >film.pov
+  run check film.pov; want_in err '> 1 0.00' # a picture alone is the first of one
+  run run film.pov; want_in err '> 0 0.00' # a program has none, as in POV-Ray
   run run film.pov +KFI0 +KFF4 +KI-1 +KF3; want_status 0
   [ "$(grep '^>' err | tr '\n' ' ')" = "> 0 -1.00 > 1 0.00 > 2 1.00 > 3 2.00 > 4 3.00 " ] || fail "clocks: $(cat err)"
   run run film.pov Initial_Frame=1 Final_Frame=4 Cyclic_Animation=on +SF2 +EF3; want_status 0

@@ -124,8 +124,9 @@ static size_t rounded(size_t size) { return (size + ALIGNMENT - 1) & ~(size_t)(A
 
 /* What was pushed last grows where it is, if its block has room. */
 static bool extend(Arena *arena, void *items, size_t size, size_t wanted) {
+    if (!items) return false;
     char *end = (char *)items + rounded(size);
-    if (!items || end != (char *)arena->block->data + arena->used) return false;
+    if (end != (char *)arena->block->data + arena->used) return false;
     size_t more = rounded(wanted) - rounded(size);
     if (arena->block->size - arena->used < more) return false;
     memset(end, 0, more);

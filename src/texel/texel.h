@@ -63,8 +63,14 @@ typedef struct TexelBuildOptions {
  * memory ran out or the pool was cancelled. Owned by the caller: voxel_layer_destroy(). */
 VoxelLayer *voxel_layer_build(const TexelMesh *mesh, const TexelBuildOptions *options, TexelBuildStats *stats);
 void voxel_layer_destroy(VoxelLayer *layer);
+/* The same layer for one owner more, who destroys it too; from one thread at a time. */
+VoxelLayer *voxel_layer_share(VoxelLayer *layer);
 
 int voxel_layer_levels(const VoxelLayer *layer);
+/* Stored at a level: voxels that are not empty, and the bricks of 8³ that hold them; bytes of memory in all. */
+size_t voxel_layer_voxels(const VoxelLayer *layer, int level);
+size_t voxel_layer_bricks(const VoxelLayer *layer, int level);
+size_t voxel_layer_bytes(const VoxelLayer *layer);
 /* Voxels along the axes at a level; side lengths of its voxels are extent / size. */
 void voxel_layer_size(const VoxelLayer *layer, int level, int size[3]);
 

@@ -2,22 +2,24 @@
 
 #include "grow/particles.h"
 
-static double longest_side(const TexelDef *def) {
-    Vec3 size = vec3_sub(def->bounds.max, def->bounds.min);
+static double longest_side(Box3 bounds) {
+    Vec3 size = vec3_sub(bounds.max, bounds.min);
     return fmax(size.x, fmax(size.y, size.z));
 }
 
 /* A side much shorter than the longest (a flat box) keeps a thickness, so that no division by zero follows. */
 static const double THINNEST_SIDE = 1e-4;
 
-Vec3f texel_extent(const TexelDef *def) {
-    Vec3 size = vec3_scale(vec3_sub(def->bounds.max, def->bounds.min), 1 / longest_side(def));
+Vec3f texel_extent_of(Box3 bounds) {
+    Vec3 size = vec3_scale(vec3_sub(bounds.max, bounds.min), 1 / longest_side(bounds));
     return vec3f_from(vec3_max(size, vec3_splat(THINNEST_SIDE)));
 }
 
+Vec3f texel_extent(const TexelDef *def) { return texel_extent_of(def->bounds); }
+
 Transform texel_space(const TexelDef *def) {
     Transform move = transform_translate(vec3_negate(def->bounds.min));
-    Transform scale = transform_scale(vec3_splat(1 / longest_side(def)));
+    Transform scale = transform_scale(vec3_splat(1 / longest_side(def->bounds)));
     return transform_then(&move, &scale);
 }
 

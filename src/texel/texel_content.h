@@ -8,6 +8,7 @@
 
 /* Extent of texel space: the bounds scaled so that their longest side is 1. */
 Vec3f texel_extent(const TexelDef *def);
+Vec3f texel_extent_of(Box3 bounds);
 /* Scene space (as the layers' contents are written) → texel space. */
 Transform texel_space(const TexelDef *def);
 

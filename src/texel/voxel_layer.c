@@ -52,6 +52,7 @@ VoxelLayer *voxel_layer_create(const TexelBuildOptions *options) {
         memory_budget_give_back(options->memory, sizeof(VoxelLayer));
         return NULL;
     }
+    layer->owners = 1;
     layer->memory = options->memory;
     layer->bytes = sizeof *layer;
     for (int i = 0; i < 3; i++) layer->cyclic[i] = options->cyclic >> i & 1;
@@ -59,8 +60,13 @@ VoxelLayer *voxel_layer_create(const TexelBuildOptions *options) {
     return layer;
 }
 
+VoxelLayer *voxel_layer_share(VoxelLayer *layer) {
+    layer->owners++;
+    return layer;
+}
+
 void voxel_layer_destroy(VoxelLayer *layer) {
-    if (!layer) return;
+    if (!layer || --layer->owners > 0) return;
     for (int i = 0; i < layer->levels; i++) {
         free(layer->level[i].index);
         free(layer->level[i].support.index);
@@ -78,6 +84,10 @@ void voxel_layer_size(const VoxelLayer *layer, int level, int size[3]) {
     const VoxelLevel *l = &layer->level[int_clamp(level, 0, layer->levels - 1)];
     for (int i = 0; i < 3; i++) size[i] = l->size[i];
 }
+
+size_t voxel_layer_voxels(const VoxelLayer *layer, int level) { return layer->level[level].code_count; }
+size_t voxel_layer_bricks(const VoxelLayer *layer, int level) { return layer->level[level].brick_count; }
+size_t voxel_layer_bytes(const VoxelLayer *layer) { return layer->bytes; }
 
 Hash128 voxel_layer_hash(const VoxelLayer *layer) {
     Hash128 hash = hash_begin((uint64_t)layer->levels);

@@ -50,6 +50,7 @@ typedef struct VoxelLevel {
 } VoxelLevel;
 
 struct VoxelLayer {
+    int owners; /* voxel_layer_destroy() takes one away */
     int levels;
     bool cyclic[3];
     VoxelLevel level[TEXEL_MAX_LEVELS];

@@ -18,7 +18,7 @@ typedef struct FormatReader {
     bool no_memory;
 } FormatReader;
 
-static bool VTS_PRINTF(2, 3) refuse(FormatReader *r, const char *format, ...) {
+static bool VTS_PRINTF(2, 3) format_refuse(FormatReader *r, const char *format, ...) {
     va_list args;
     va_start(args, format);
     if (r->error) strbuf_vaddf(r->error, format, args);
@@ -28,26 +28,26 @@ static bool VTS_PRINTF(2, 3) refuse(FormatReader *r, const char *format, ...) {
 
 static bool lack_memory(FormatReader *r) {
     r->no_memory = true;
-    return refuse(r, "it needs more memory than there is");
+    return format_refuse(r, "it needs more memory than there is");
 }
 
 /* ---- header and table ---- */
 
 static bool read_header(FormatReader *r) {
     FormatHeader *h = &r->header;
-    if (r->size < sizeof h->magic || memcmp(r->data, TEXEL_MAGIC, sizeof h->magic) != 0) return refuse(r, "it is not a texel file");
-    if (r->size < sizeof *h) return refuse(r, "it is damaged: it ends within its header");
+    if (r->size < sizeof h->magic || memcmp(r->data, TEXEL_MAGIC, sizeof h->magic) != 0) return format_refuse(r, "it is not a texel file");
+    if (r->size < sizeof *h) return format_refuse(r, "it is damaged: it ends within its header");
     memcpy(h, r->data, sizeof *h);
-    if (h->byte_order != TEXEL_BYTE_ORDER) return refuse(r, "it was written by a machine of another byte order, or is damaged");
+    if (h->byte_order != TEXEL_BYTE_ORDER) return format_refuse(r, "it was written by a machine of another byte order, or is damaged");
     if (h->version != TEXEL_FILE_VERSION)
-        return refuse(r, "its format is version %u; this program reads version %d", h->version, TEXEL_FILE_VERSION);
+        return format_refuse(r, "its format is version %u; this program reads version %d", h->version, TEXEL_FILE_VERSION);
     if (h->file_size != r->size)
-        return refuse(r, "it is damaged: it has %zu bytes and should have %llu", r->size, (unsigned long long)h->file_size);
+        return format_refuse(r, "it is damaged: it has %zu bytes and should have %llu", r->size, (unsigned long long)h->file_size);
     size_t table_size = (size_t)h->section_count * sizeof(FormatSection);
-    if (table_size > r->size - sizeof *h) return refuse(r, "it is damaged: its table of sections does not fit into it");
+    if (table_size > r->size - sizeof *h) return format_refuse(r, "it is damaged: its table of sections does not fit into it");
     if (!hash_equal(h->checksum, format_header_checksum(h, r->data + sizeof *h, table_size)))
-        return refuse(r, "it is damaged: the checksum of its header is wrong");
-    if (h->zero) return refuse(r, "it is damaged: its header holds what it should not");
+        return format_refuse(r, "it is damaged: the checksum of its header is wrong");
+    if (h->zero) return format_refuse(r, "it is damaged: its header holds what it should not");
     r->end = sizeof *h + table_size;
     return true;
 }
@@ -67,9 +67,9 @@ static bool is_zero(const unsigned char *bytes, size_t size) {
 /* `what` is wrong with the current section. */
 static bool refuse_section(FormatReader *r, const char *what) {
     const FormatSection *s = &r->section;
-    if (s->kind == SECTION_TEXEL) return refuse(r, "it is damaged: its description %s", what);
-    if (s->kind == SECTION_LOOK) return refuse(r, "it is damaged: the look of layer %u %s", s->layer, what);
-    return refuse(r, "it is damaged: the %s of layer %u, level %u, %s", section_name(s->kind), s->layer, s->level, what);
+    if (s->kind == SECTION_TEXEL) return format_refuse(r, "it is damaged: its description %s", what);
+    if (s->kind == SECTION_LOOK) return format_refuse(r, "it is damaged: the look of layer %u %s", s->layer, what);
+    return format_refuse(r, "it is damaged: the %s of layer %u, level %u, %s", section_name(s->kind), s->layer, s->level, what);
 }
 
 /* The next section, which has to be this one; NULL if it is not there, not where it has to be, or altered. */
@@ -238,7 +238,7 @@ static bool read_file(FormatReader *r, MemoryBudget *memory, TexelFile *out) {
         out->layer_count = i + 1;
         if (!read_look(r, i, &out->layers[i]) || !read_voxels(r, &texel, i, &options, &out->layers[i])) return false;
     }
-    if (r->next != r->header.section_count || r->end != r->size) return refuse(r, "it is damaged: there is more in it than there should be");
+    if (r->next != r->header.section_count || r->end != r->size) return format_refuse(r, "it is damaged: there is more in it than there should be");
     return true;
 }
 

@@ -345,7 +345,7 @@ static void skip_arguments(Reader *reader, const Word *word) {
 }
 
 static void apply_rule(Reader *reader, const Word *word, const WordRule *rule, void *target) {
-    void *field = (char *)target + rule->offset;
+    void *field = target ? (char *)target + rule->offset : NULL; /* tables without fields have no target */
     bool scalar = rule->shape >= WORD_FLOAT && rule->shape <= WORD_COLOR;
     if (scalar && !word_arguments(reader, word, 1, 1)) return;
     switch (rule->shape) {

@@ -3,21 +3,28 @@
 #include "pattern/pattern_function.h"
 #include "shape/extent.h"
 
+typedef struct Hooks {
+    ShapeTracer *tracer;
+    TexelCache *texels;
+    MemoryBudget *memory;
+} Hooks;
+
 /* A ray that starts on a surface does not meet it there. */
 static const double START = 1e-6;
 
 static bool trace(void *context, const Object *object, Vec3 origin, Vec3 direction, Vec3 *point,
                   Vec3 *normal) {
+    const Hooks *hooks = context;
     TraceHit hit;
     const Ray ray = {origin, vec3_normalize(direction)};
-    if (!shape_trace(context, object, &ray, START, &hit)) return false;
+    if (!shape_trace(hooks->tracer, object, &ray, START, &hit)) return false;
     *point = hit.point;
     *normal = hit.normal;
     return true;
 }
 
 static bool inside(void *context, const Object *object, Vec3 point) {
-    return shape_trace_inside(context, object, point);
+    return shape_trace_inside(((const Hooks *)context)->tracer, object, point);
 }
 
 static bool pigment_function(void *context, Arena *arena, const Pigment *pigment, TapeExternal *out) {
@@ -32,15 +39,29 @@ static bool pattern_function(void *context, Arena *arena, const Pigment *pattern
     return true;
 }
 
-static Box3 extent(void *context, const Object *object) { return shape_extent(context, object); }
+static Box3 extent(void *context, const Object *object) {
+    return shape_extent(((const Hooks *)context)->tracer, object);
+}
 
-EvalGeometry hooks_geometry(Arena *arena) {
+static bool texel_file(void *context, Arena *arena, const char *path, Span span, TexelDef *out, StrBuf *error) {
+    const Hooks *hooks = context;
+    TexelFileStatus status;
+    const TexelFile *file = hooks->texels ? texel_cache_open(hooks->texels, path, &status, error) : NULL;
+    if (file) texel_def_from_file(file, path, span, arena, out);
+    else if (hooks->texels && status == TEXEL_FILE_NO_MEMORY && hooks->memory) memory_budget_fail(hooks->memory);
+    return file != NULL;
+}
+
+EvalGeometry hooks_geometry(Arena *arena, TexelCache *texels) {
+    Hooks *hooks = arena_new(arena, Hooks);
+    *hooks = (Hooks){shape_tracer_create(arena), texels, arena->budget};
     return (EvalGeometry){
-        .context = shape_tracer_create(arena),
+        .context = hooks,
         .trace = trace,
         .inside = inside,
         .extent = extent,
         .pigment_function = pigment_function,
         .pattern_function = pattern_function,
+        .texel_file = texel_file,
     };
 }

@@ -4,8 +4,10 @@
 #define VTS_HOOKS_H
 
 #include "eval/eval.h"
+#include "texel/texel_cache.h"
 
-/* For EvalOptions.geometry. What is prepared for objects lives in `arena`, which must outlive the evaluation. */
-EvalGeometry hooks_geometry(Arena *arena);
+/* For EvalOptions.geometry. What is prepared for objects lives in `arena`, which must outlive the evaluation; texels from files
+ * are kept in `texels` (NULL: there are none). */
+EvalGeometry hooks_geometry(Arena *arena, TexelCache *texels);
 
 #endif

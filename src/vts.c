@@ -16,6 +16,7 @@ struct VtsSession {
     MemoryBudget memory;
     jmp_buf out_of_memory;      /* valid while `guarded` */
     Pool *pool;
+    TexelCache *texels;         /* built and loaded, from one call to the next */
     Progress progress;
     atomic_bool interrupted; /* set from signal handlers and other threads */
     /* of the session */
@@ -96,8 +97,9 @@ static bool prepare(VtsSession *session) {
     diag_init(&session->diags, &session->arena, &session->sources);
     interner_init(&session->names, &session->arena);
     find_stdlib(session);
+    session->texels = texel_cache_create(session->options.cache_dir, &session->memory);
     session->pool = pool_create(session->options.threads);
-    return session->pool != NULL;
+    return session->pool != NULL && session->texels != NULL;
 }
 
 VtsSession *vts_session_create(const VtsOptions *options, const char **error) {
@@ -130,6 +132,7 @@ static void end_call(VtsSession *session) {
 void vts_session_destroy(VtsSession *session) {
     if (!session) return;
     end_call(session);
+    texel_cache_destroy(session->texels);
     pool_destroy(session->pool);
     arena_destroy(&session->arena);
     strbuf_free(&session->stdlib);
@@ -273,7 +276,7 @@ static VtsStatus evaluate(VtsSession *session, const char *path, EvalMode mode) 
     const VtsOptions *o = &session->options;
     struct EvalDeclare *declares = arena_new_array(&session->parse, struct EvalDeclare, o->declare_count);
     for (size_t i = 0; i < o->declare_count; i++) declares[i] = (struct EvalDeclare){o->declares[i].name, o->declares[i].value};
-    EvalGeometry geometry = hooks_geometry(&session->scene_arena);
+    EvalGeometry geometry = hooks_geometry(&session->scene_arena, session->texels);
     /* As in POV-Ray, what counts frames is 0 where there is no film; but a picture alone is the first of one, so that scenes which
      * take their part of a table by the frame's number can be read and drawn. */
     bool film = o->last_frame > o->first_frame || o->frame > 1, counted = film || !mode.is_program;
@@ -305,7 +308,7 @@ static VtsStatus evaluate(VtsSession *session, const char *path, EvalMode mode) 
 static VtsStatus compile(VtsSession *session) {
     VtsStatus status = apply_settings(session);
     if (status != VTS_OK) return status;
-    CompileOptions options = {.pool = session->pool, .memory = &session->memory, .progress = &session->progress,
+    CompileOptions options = {.pool = session->pool, .memory = &session->memory, .texels = session->texels, .progress = &session->progress,
                               .width = session->options.width, .height = session->options.height,
                               .interrupted = &session->interrupted};
     CompileStatus result = compile_scene(session->scene, &options, &session->compiled_arena, &session->diags, &session->compiled);
@@ -441,8 +444,10 @@ static VtsStatus guarded(VtsSession *session, const Call *call) {
     } else {
         status = VTS_ERROR_MEMORY;
         report_memory(session);
+        texel_cache_clear(session->texels);
     }
     end_call(session);
+    texel_cache_trim(session->texels);
     return status;
 }
 

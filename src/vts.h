@@ -62,6 +62,7 @@ typedef struct VtsOptions {
     bool alpha;                      /* transparent background */
     int region[4];                   /* x0, y0, x1, y1 (x1, y1 exclusive) in pixels; all 0: the whole picture */
     size_t memory_limit;             /* bytes; 0: none */
+    const char *cache_dir;           /* built texels are kept there from one run to the next; NULL: nowhere */
     const char *const *include_dirs; /* searched in order after the including file's folder */
     size_t include_dir_count;
     const char *stdlib_dir;          /* NULL: found beside the program or as installed */

@@ -100,6 +100,10 @@ static const char *apply_limit(Settings *s, const char *value) {
 static const char *apply_memory_limit(Settings *s, const char *value) {
     return option_bytes(value, &s->options.memory_limit) ? NULL : "a number of bytes, such as 8G or 512M";
 }
+static const char *apply_cache(Settings *s, const char *value) {
+    s->options.cache_dir = strcmp(value, "off") == 0 ? NULL : value;
+    return *value ? NULL : "a folder, or off";
+}
 static const char *apply_allow_read(Settings *s, const char *value) {
     settings_add(&s->read_folders, value);
     return *value ? NULL : "a folder";
@@ -178,7 +182,8 @@ static const Option OPTIONS[] = {
     {"resume", 0, NULL, COMMAND_ALL, NULL, NULL},
     {"aov", 0, "NAMES", COMMAND_ALL, NULL, NULL},
     {"preview", 0, "HOST:PORT", COMMAND_ALL, NULL, NULL},
-    {"cache", 0, "DIR", COMMAND_ALL, NULL, NULL},
+    {"cache", 0, "DIR|off", COMMAND_ALL, apply_cache,
+     "keeps built texels in this folder from one run to the next; default: off"},
     {"sweep", 0, "KNOB=VALUES", COMMAND_ALL, NULL, NULL},
     {"methods", 0, "NAMES", COMMAND_ALL, NULL, NULL},
     {"metric", 0, "NAMES", COMMAND_COMPARE, apply_metric, "of rmse,psnr,flip,max; default rmse,psnr,flip"},

@@ -38,6 +38,9 @@ const ImageMap *image_read(Reader *parent, const Word *word);
  * (eval_path.c); NULL after a report. */
 const char *picture_find(const BuildContext *context, const char *name, const char *format, Span span);
 
+/* Reads the texel's file that the text at `span` names (eval_path.c); false after a report. */
+bool texel_file_read(const BuildContext *context, const char *name, Span span, TexelDef *out);
+
 /* ---- build_finish.c ---- */
 BlockBuilder build_finish;
 /* `base` with what the finish block sets changed; a finish made from a declared one replaces it whole. */

@@ -180,9 +180,9 @@ static const WordRule rules[] = {
 };
 
 static bool on_value(Reader *reader, const Argument *value, void *target) {
-    TexelDraft *draft = target;
+    (void)target;
     if (value->value.kind == VALUE_STRING) {
-        inert_add(reader->context, &draft->texel.inert, "a texel from a file", value->span);
+        reader_error(reader, value->span, "a texel's file comes first, and without layers of its own");
         return true;
     }
     if (value->value.kind != VALUE_OBJECT) return false;
@@ -216,11 +216,37 @@ static Value keep_reference(BuildContext *context, const EvalBlock *block) {
     return (Value){.kind = VALUE_BLOCK, .as.block = kept};
 }
 
+/* ---- texel { "forest.vtx" } ---- */
+
+static bool is_from_file(const EvalBlock *block) {
+    return block->count && block->items[0].kind == ITEM_VALUE && block->items[0].value.kind == VALUE_STRING;
+}
+
+/* The file's texel in the place of its name; what follows belongs to the skin around it, as with a declared texel. */
+static bool texel_from_file(BuildContext *context, const EvalBlock *block, Value *out) {
+    const BlockItem *name = &block->items[0];
+    TexelDef *texel = arena_new(context->arena, TexelDef);
+    const char *path = arena_printf(context->arena, "%.*s", (int)name->value.as.string.length, name->value.as.string.text);
+    if (!texel_file_read(context, path, name->span, texel)) return false;
+    if (block->declared_as) texel->name = block->declared_as->text;
+    Value value = {.kind = VALUE_TEXEL, .as.texel = texel};
+    if (block->count > 1) {
+        EvalBlock reference = *block;
+        BlockItem *items = arena_copy(context->arena, block->items, block->count * sizeof *items);
+        items[0].value = value;
+        reference.items = items;
+        value = keep_reference(context, &reference);
+    }
+    *out = value;
+    return true;
+}
+
 bool build_texel(BuildContext *context, const EvalBlock *block, Value *out) {
     if (is_reference(block)) {
         *out = block->count == 1 ? block->items[0].value : keep_reference(context, block);
         return true;
     }
+    if (is_from_file(block)) return texel_from_file(context, block, out);
     TexelDraft *draft = arena_new(context->arena, TexelDraft);
     TexelDef *texel = &draft->texel;
     *texel = (TexelDef){.span = block->span,

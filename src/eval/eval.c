@@ -1,6 +1,7 @@
 #include "eval/eval.h"
 
 #include "eval/eval_files.h"
+#include "eval/eval_names.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -285,8 +286,12 @@ static EvalStatus evaluate(Eval *ev, const SourceFile *file, const Scene **scene
     }
     if (ev->interrupted) return EVAL_INTERRUPTED;
     if (ev->diags->error_count) return EVAL_FAILED;
-    *scene = scene_draft_finish(ev->draft, &ev->build, ev->options->clock);
-    return *scene && ev->diags->error_count == 0 ? EVAL_OK : EVAL_FAILED;
+    const Scene *finished = scene_draft_finish(ev->draft, &ev->build, ev->options->clock);
+    if (!finished || ev->diags->error_count) return EVAL_FAILED;
+    Scene *named = arena_copy(ev->build.arena, finished, sizeof *finished);
+    eval_name_texels(ev, named);
+    *scene = named;
+    return EVAL_OK;
 }
 
 EvalStatus eval_file(const char *path, const EvalOptions *options, SourceSet *sources, DiagList *diags,

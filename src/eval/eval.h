@@ -25,6 +25,8 @@ typedef struct EvalGeometry {
     Box3 (*extent)(void *context, const Object *object); /* min_extent(), max_extent() */
     /* A pigment as a function of place: 3 inputs, 5 outputs. `out` and its data live in `arena`; false: it cannot be one. */
     bool (*pigment_function)(void *context, Arena *arena, const Pigment *pigment, TapeExternal *out);
+    /* The texel in a file, in `arena`. False, with a line of text in `error` that says why the file is refused. */
+    bool (*texel_file)(void *context, Arena *arena, const char *path, Span span, TexelDef *out, StrBuf *error);
     /* A pattern as a function of place: 3 inputs, 1 output; otherwise the same. */
     bool (*pattern_function)(void *context, Arena *arena, const Pigment *pattern, TapeExternal *out);
 } EvalGeometry;

@@ -142,3 +142,29 @@ const char *picture_find(const BuildContext *context, const char *name, const ch
     strbuf_free(&looked_in);
     return path;
 }
+
+static const char *texel_path(const BuildContext *context, const char *name, Span span) {
+    StrBuf looked_in = {0};
+    Diagnostic *refused = NULL;
+    const char *path = context->eval ? path_find(context->eval, name, span, &refused, &looked_in) : NULL;
+    if (!path && !refused) {
+        Diagnostic *d = diag_error(context->diags, span, "there is no texel file '%s'", name);
+        diag_hint(context->diags, d, "looked in %s", looked_in.data ? looked_in.data : "nowhere");
+    }
+    strbuf_free(&looked_in);
+    return path;
+}
+
+bool texel_file_read(const BuildContext *context, const char *name, Span span, TexelDef *out) {
+    const char *path = texel_path(context, name, span);
+    if (!path) return false;
+    const EvalGeometry *geometry = ((const Eval *)context->eval)->options->geometry;
+    StrBuf error = {0};
+    bool ok = geometry && geometry->texel_file &&
+              geometry->texel_file(geometry->context, context->arena, path, span, out, &error);
+    if (!ok)
+        diag_error(context->diags, span, "the texel file '%s' is refused: %s", path,
+                   error.size ? error.data : "texels are not read here");
+    strbuf_free(&error);
+    return ok;
+}

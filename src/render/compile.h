@@ -8,6 +8,7 @@
 #include "render/hierarchy.h"
 #include "render/skin.h"
 #include "render/skin_march.h"
+#include "texel/texel_cache.h"
 
 /* What one frame asks of the compiled scene: its camera as cones. */
 typedef struct View {
@@ -19,6 +20,7 @@ typedef struct View {
 typedef struct CompileOptions {
     Pool *pool;
     MemoryBudget *memory;
+    TexelCache *texels; /* voxels built before, and those from files; may be NULL if the scene has none from files */
     const Progress *progress;
     int width, height;
     const atomic_bool *interrupted;

@@ -14,8 +14,8 @@ static void add_texels(StrBuf *out, const CompiledScene *compiled) {
         add_text(out, "name", t->def->name);
         if (t->asked) strbuf_addf(out, ",\"asked\":%d", t->asked);
         else strbuf_adds(out, ",\"asked\":\"auto\"");
-        strbuf_addf(out, ",\"needed\":%d,\"built\":%d,\"voxels\":%zu,\"bytes\":%zu,\"build_s\":%.4f,\"cached\":false}", t->needed,
-                    t->built, t->voxel_count, t->bytes, t->build_seconds);
+        strbuf_addf(out, ",\"needed\":%d,\"built\":%d,\"voxels\":%zu,\"bytes\":%zu,\"build_s\":%.4f,\"cached\":%s}", t->needed,
+                    t->built, t->voxel_count, t->bytes, t->build_seconds, t->cached ? "true" : "false");
     }
     strbuf_addc(out, ']');
 }

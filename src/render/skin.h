@@ -46,7 +46,8 @@ typedef struct BuiltTexel {
     size_t matter_count;
     int asked, needed, built; /* resolutions: asked 0 = auto */
     size_t voxel_count, bytes;
-    double build_seconds;
+    double build_seconds;     /* or of loading */
+    bool cached;              /* nothing of it had to be built */
 } BuiltTexel;
 
 /* One `texel { … }` of a skin. */

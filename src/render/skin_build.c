@@ -2,6 +2,7 @@
 #include "render/compile.h"
 
 #include "base/random.h"
+#include "base/stopwatch.h"
 #include "pattern/pattern.h"
 #include "tape/noise.h"
 #include "texel/texel_content.h"
@@ -21,47 +22,75 @@ static int power_of_two_above(double x, int most) {
 /* Contents are tessellated to a fifth of a voxel: what is left of facets disappears in the voxels' own blur. */
 static const double CONTENT_TOLERANCE_VOXELS = 0.2;
 
-static bool build_matter(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
+/* Builds the voxels of a layer; NULL when that is not possible (see diags) or interrupted. */
+static VoxelLayer *build_voxels(const BuiltTexel *texel, const TexelLayer *layer, const CompileOptions *options, CompiledScene *compiled,
+                                DiagList *diags) {
     const TexelDef *def = texel->def;
-    texel->matter = arena_new_array(compiled->arena, TexelMatter, def->layer_count);
-    Arena *triangles = &compiled->scratch;
     TexelBuildOptions build = {.resolution = texel->built, .extent = texel->extent, .cyclic = def->cyclic,
                                .pool = options->pool, .memory = options->memory, .progress = options->progress,
                                .name = def->name};
-    bool ok = true;
-    for (size_t i = 0; i < def->layer_count && ok; i++) {
-        const TexelLayer *layer = &def->layers[i];
-        TexelMesh mesh;
-        ShapeRefusal refusal;
-        TexelBuildStats stats = {0};
-        ArenaMark mark = arena_mark(triangles);
-        if (!texel_layer_mesh(def, layer, CONTENT_TOLERANCE_VOXELS / texel->built, triangles, &mesh, &refusal)) {
-            diag_error(diags, refusal.span, "this cannot be part of a texel: %s", refusal.reason);
-            ok = false;
-            break;
-        }
-        if (mesh.triangle_count == 0) diag_warning(diags, layer->span, "this layer of the texel '%s' is empty", def->name);
-        VoxelLayer *voxels = voxel_layer_build(&mesh, &build, &stats);
-        arena_reset_to(triangles, mark);
-        if (!voxels) {
-            if (!options->interrupted || !*options->interrupted) memory_budget_fail(options->memory);
-            ok = false;
-            break;
-        }
-        const Texture *texture = layer->texture ? layer->texture : compiled->scene->default_texture;
-        texel->matter[texel->matter_count++] = (TexelMatter){voxels, look_from_texture(texture, &compiled->scene->settings)};
-        if (mesh.triangle_count && stats.levels && stats.voxels[stats.levels - 1] == 0)
-            diag_warning(diags, layer->span, "nothing of this layer of the texel '%s' lies within its bounds", def->name);
-        for (int l = 0; l < stats.levels; l++) texel->voxel_count += stats.voxels[l];
-        texel->bytes += stats.bytes;
-        texel->build_seconds += stats.seconds;
+    TexelMesh mesh;
+    ShapeRefusal refusal;
+    ArenaMark mark = arena_mark(&compiled->scratch);
+    if (!texel_layer_mesh(def, layer, CONTENT_TOLERANCE_VOXELS / texel->built, &compiled->scratch, &mesh, &refusal)) {
+        diag_error(diags, refusal.span, "this cannot be part of a texel: %s", refusal.reason);
+        return NULL;
     }
-    return ok;
+    if (mesh.triangle_count == 0) diag_warning(diags, layer->span, "this layer of the texel '%s' is empty", def->name);
+    VoxelLayer *voxels = voxel_layer_build(&mesh, &build, NULL);
+    arena_reset_to(&compiled->scratch, mark);
+    if (!voxels && (!options->interrupted || !*options->interrupted)) memory_budget_fail(options->memory);
+    if (voxels && mesh.triangle_count && voxel_layer_is_empty(voxels))
+        diag_warning(diags, layer->span, "nothing of this layer of the texel '%s' lies within its bounds", def->name);
+    return voxels;
+}
+
+/* Empty layers are built each time, so that their warnings come each time. */
+static void remember(const BuiltTexel *texel, Hash128 key, VoxelLayer *voxels, const CompileOptions *options, DiagList *diags) {
+    if (!options->texels || !voxels || voxel_layer_is_empty(voxels)) return;
+    StrBuf error = {0};
+    if (!texel_cache_add(options->texels, key, texel->def, texel->built, voxels, &error))
+        diag_warning(diags, (Span){0}, "the cache stays as it is: %s", error.size ? error.data : "it cannot be written");
+    strbuf_free(&error);
+}
+
+static VoxelLayer *get_voxels(BuiltTexel *texel, size_t index, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
+    const TexelDef *def = texel->def;
+    const TexelLayer *layer = &def->layers[index];
+    if (def->file) {
+        const TexelFile *file = options->texels ? texel_cache_opened(options->texels, def->file_content) : NULL;
+        if (!file) diag_error(diags, def->span, "the texel file '%s' is no longer there", def->file);
+        return file ? voxel_layer_share(file->layers[index].voxels) : NULL;
+    }
+    Hash128 key = texel_layer_key(def, layer, texel->built);
+    VoxelLayer *voxels = options->texels ? texel_cache_find(options->texels, key, def, texel->built) : NULL;
+    if (voxels) return voxels;
+    texel->cached = false;
+    voxels = build_voxels(texel, layer, options, compiled, diags);
+    remember(texel, key, voxels, options, diags);
+    return voxels;
+}
+
+static bool build_matter(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
+    const TexelDef *def = texel->def;
+    double start = stopwatch_wall();
+    texel->matter = arena_new_array(compiled->arena, TexelMatter, def->layer_count);
+    texel->cached = def->layer_count > 0;
+    for (size_t i = 0; i < def->layer_count; i++) {
+        VoxelLayer *voxels = get_voxels(texel, i, options, compiled, diags);
+        if (!voxels) return false;
+        const Texture *texture = def->layers[i].texture ? def->layers[i].texture : compiled->scene->default_texture;
+        texel->matter[texel->matter_count++] = (TexelMatter){voxels, look_from_texture(texture, &compiled->scene->settings)};
+        for (int l = 0; l < voxel_layer_levels(voxels); l++) texel->voxel_count += voxel_layer_voxels(voxels, l);
+        texel->bytes += voxel_layer_bytes(voxels);
+    }
+    texel->build_seconds = stopwatch_wall() - start;
+    return true;
 }
 
 BuiltTexel *texel_build(const TexelDef *def, int needed, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
     int most = def->resolution ? def->resolution : LARGEST_AUTO_RESOLUTION;
-    int wanted = power_of_two_above(needed, power_of_two_above(most, TEXEL_LARGEST_RESOLUTION));
+    int wanted = def->file ? def->resolution : power_of_two_above(needed, power_of_two_above(most, TEXEL_LARGEST_RESOLUTION));
     for (size_t i = 0; i < compiled->texel_count; i++)
         if (compiled->texels[i]->def == def && compiled->texels[i]->built >= wanted) return compiled->texels[i];
     BuiltTexel *texel = arena_new(compiled->arena, BuiltTexel);

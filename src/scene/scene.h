@@ -323,7 +323,9 @@ struct TexelDef {
     size_t layer_count;
     const TexelDef *const *choices; /* texel { choose A, B } : then no layers of its own */
     size_t choice_count;
-    const InertNote *inert;       /* phases, a file: no layers then either */
+    const char *file;             /* texel { "forest.vtx" }: its path; the layers then have looks and no contents; else NULL */
+    Hash128 file_content;
+    const InertNote *inert;       /* phases: no layers then either */
 };
 
 typedef enum SurfaceKind { SURFACE_PATCHES, SURFACE_OBJECT } SurfaceKind;
@@ -454,6 +456,12 @@ typedef struct GlobalSettings {
     const char *detail;        /* NULL: auto */
 } GlobalSettings;
 
+/* A texel that a name stands for when the scene's text ends: "Grass", "Trees[2]". */
+typedef struct NamedTexel {
+    const char *name;
+    const TexelDef *texel;
+} NamedTexel;
+
 typedef struct Scene {
     const char *name;
     Camera camera;
@@ -472,6 +480,8 @@ typedef struct Scene {
     const Texture *default_texture;
     GlobalSettings settings;
     double clock;
+    const NamedTexel *named_texels; /* by name */
+    size_t named_texel_count;
 } Scene;
 
 /* The graph as indented text, one node a line: for --dump=scene and tests. */

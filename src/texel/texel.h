@@ -71,6 +71,7 @@ int voxel_layer_levels(const VoxelLayer *layer);
 size_t voxel_layer_voxels(const VoxelLayer *layer, int level);
 size_t voxel_layer_bricks(const VoxelLayer *layer, int level);
 size_t voxel_layer_bytes(const VoxelLayer *layer);
+bool voxel_layer_is_empty(const VoxelLayer *layer);
 /* Voxels along the axes at a level; side lengths of its voxels are extent / size. */
 void voxel_layer_size(const VoxelLayer *layer, int level, int size[3]);
 

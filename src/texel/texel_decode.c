@@ -118,6 +118,7 @@ static bool read_texel(FormatReader *r, TexelFile *out, FormatTexel *texel) {
     out->built = (int)texel->built;
     out->cyclic = texel->cyclic;
     out->key = r->header.key;
+    out->content = r->header.checksum;
     out->name = calloc((size_t)texel->name_size + 1, 1);
     out->layers = calloc(texel->layer_count, sizeof *out->layers);
     if (!out->name || !out->layers) return lack_memory(r);

@@ -37,6 +37,7 @@ typedef struct TexelFile {
     int asked, built;  /* resolutions; asked 0: auto */
     unsigned cyclic;   /* TEXEL_CYCLIC_… */
     Hash128 key;       /* of a cache: what the voxels were built from; else 0 */
+    Hash128 content;   /* of all that the file holds; set by reading */
     TexelFileLayer *layers;
     size_t layer_count; /* 1 … TEXEL_FILE_MOST_LAYERS, all of one size and `cyclic` */
 } TexelFile;
@@ -56,6 +57,10 @@ TexelFileStatus texel_file_decode(const unsigned char *data, size_t size, Memory
 /* Writes the file whole or not at all; false with a line of text in `error` (may be NULL). */
 bool texel_file_save(const TexelFile *file, const char *path, StrBuf *error);
 TexelFileStatus texel_file_load(const char *path, MemoryBudget *memory, TexelFile *out, StrBuf *error);
+/* The texel as a definition with that content, its looks as textures, in `arena`. */
+void texel_def_from_file(const TexelFile *file, const char *path, Span span, Arena *arena, TexelDef *out);
+/* A layer that looks like `texture`; of a pattern it keeps the mean of the colours within `bounds`. */
+TexelFileLayer texel_file_layer(const Texture *texture, Box3 bounds, VoxelLayer *voxels);
 /* Frees name and layers, with their voxels. */
 void texel_file_release(TexelFile *file);
 

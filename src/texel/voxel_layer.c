@@ -89,6 +89,8 @@ size_t voxel_layer_voxels(const VoxelLayer *layer, int level) { return layer->le
 size_t voxel_layer_bricks(const VoxelLayer *layer, int level) { return layer->level[level].brick_count; }
 size_t voxel_layer_bytes(const VoxelLayer *layer) { return layer->bytes; }
 
+bool voxel_layer_is_empty(const VoxelLayer *layer) { return layer->level[layer->levels - 1].code_count == 0; }
+
 Hash128 voxel_layer_hash(const VoxelLayer *layer) {
     Hash128 hash = hash_begin((uint64_t)layer->levels);
     for (int i = 0; i < layer->levels; i++) {

@@ -84,7 +84,7 @@ case_usage() {
   refused render scene.vts --alpha=1
   local word
   for word in chart farm texel reference info stitch; do refused $word scene.vts; want_in err 'not available in this version'; done
-  for word in --resume --preview=h:1 --aov=depth --frames=1-3 -f1-3 --cache=off; do refused render scene.vts $word; want_in err 'not available in this version'; done
+  for word in --resume --preview=h:1 --aov=depth --frames=1-3 -f1-3; do refused render scene.vts $word; want_in err 'not available in this version'; done
   want_only scene.vts
 }
 

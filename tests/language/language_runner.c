@@ -94,7 +94,7 @@ static void run_program(Run *run, const char *path, const char *text, bool show,
     source_set_init(&sources, &session);
     diag_init(&diags, &session, &sources);
     interner_init(&names, &session);
-    EvalGeometry geometry = hooks_geometry(&session);
+    EvalGeometry geometry = hooks_geometry(&session, NULL);
     bool ours = strstr(path, "/stdlib_") != NULL;
     EvalOptions o = {.geometry = &geometry,
                      .include_dirs = ours ? stdlib_dirs : include_dirs,

@@ -118,6 +118,9 @@ static const Case errors[] = {
     {"texel { layer { sphere { 0, 1 } } }", "1:1: a texel has no meaning at top level",
      "give it a name with #declare, then lay it on a surface by a skin"},
     {"mapping { repeat 3 }", "1:1: 'mapping' cannot stand at top level: it belongs into another block", NULL},
+    {"skin { surface { sphere { 0, 1 } } texel { \"forest.vtx\" } }", "1:44: there is no texel file 'forest.vtx'", "looked in nowhere"},
+    {"skin { surface { sphere { 0, 1 } } texel { resolution 3 \"forest.vtx\" } }",
+     "1:57: a texel's file comes first, and without layers of its own", NULL},
 };
 
 static const Case warnings[] = {
@@ -139,8 +142,6 @@ static const Case warnings[] = {
     {"object { texel { layer { density { fractal { size 3 } } } } }",
      "1:26: 'density' is not modelled yet: it has no effect", NULL},
     {"object { surface { cloth { size 3 } } }", "1:20: 'cloth' is not modelled yet: it is left out", NULL},
-    {"skin { surface { sphere { 0, 1 } } texel { \"forest.vtx\" } }",
-     "1:44: 'a texel from a file' is not modelled yet: it has no effect", NULL},
     {"animation { frames 4 }", "1:1: 'animation' is not modelled yet: it has no effect", NULL},
     {"fog { rgb 1 }", "1:1: this fog has no distance greater than 0: it has no effect", NULL},
     {"global_settings { radiosity { count 3 } }",

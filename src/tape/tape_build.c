@@ -124,7 +124,7 @@ static bool simplify(const TapeBuilder *builder, TapeOp op, TapeRef a, TapeRef b
     double value;
     if (op == TAPE_NEG && builder->nodes.items[a].op == TAPE_NEG)
         return *out = builder->nodes.items[a].a, true;
-    if ((op == TAPE_MUL || op == TAPE_DIV) && tape_is_constant(builder, b, &value) && value == 1)
+    if ((op == TAPE_MUL || op == TAPE_DIV || op == TAPE_POW) && tape_is_constant(builder, b, &value) && value == 1)
         return *out = a, true;
     if (op == TAPE_MUL && tape_is_constant(builder, a, &value) && value == 1) return *out = b, true;
     if (op == TAPE_SUB && tape_is_constant(builder, b, &value) && value == 0 && !signbit(value))
@@ -143,6 +143,8 @@ TapeRef tape_unary(TapeBuilder *builder, TapeOp op, TapeRef a, Span span) {
 TapeRef tape_binary(TapeBuilder *builder, TapeOp op, TapeRef a, TapeRef b, Span span) {
     double x[2];
     TapeRef simple;
+    if (op == TAPE_POW && tape_is_constant(builder, b, x) && x[0] == 2)
+        return tape_unary(builder, TAPE_SQR, a, span); /* rounded once, as powers should be and nearly are */
     if (all_constant(builder, (TapeRef[]){a, b}, 2, x))
         return tape_constant(builder, tape_apply(op, x[0], x[1], 0));
     if (simplify(builder, op, a, b, &simple)) return simple;

@@ -1,6 +1,7 @@
 /* Many evaluations at once: the reference arithmetic over arrays. A slot is a row of LANES doubles, and each operation a
  * plain loop over a row, which compilers turn into vector instructions. */
 #include "tape/tape_program.h"
+#include "tape/tape_rows.h"
 #include "tape/tape_scalar.h"
 
 #include <stdlib.h>
@@ -92,7 +93,11 @@ static void loop(const TapeLoop *loop_, bool product, const double *from, const 
         WALK_ROW(c);                                                                                         \
         WALK_ROWS(scalar_##name(a[l], b[l], c[l]))                                                           \
     }
-#define WALK_CALL call(&tape->calls[step->c], slots, lanes)
+#define WALK_ROWS_APART
+#define WALK_ROW_1(name) row_##name(slots[step->dst], slots[step->a], lanes)
+#define WALK_ROW_2(name) row_##name(slots[step->dst], slots[step->a], slots[step->b], lanes)
+#define WALK_ROW_3(name) row_##name(slots[step->dst], slots[step->a], slots[step->b], slots[step->c], lanes)
+#define WALK_CALL        call(&tape->calls[step->c], slots, lanes)
 #define WALK_LOOP(product)                                                                                   \
     loop(&tape->loops[step->c], product, slots[step->a], slots[step->b], slots[step->dst], slots,            \
          slots + tape->slot_count, lanes)

@@ -1,8 +1,9 @@
 /* The reference arithmetic: what each operation of tape_ops.def does to doubles. The batch evaluator runs these same
- * functions over arrays, which is why it agrees bit for bit. */
+ * functions over arrays, or those of tape_rows.h, which are equal bit for bit. */
 #ifndef VTS_TAPE_TAPE_SCALAR_H
 #define VTS_TAPE_TAPE_SCALAR_H
 
+#include "tape/elementary.h"
 #include "tape/noise.h"
 
 #include <math.h>
@@ -45,17 +46,17 @@ static inline double scalar_BITWISE_XOR(double a, double b) {
 }
 
 static inline double scalar_SQRT(double a) { return sqrt(a); }
-static inline double scalar_EXP(double a) { return exp(a); }
-static inline double scalar_LN(double a) { return log(a); }
+static inline double scalar_EXP(double a) { return elementary_exp(a); }
+static inline double scalar_LN(double a) { return elementary_ln(a); }
 static inline double scalar_LOG(double a) { return log10(a); }
 static inline double scalar_POW(double a, double b) { return pow(a, b); }
-static inline double scalar_SIN(double a) { return sin(a); }
-static inline double scalar_COS(double a) { return cos(a); }
-static inline double scalar_TAN(double a) { return tan(a); }
+static inline double scalar_SIN(double a) { return elementary_sin(a); }
+static inline double scalar_COS(double a) { return elementary_cos(a); }
+static inline double scalar_TAN(double a) { return elementary_tan(a); }
 static inline double scalar_ASIN(double a) { return asin(a); }
 static inline double scalar_ACOS(double a) { return acos(a); }
-static inline double scalar_ATAN(double a) { return atan(a); }
-static inline double scalar_ATAN2(double a, double b) { return atan2(a, b); }
+static inline double scalar_ATAN(double a) { return elementary_atan(a); }
+static inline double scalar_ATAN2(double a, double b) { return elementary_atan2(a, b); }
 static inline double scalar_SINH(double a) { return sinh(a); }
 static inline double scalar_COSH(double a) { return cosh(a); }
 static inline double scalar_TANH(double a) { return tanh(a); }

@@ -242,13 +242,13 @@ static inline double elementary_angle(double y, double x) {
     return elementary_with_sign(angle, y);
 }
 
-static inline bool elementary_angle_usual(double a) { return (fabs(a) >= 0x1p-400) & (fabs(a) <= 0x1p400); }
+static inline bool elementary_angle_usual(double a) { return fabs(a) >= 0x1p-400 && fabs(a) <= 0x1p400; }
 
-static inline bool elementary_atan_usual(double x) { return elementary_angle_usual(x) | (x == 0); }
+static inline bool elementary_atan_usual(double x) { return elementary_angle_usual(x) || x == 0; }
 static inline double elementary_atan_core(double x) { return elementary_angle(x, 1); }
 
 static inline bool elementary_atan2_usual(double y, double x) {
-    return elementary_angle_usual(x) & elementary_atan_usual(y);
+    return elementary_angle_usual(x) && elementary_atan_usual(y);
 }
 static inline double elementary_atan2_core(double y, double x) { return elementary_angle(y, x); }
 

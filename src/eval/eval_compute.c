@@ -169,6 +169,9 @@ void compute_prepare(Eval *ev, const Node *node) {
     if (!compile(&d, node)) return;
     Compute *c = arena_push(ev->parse, sizeof *c + d.count * sizeof(ComputeStep));
     c->count = d.count;
+    c->pair = d.count == 2 && d.steps[0].from == FROM_NAME && d.steps[1].from == FROM_NUMBER &&
+              (d.steps[1].op == COMPUTE_ADD || d.steps[1].op == COMPUTE_SUBTRACT || d.steps[1].op == COMPUTE_MULTIPLY ||
+               d.steps[1].op == COMPUTE_LESS || d.steps[1].op == COMPUTE_GREATER);
     for (uint32_t i = 0; i < d.count; i++) c->steps[i] = d.steps[i];
     n->as.operand.compute = c;
 }
@@ -235,5 +238,19 @@ bool compute_run(const Eval *ev, const Compute *compute, double *out) {
         }
     }
     *out = a;
+    return true;
+}
+
+bool compute_run_pair(const Eval *ev, const Compute *compute, double *out) {
+    const VarBinding *binding = ev->bindings[compute->steps[0].name_id];
+    if (!binding || binding->slot->value.kind != VALUE_FLOAT) return false;
+    double a = binding->slot->value.as.number, b = compute->steps[1].number;
+    switch ((ComputeOp)compute->steps[1].op) {
+    case COMPUTE_ADD: *out = a + b; break;
+    case COMPUTE_SUBTRACT: *out = a - b; break;
+    case COMPUTE_MULTIPLY: *out = a * b; break;
+    case COMPUTE_LESS: *out = a < b; break;
+    default: *out = a > b; break;
+    }
     return true;
 }

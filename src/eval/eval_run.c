@@ -148,12 +148,30 @@ static Flow run_tokens(Eval *ev, const Body *body, Sink *sink) {
     return flow;
 }
 
+/* The tree of a body that is one statement known from an earlier run, as branches and macros of programs mostly are; else NULL. */
+static const Node *only_statement(const Eval *ev, const Body *body, const Sink *sink) {
+    uint32_t id = body->tokens->file->id;
+    if (!ev->repeats || sink->kind == SINK_ITEMS || id >= ev->program_count) return NULL;
+    const Program *program = ev->programs[id];
+    const Statement *s = program && program->memo ? program->memo[body->begin] : NULL;
+    bool is = s && s->next == body->end && s->end == body->end && !s->block && s->name_stamp == ev->name_stamp;
+    return is && s->node && s->node->kind != NODE_INCLUDE ? s->node : NULL;
+}
+
+static Flow run_one(Eval *ev, const Node *node, Sink *sink) {
+    ArenaMark mark = arena_mark(&ev->temp);
+    Flow flow = run_node(ev, node, sink);
+    if (!(sink->kind == SINK_SINGLE && sink->filled)) arena_reset_to(&ev->temp, mark);
+    return ev->stopped ? FLOW_STOP : flow;
+}
+
 Flow run_body(Eval *ev, const Body *body, Sink *sink) {
     Flow flow = FLOW_NEXT;
     if (body->tokens) {
         if (body->begin >= body->end) return FLOW_NEXT;
         if (!eval_deeper(ev, body->tokens->items[body->begin].span)) return FLOW_STOP;
-        flow = run_tokens(ev, body, sink);
+        const Node *only = only_statement(ev, body, sink);
+        flow = only ? run_one(ev, only, sink) : run_tokens(ev, body, sink);
         ev->nesting--;
         return flow;
     }

@@ -264,15 +264,17 @@ typedef struct ComputeStep {
 typedef struct Compute {
     uint32_t count; /* 0: no code */
     bool pending;   /* no code yet */
+    bool pair;      /* a name and a number: the commonest expression of loops */
     ComputeStep steps[];
 } Compute;
 /* Makes the code of a binary expression when it is met for the second time. */
 void compute_prepare(Eval *ev, const Node *node);
 /* False where the code is not made for the values that it meets: nothing has happened then. */
 bool compute_run(const Eval *ev, const Compute *compute, double *out);
+bool compute_run_pair(const Eval *ev, const Compute *compute, double *out);
 static inline bool compute_try(Eval *ev, const Node *node, double *out) {
     const Compute *compute = node->as.operand.compute;
-    if (compute && compute->count) return compute_run(ev, compute, out);
+    if (compute && compute->count) return compute->pair ? compute_run_pair(ev, compute, out) : compute_run(ev, compute, out);
     if (!compute || compute->pending) compute_prepare(ev, node);
     return false;
 }

@@ -3,6 +3,7 @@
 #include "base/stopwatch.h"
 #include "eval/eval.h"
 #include "hooks.h"
+#include "render/reference.h"
 #include "render/report.h"
 
 #include <errno.h>
@@ -37,7 +38,7 @@ struct VtsSession {
 
 const char *vts_version(void) { return VTS_VERSION; }
 
-VtsOptions vts_options_default(void) { return (VtsOptions){.width = 768, .height = 576, .frame = 1, .first_frame = 1, .last_frame = 1, .last_clock = 1, .clock_delta = 1}; }
+VtsOptions vts_options_default(void) { return (VtsOptions){.width = 768, .height = 576, .frame = 1, .first_frame = 1, .last_frame = 1, .last_clock = 1, .clock_delta = 1, .reference_samples = REFERENCE_DEFAULT_SAMPLES}; }
 
 /* ---- sessions ---- */
 
@@ -81,6 +82,7 @@ static const char *option_fault(const VtsOptions *o) {
     if (o->threads < 0 || o->threads > 1024) return "the number of threads must be 0 (all) to 1024";
     if (!(o->max_error >= 0 && o->max_error <= 1)) return "max_error must be 0 to 1";
     if (o->samples < 0 || o->samples > 256) return "samples must be 0 to 256";
+    if (o->reference_samples < 1 || o->reference_samples > REFERENCE_MOST_SAMPLES) return "reference_samples must be 1 to 65536";
     const int *r = o->region;
     if ((r[0] || r[1] || r[2] || r[3]) && (r[0] < 0 || r[1] < 0 || r[2] > o->width || r[3] > o->height || r[0] >= r[2] || r[1] >= r[3]))
         return "the region must lie in the picture and hold at least one pixel";
@@ -305,12 +307,12 @@ static VtsStatus evaluate(VtsSession *session, const char *path, EvalMode mode) 
     return VTS_ERROR_SCENE;
 }
 
-static VtsStatus compile(VtsSession *session) {
+static VtsStatus compile(VtsSession *session, bool exact) {
     VtsStatus status = apply_settings(session);
     if (status != VTS_OK) return status;
     CompileOptions options = {.pool = session->pool, .memory = &session->memory, .texels = session->texels, .progress = &session->progress,
                               .width = session->options.width, .height = session->options.height,
-                              .interrupted = &session->interrupted};
+                              .interrupted = &session->interrupted, .exact = exact};
     CompileStatus result = compile_scene(session->scene, &options, &session->compiled_arena, &session->diags, &session->compiled);
     print_diagnostics(session);
     return result == COMPILE_OK ? VTS_OK : result == COMPILE_INTERRUPTED ? VTS_INTERRUPTED : VTS_ERROR_SCENE;
@@ -352,7 +354,8 @@ static VtsStatus save(VtsSession *session, const char *scene_path, const char *o
     return status;
 }
 
-static VtsStatus render(VtsSession *session, const char *scene_path, const char *output_path) {
+/* The picture as users see it, or the reference. */
+static VtsStatus render(VtsSession *session, const char *scene_path, const char *output_path, bool exact) {
     const VtsOptions *o = &session->options;
     StrBuf error = {0};
     bool writable = image_can_write(output_path, &error);
@@ -360,15 +363,16 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
     strbuf_free(&error);
     if (status != VTS_OK) return status;
     double parsed = stopwatch_wall();
-    if ((status = compile(session)) != VTS_OK) return status;
+    if ((status = compile(session, exact)) != VTS_OK) return status;
     double built = stopwatch_wall();
     RenderOptions options = {.pool = session->pool, .progress = &session->progress, .interrupted = &session->interrupted,
-                             .samples = session->scene->settings.samples,
+                             .samples = exact ? o->reference_samples : session->scene->settings.samples,
                              .seed = o->seed, .exposure = o->exposure, .alpha = o->alpha};
     memcpy(options.region, o->region, sizeof options.region);
     if (options.region[2] == 0) options.region[2] = o->width, options.region[3] = o->height;
     RenderStats stats;
-    bool done = !session->interrupted && render_picture(&session->compiled, &options, &session->memory, &session->picture, &stats, NULL);
+    bool done = !session->interrupted && (exact ? reference_picture : render_picture)(&session->compiled, &options, &session->memory,
+                                                                                      &session->picture, &stats, NULL);
     if (session->interrupted) return VTS_INTERRUPTED;
     if (!done) memory_budget_fail(&session->memory);
     double rendered = stopwatch_wall();
@@ -385,7 +389,7 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
 
 /* ---- calls ---- */
 
-typedef enum CallKind { CALL_CHECK, CALL_RUN, CALL_RENDER, CALL_DUMP } CallKind;
+typedef enum CallKind { CALL_CHECK, CALL_RUN, CALL_RENDER, CALL_REFERENCE, CALL_DUMP } CallKind;
 
 typedef struct Call {
     CallKind kind;
@@ -399,7 +403,7 @@ static VtsStatus dump(VtsSession *session, const Call *call) {
     if (status != VTS_OK || mode.print_tokens || mode.print_ast) return status;
     StrBuf text = {0};
     if (call->dump == VTS_DUMP_COMPILED) {
-        if ((status = compile(session)) == VTS_OK) compiled_scene_print(&session->compiled, &text);
+        if ((status = compile(session, false)) == VTS_OK) compiled_scene_print(&session->compiled, &text);
     } else {
         scene_print(session->scene, &text);
     }
@@ -412,7 +416,8 @@ static VtsStatus perform(VtsSession *session, const Call *call) {
     switch (call->kind) {
     case CALL_CHECK: return evaluate(session, call->scene_path, (EvalMode){.writes_in_memory = true});
     case CALL_RUN: return evaluate(session, call->scene_path, (EvalMode){.is_program = true});
-    case CALL_RENDER: return render(session, call->scene_path, call->output_path);
+    case CALL_RENDER: return render(session, call->scene_path, call->output_path, false);
+    case CALL_REFERENCE: return render(session, call->scene_path, call->output_path, true);
     case CALL_DUMP: return dump(session, call);
     }
     return VTS_ERROR_USAGE;
@@ -459,6 +464,9 @@ VtsStatus vts_run(VtsSession *session, const char *scene_path) {
 }
 VtsStatus vts_render(VtsSession *session, const char *scene_path, const char *output_path) {
     return guarded(session, &(Call){.kind = CALL_RENDER, .scene_path = scene_path, .output_path = output_path});
+}
+VtsStatus vts_reference(VtsSession *session, const char *scene_path, const char *output_path) {
+    return guarded(session, &(Call){.kind = CALL_REFERENCE, .scene_path = scene_path, .output_path = output_path});
 }
 VtsStatus vts_dump(VtsSession *session, const char *scene_path, VtsDump stage) {
     return guarded(session, &(Call){.kind = CALL_DUMP, .scene_path = scene_path, .dump = stage});

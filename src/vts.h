@@ -58,6 +58,7 @@ typedef struct VtsOptions {
     unsigned long long seed;         /* for sampling */
     double max_error;                /* RMSE a user accepts; 0: what the scene says, else 1/255 */
     int samples;                     /* sub-pixels per pixel side² where the picture needs several; 0: by max_error */
+    int reference_samples;           /* rays of a pixel of vts_reference(), 1 to 65536; default 64 */
     double exposure;                 /* EV, the picture is multiplied by 2^exposure */
     bool alpha;                      /* transparent background */
     int region[4];                   /* x0, y0, x1, y1 (x1, y1 exclusive) in pixels; all 0: the whole picture */
@@ -105,6 +106,9 @@ VTS_API VtsStatus vts_check(VtsSession *session, const char *scene_path);
 VTS_API VtsStatus vts_run(VtsSession *session, const char *scene_path);
 /* Renders to `output_path`, whose suffix names the format. The file appears whole or not at all. */
 VTS_API VtsStatus vts_render(VtsSession *session, const char *scene_path, const char *output_path);
+/* The same scene with nothing prefiltered, for measuring vts_render() by: exact geometry inside the texels, rays of no width,
+ * hard shadows. Takes long. */
+VTS_API VtsStatus vts_reference(VtsSession *session, const char *scene_path, const char *output_path);
 /* Evaluates (as vts_check) and passes the printed form of one stage to on_text(VTS_STREAM_STATISTICS). */
 VTS_API VtsStatus vts_dump(VtsSession *session, const char *scene_path, VtsDump stage);
 
@@ -124,7 +128,7 @@ VTS_API VtsStatus vts_compare(const char *reference_path, const char *test_path,
 
 /* All diagnostics so far as text; "" when none. Valid until the next call with this session. */
 VTS_API const char *vts_diagnostics(const VtsSession *session);
-/* The report of the last vts_render() as JSON (cli.md, --report); "" before. Valid until the next call. */
+/* The report of the last vts_render() or vts_reference() as JSON (cli.md, --report); "" before. Valid until the next call. */
 VTS_API const char *vts_report(const VtsSession *session);
 /* From any thread or a signal handler: the running call stops soon and returns VTS_INTERRUPTED. */
 VTS_API void vts_interrupt(VtsSession *session);

@@ -10,6 +10,7 @@ int command_render(Settings *settings);
 int command_check(Settings *settings);
 int command_run(Settings *settings);
 int command_compare(Settings *settings);
+int command_reference(Settings *settings);
 
 /* Whether all of these comma-separated metrics are known to compare. */
 bool compare_metrics_valid(const char *names);

@@ -24,8 +24,9 @@ static const Command COMMANDS[] = {
      COMMAND_RUN, command_run},
     {"compare", "vts compare", "REFERENCE PICTURE [options]", "tells how far two pictures are apart",
      COMMAND_COMPARE, command_compare},
+    {"reference", "vts reference", "SCENE [options]",
+     "renders with nothing prefiltered, slowly: what renderings are compared with", COMMAND_REFERENCE, command_reference},
     {"texel", NULL, NULL, NULL, 0, NULL},
-    {"reference", NULL, NULL, NULL, 0, NULL},
     {"chart", NULL, NULL, NULL, 0, NULL},
     {"info", NULL, NULL, NULL, 0, NULL},
     {"farm", NULL, NULL, NULL, 0, NULL},
@@ -52,8 +53,8 @@ static void print_help(FILE *stream) {
     fputs("Usage: vts COMMAND …\n       vts SCENE [options of render]\n\n", stream);
     fputs("Renders scenes of grass, forest, fur and cloud from a script.\n\nCommands:\n", stream);
     for (int i = 0; i < COMMAND_COUNT; i++)
-        if (COMMANDS[i].run) fprintf(stream, "  %-8s %s\n", COMMANDS[i].name, COMMANDS[i].summary);
-    fputs("  help     [COMMAND] this text, or a command's options\n  version  the program's version\n\n",
+        if (COMMANDS[i].run) fprintf(stream, "  %-9s %s\n", COMMANDS[i].name, COMMANDS[i].summary);
+    fputs("  help      [COMMAND] this text, or a command's options\n  version   the program's version\n\n",
           stream);
     fputs("'vts COMMAND --help' lists a command's options.\n", stream);
 }

@@ -51,6 +51,9 @@ static const char *apply_max_error(Settings *s, const char *value) {
 static const char *apply_samples(Settings *s, const char *value) {
     return option_int(value, 1, 256, &s->options.samples) ? NULL : "a number from 1 to 256";
 }
+static const char *apply_rays(Settings *s, const char *value) {
+    return option_int(value, 1, 65536, &s->options.reference_samples) ? NULL : "a number from 1 to 65536";
+}
 static const char *apply_declare(Settings *s, const char *value) {
     return settings_add_pair(s, &s->declares, value) ? NULL : "NAME=VALUE";
 }
@@ -144,7 +147,7 @@ static const char *apply_help(Settings *s, const char *value) {
 }
 
 static const Option OPTIONS[] = {
-    {"output", 'o', "F", COMMAND_RENDER, apply_output,
+    {"output", 'o', "F", COMMAND_DRAW, apply_output,
      "the picture; its suffix names the format (.exr .png .tif .jpg .hdr .pfm .ppm); default: the scene's "
      "name with .png"},
     {"size", 's', "WxH", COMMAND_ALL, apply_size, "size of the picture in pixels; default 768x576"},
@@ -156,19 +159,20 @@ static const Option OPTIONS[] = {
      "accepted RMSE over pixels and channels, linear light in [0,1]"},
     {"samples", 0, "N", COMMAND_RENDER, apply_samples,
      "samples of a pixel where it needs several; default: by --max-error"},
+    {"samples", 0, "N", COMMAND_REFERENCE, apply_rays, "rays of a pixel, 1 to 65536; default 64"},
     {"declare", 'D', "NAME=VALUE", COMMAND_ALL, apply_declare,
      "declares a float, or a string if VALUE is no number"},
     {"include", 'I', "DIR", COMMAND_ALL, apply_include, "where includes and data are looked for as well"},
-    {"region", 0, "x0,y0,x1,y1", COMMAND_RENDER, apply_region,
+    {"region", 0, "x0,y0,x1,y1", COMMAND_DRAW, apply_region,
      "renders this part only, in pixels, x1 and y1 exclusive"},
-    {"report", 0, "F|-", COMMAND_RENDER, apply_report, "writes what was modelled, counted and timed as JSON"},
+    {"report", 0, "F|-", COMMAND_DRAW, apply_report, "writes what was modelled, counted and timed as JSON"},
     {"progress", 0, "auto|bar|plain|none", COMMAND_ALL, apply_progress,
      "how to show progress; auto: a bar on a terminal"},
-    {"seed", 0, "N", COMMAND_RENDER, apply_seed, "of the sampling; default 0"},
+    {"seed", 0, "N", COMMAND_DRAW, apply_seed, "of the sampling; default 0"},
     {"set", 0, "KNOB=VALUE", COMMAND_ALL, apply_set, "sets what global_settings would"},
-    {"exposure", 0, "EV", COMMAND_RENDER, apply_exposure, "multiplies the picture by 2^EV"},
-    {"alpha", 0, NULL, COMMAND_RENDER, apply_alpha, "leaves the background transparent"},
-    {"float-type", 0, "half|float", COMMAND_RENDER, apply_float_type, "how EXR stores colours; default half"},
+    {"exposure", 0, "EV", COMMAND_DRAW, apply_exposure, "multiplies the picture by 2^EV"},
+    {"alpha", 0, NULL, COMMAND_DRAW, apply_alpha, "leaves the background transparent"},
+    {"float-type", 0, "half|float", COMMAND_DRAW, apply_float_type, "how EXR stores colours; default half"},
     {"limit", 0, "NAME=N,...", COMMAND_ALL, apply_limit, "limits of the language: loops, recursion ..."},
     {"memory-limit", 0, "SIZE", COMMAND_ALL, apply_memory_limit,
      "gives up with status 4 past this much memory (8G, 512M)"},
@@ -199,10 +203,14 @@ typedef struct Arguments {
     char *const *at, *const *end;
 } Arguments;
 
-static const Option *find_long(const char *name, size_t size) {
-    for (int i = 0; i < OPTION_COUNT; i++)
-        if (strlen(OPTIONS[i].name) == size && memcmp(OPTIONS[i].name, name, size) == 0) return &OPTIONS[i];
-    return NULL;
+/* An option may have a meaning for each of several commands: that of `command`, if there is one. */
+static const Option *find_long(const char *name, size_t size, unsigned command) {
+    const Option *found = NULL;
+    for (int i = 0; i < OPTION_COUNT; i++) {
+        if (strlen(OPTIONS[i].name) != size || memcmp(OPTIONS[i].name, name, size) != 0) continue;
+        if (!found || OPTIONS[i].commands & command) found = &OPTIONS[i];
+    }
+    return found;
 }
 
 static const Option *find_short(char letter) {
@@ -244,7 +252,7 @@ static int apply_option(Settings *settings, unsigned command, const Option *opti
 static int parse_long(Settings *settings, unsigned command, const char *argument, Arguments *rest) {
     size_t size = strcspn(argument + 2, "=");
     const char *value = argument[2 + size] == '=' ? argument + 2 + size + 1 : NULL;
-    const Option *option = find_long(argument + 2, size);
+    const Option *option = find_long(argument + 2, size, command);
     if (!option) return unknown_long(settings, command, argument, size);
     char typed[64];
     snprintf(typed, sizeof typed, "--%s", option->name);

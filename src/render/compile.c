@@ -1,6 +1,7 @@
 #include "render/compile.h"
 
 #include "base/stopwatch.h"
+#include "render/exact_skin.h"
 
 #include <string.h>
 
@@ -118,9 +119,14 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
 }
 
 void compiled_scene_destroy(CompiledScene *compiled) {
-    for (size_t i = 0; i < compiled->skin_count; i++) cell_tree_destroy(compiled->skins[i].tree);
-    for (size_t i = 0; i < compiled->texel_count; i++)
+    for (size_t i = 0; i < compiled->skin_count; i++) {
+        cell_tree_destroy(compiled->skins[i].tree);
+        exact_skin_destroy(compiled->skins[i].exact);
+    }
+    for (size_t i = 0; i < compiled->texel_count; i++) {
         for (size_t k = 0; k < compiled->texels[i]->matter_count; k++) voxel_layer_destroy(compiled->texels[i]->matter[k].voxels);
+        exact_texel_destroy(compiled->texels[i]->exact);
+    }
     hierarchy_destroy(compiled->hierarchy);
     arena_destroy(&compiled->scratch);
     compiled->skin_count = compiled->texel_count = 0;

@@ -24,6 +24,7 @@ typedef struct CompileOptions {
     const Progress *progress;
     int width, height;
     const atomic_bool *interrupted;
+    bool exact; /* for the reference: texels and skins keep their geometry, no voxels are built */
 } CompileOptions;
 
 typedef struct CompiledScene {
@@ -59,5 +60,12 @@ Cone view_cone(const View *view, double x, double y, double width_px);
 bool skin_compile(const Skin *skin, const CompileOptions *options, CompiledScene *compiled, DiagList *diags, CompiledSkin *out);
 /* The built texel of a definition: from those already built for this scene when one is fine enough. */
 BuiltTexel *texel_build(const TexelDef *def, int needed, const CompileOptions *options, CompiledScene *compiled, DiagList *diags);
+/* A layer's triangles in compiled->scratch; false after a diagnostic. */
+bool texel_mesh_layer(const BuiltTexel *texel, const TexelLayer *layer, double tolerance, CompiledScene *compiled, DiagList *diags,
+                      TexelMesh *mesh);
+/* The next matter of a texel. `voxels` NULL: exact. */
+void texel_add_matter(BuiltTexel *texel, const TexelLayer *layer, VoxelLayer *voxels, const CompiledScene *compiled);
+/* All matter of a texel as its source triangles, for the reference. exact_build.c */
+bool exact_build_texel(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags);
 
 #endif

@@ -10,6 +10,7 @@
 
 #include "base/diag.h"
 #include "render/cone.h"
+#include "render/exact_texel.h"
 #include "render/look.h"
 #include "scene/scene.h"
 #include "shape/surface_mesh.h"
@@ -33,7 +34,7 @@ typedef struct SkinCell {
 
 /* One layer of matter of a built texel. */
 typedef struct TexelMatter {
-    VoxelLayer *voxels;
+    VoxelLayer *voxels; /* NULL in an exact texel */
     Look look;
 } TexelMatter;
 
@@ -48,6 +49,7 @@ typedef struct BuiltTexel {
     size_t voxel_count, bytes;
     double build_seconds;     /* or of loading */
     bool cached;              /* nothing of it had to be built */
+    ExactTexel *exact;        /* instead of voxels, for the reference; else NULL */
 } BuiltTexel;
 
 /* One `texel { … }` of a skin. */
@@ -67,6 +69,7 @@ typedef struct PlacedTexel {
 } PlacedTexel;
 
 typedef struct CellTree CellTree; /* hierarchy over the cells' bounds, for entering the layer */
+typedef struct ExactSkin ExactSkin; /* hierarchy over what is in the cells, for the reference: exact_skin.h */
 
 typedef struct CompiledSkin {
     const Skin *def;
@@ -75,7 +78,8 @@ typedef struct CompiledSkin {
     double top;          /* height of the layer in w': more than w_tip when copies are scaled up */
     PlacedTexel *texels;
     size_t texel_count;
-    CellTree *tree;
+    CellTree *tree;   /* NULL where `exact` is not */
+    ExactSkin *exact; /* NULL but for the reference */
     Box3 bounds;
 } CompiledSkin;
 
@@ -93,6 +97,16 @@ Box3 skin_cell_bounds(const SkinCell *cell);
 /* Finds (a, b, w) of the world point by Newton's method from the guess in *point, within or near the cell; `tolerance` in
  * world units. False when it does not converge. The result may lie outside the cell. */
 bool skin_cell_invert(const SkinCell *cell, Vec3 world, double tolerance, SkinPoint *point);
+/* Whether the world point lies in the cell (with a hair's margin), and where; `point->cell` is left alone. */
+bool skin_cell_holds(const SkinCell *cell, Vec3 world, double tolerance, SkinPoint *point);
+/* The ray cut where it meets the cell's walls: the piece from `from` to t[0], then those up to t[1] … t[count − 1], ascending. Each lies
+ * inside or outside as a whole. False when the ray passes by. */
+enum { MOST_SKIN_CUTS = 17 };
+typedef struct SkinCuts {
+    double from, t[MOST_SKIN_CUTS];
+    int count;
+} SkinCuts;
+bool skin_cell_cut(const SkinCell *cell, const Ray *ray, double t_min, double t_max, SkinCuts *cuts);
 /* Goes on from *point (a guess, possibly outside its cell) to the cell that holds `world`. Returns SKIN_INSIDE, or how the
  * point is outside: beyond the top, below the foot, past a border, or lost (the mapping is folded there). */
 typedef enum SkinSide { SKIN_INSIDE, SKIN_ABOVE, SKIN_BELOW, SKIN_BORDER, SKIN_LOST } SkinSide;
@@ -100,6 +114,9 @@ SkinSide skin_locate(const CompiledSkin *skin, Vec3 world, double tolerance, Ski
 /* The first t in [t_min, t_max] at which the ray is within the layer; unit direction. False when nowhere. */
 bool skin_enter(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, SkinPoint *point, double *t);
 
+/* Embree's bounds of the cell args->primID of the CompiledSkin args->geometryUserPtr. */
+struct RTCBoundsFunctionArguments;
+void skin_bound_cell(const struct RTCBoundsFunctionArguments *args);
 CellTree *cell_tree_build(CompiledSkin *skin, void *embree_device);
 void cell_tree_destroy(CellTree *tree);
 

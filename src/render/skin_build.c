@@ -4,6 +4,7 @@
 #include "base/random.h"
 #include "base/stopwatch.h"
 #include "pattern/pattern.h"
+#include "render/exact_skin.h"
 #include "tape/noise.h"
 #include "texel/texel_content.h"
 
@@ -22,6 +23,17 @@ static int power_of_two_above(double x, int most) {
 /* Contents are tessellated to a fifth of a voxel: what is left of facets disappears in the voxels' own blur. */
 static const double CONTENT_TOLERANCE_VOXELS = 0.2;
 
+bool texel_mesh_layer(const BuiltTexel *texel, const TexelLayer *layer, double tolerance, CompiledScene *compiled, DiagList *diags,
+                      TexelMesh *mesh) {
+    ShapeRefusal refusal;
+    if (!texel_layer_mesh(texel->def, layer, tolerance, &compiled->scratch, mesh, &refusal)) {
+        diag_error(diags, refusal.span, "this cannot be part of a texel: %s", refusal.reason);
+        return false;
+    }
+    if (mesh->triangle_count == 0) diag_warning(diags, layer->span, "this layer of the texel '%s' is empty", texel->def->name);
+    return true;
+}
+
 /* Builds the voxels of a layer; NULL when that is not possible (see diags) or interrupted. */
 static VoxelLayer *build_voxels(const BuiltTexel *texel, const TexelLayer *layer, const CompileOptions *options, CompiledScene *compiled,
                                 DiagList *diags) {
@@ -30,13 +42,8 @@ static VoxelLayer *build_voxels(const BuiltTexel *texel, const TexelLayer *layer
                                .pool = options->pool, .memory = options->memory, .progress = options->progress,
                                .name = def->name};
     TexelMesh mesh;
-    ShapeRefusal refusal;
     ArenaMark mark = arena_mark(&compiled->scratch);
-    if (!texel_layer_mesh(def, layer, CONTENT_TOLERANCE_VOXELS / texel->built, &compiled->scratch, &mesh, &refusal)) {
-        diag_error(diags, refusal.span, "this cannot be part of a texel: %s", refusal.reason);
-        return NULL;
-    }
-    if (mesh.triangle_count == 0) diag_warning(diags, layer->span, "this layer of the texel '%s' is empty", def->name);
+    if (!texel_mesh_layer(texel, layer, CONTENT_TOLERANCE_VOXELS / texel->built, compiled, diags, &mesh)) return NULL;
     VoxelLayer *voxels = voxel_layer_build(&mesh, &build, NULL);
     arena_reset_to(&compiled->scratch, mark);
     if (!voxels && (!options->interrupted || !*options->interrupted)) memory_budget_fail(options->memory);
@@ -71,16 +78,19 @@ static VoxelLayer *get_voxels(BuiltTexel *texel, size_t index, const CompileOpti
     return voxels;
 }
 
+void texel_add_matter(BuiltTexel *texel, const TexelLayer *layer, VoxelLayer *voxels, const CompiledScene *compiled) {
+    const Texture *texture = layer->texture ? layer->texture : compiled->scene->default_texture;
+    texel->matter[texel->matter_count++] = (TexelMatter){voxels, look_from_texture(texture, &compiled->scene->settings)};
+}
+
 static bool build_matter(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
     const TexelDef *def = texel->def;
     double start = stopwatch_wall();
-    texel->matter = arena_new_array(compiled->arena, TexelMatter, def->layer_count);
     texel->cached = def->layer_count > 0;
     for (size_t i = 0; i < def->layer_count; i++) {
         VoxelLayer *voxels = get_voxels(texel, i, options, compiled, diags);
         if (!voxels) return false;
-        const Texture *texture = def->layers[i].texture ? def->layers[i].texture : compiled->scene->default_texture;
-        texel->matter[texel->matter_count++] = (TexelMatter){voxels, look_from_texture(texture, &compiled->scene->settings)};
+        texel_add_matter(texel, &def->layers[i], voxels, compiled);
         for (int l = 0; l < voxel_layer_levels(voxels); l++) texel->voxel_count += voxel_layer_voxels(voxels, l);
         texel->bytes += voxel_layer_bytes(voxels);
     }
@@ -90,7 +100,7 @@ static bool build_matter(BuiltTexel *texel, const CompileOptions *options, Compi
 
 BuiltTexel *texel_build(const TexelDef *def, int needed, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
     int most = def->resolution ? def->resolution : LARGEST_AUTO_RESOLUTION;
-    int wanted = def->file ? def->resolution : power_of_two_above(needed, power_of_two_above(most, TEXEL_LARGEST_RESOLUTION));
+    int wanted = options->exact ? 0 : def->file ? def->resolution : power_of_two_above(needed, power_of_two_above(most, TEXEL_LARGEST_RESOLUTION));
     for (size_t i = 0; i < compiled->texel_count; i++)
         if (compiled->texels[i]->def == def && compiled->texels[i]->built >= wanted) return compiled->texels[i];
     BuiltTexel *texel = arena_new(compiled->arena, BuiltTexel);
@@ -101,8 +111,9 @@ BuiltTexel *texel_build(const TexelDef *def, int needed, const CompileOptions *o
     list[compiled->texel_count] = texel;
     compiled->texels = list;
     compiled->texel_count++;
-    if (!build_matter(texel, options, compiled, diags)) return NULL;
-    if (texel->matter_count == 0) return texel;
+    texel->matter = arena_new_array(compiled->arena, TexelMatter, def->layer_count);
+    if (!(options->exact ? exact_build_texel : build_matter)(texel, options, compiled, diags)) return NULL;
+    if (texel->matter_count == 0 || options->exact) return texel;
     int size[3];
     voxel_layer_size(texel->matter[0].voxels, 0, size);
     Vec3f e = texel->extent;
@@ -324,7 +335,7 @@ static bool place_texel(const Skin *skin, size_t index, const CompileOptions *op
     placed->seed = random_hash(skin->jitter.seed, index, 0, 0);
     for (size_t k = 0; k < family; k++) {
         const TexelDef *def = in->texel->choice_count ? in->texel->choices[k] : in->texel;
-        int needed = (int)needed_resolution(out, &compiled->view, texel_extent(def), (double)compiled->march.voxel_width);
+        int needed = options->exact ? 0 : (int)needed_resolution(out, &compiled->view, texel_extent(def), (double)compiled->march.voxel_width);
         const BuiltTexel *texel = texel_build(def, needed, options, compiled, diags);
         if (!texel) return false;
         if (texel->matter_count == 0) continue;
@@ -379,6 +390,8 @@ bool skin_compile(const Skin *skin, const CompileOptions *options, CompiledScene
         if (!place_texel(skin, i, options, compiled, diags, out)) return false;
         if (out->texels[i].family_size) out->texel_count = i + 1;
     }
-    out->tree = cell_tree_build(out, hierarchy_device(compiled->hierarchy));
-    return out->tree != NULL;
+    void *device = hierarchy_device(compiled->hierarchy);
+    if (options->exact) out->exact = exact_skin_build(out, device);
+    else out->tree = cell_tree_build(out, device);
+    return out->tree || out->exact;
 }

@@ -4,7 +4,7 @@
 #include <embree3/rtcore.h>
 #include <stdlib.h>
 
-enum { NEWTON_STEPS = 12, MOST_HOPS = 64, MOST_CROSSINGS = 16 };
+enum { NEWTON_STEPS = 12, MOST_HOPS = 64 };
 
 static Vec3 bilinear_vec(const BilinearVec *f, double a, double b) {
     return vec3_madd(vec3_madd(f->c[0], f->c[1], a), vec3_madd(f->c[2], f->c[3], a), b);
@@ -116,13 +116,8 @@ SkinSide skin_locate(const CompiledSkin *skin, Vec3 world, double tolerance, Ski
 
 /* ---- entering the layer ---- */
 
-typedef struct Crossings {
-    double t[MOST_CROSSINGS];
-    int count;
-} Crossings;
-
-static void add_crossing(Crossings *c, double t, double t_min, double t_max) {
-    if (!(t > t_min && t < t_max) || c->count == MOST_CROSSINGS) return;
+static void add_crossing(SkinCuts *c, double t, double t_min, double t_max) {
+    if (!(t > t_min && t < t_max) || c->count == MOST_SKIN_CUTS - 1) return; /* room for the end */
     int i = c->count++;
     for (; i > 0 && c->t[i - 1] > t; i--) c->t[i] = c->t[i - 1];
     c->t[i] = t;
@@ -130,7 +125,7 @@ static void add_crossing(Crossings *c, double t, double t_min, double t_max) {
 
 /* Where the ray meets the bilinear patch q0 + q1·s + q2·r + q3·s·r (s, r in [0, 1] with a margin): the quadratic of
  * Reshetov 2019 in s, from the coplanarity of the ray and the patch's ruling at s. */
-static void cross_patch(Crossings *out, const Ray *ray, Vec3 q0, Vec3 q1, Vec3 q2, Vec3 q3, double t_min, double t_max) {
+static void cross_patch(SkinCuts *out, const Ray *ray, Vec3 q0, Vec3 q1, Vec3 q2, Vec3 q3, double t_min, double t_max) {
     const double margin = 1e-7;
     /* Ruling at s: base q0 + s·q1 (relative to the origin), direction q2 + s·q3. Coplanar with d: (base × ruling) · d = 0. */
     Vec3 base = vec3_sub(q0, ray->origin), d = ray->direction;
@@ -164,7 +159,7 @@ static void cross_patch(Crossings *out, const Ray *ray, Vec3 q0, Vec3 q1, Vec3 q
     }
 }
 
-static void cross_triangle(Crossings *out, const Ray *ray, Vec3 p, Vec3 e1, Vec3 e2, double t_min, double t_max) {
+static void cross_triangle(SkinCuts *out, const Ray *ray, Vec3 p, Vec3 e1, Vec3 e2, double t_min, double t_max) {
     const double margin = 1e-7;
     Vec3 h = vec3_cross(ray->direction, e2);
     double det = vec3_dot(e1, h);
@@ -176,7 +171,7 @@ static void cross_triangle(Crossings *out, const Ray *ray, Vec3 p, Vec3 e1, Vec3
 }
 
 /* Side wall over the edge from (a0, b0) to (a1, b1). */
-static void cross_wall(Crossings *out, const Ray *ray, const SkinCell *cell, double a0, double b0, double a1, double b1,
+static void cross_wall(SkinCuts *out, const Ray *ray, const SkinCell *cell, double a0, double b0, double a1, double b1,
                        double t_min, double t_max) {
     Vec3 p0 = bilinear_vec(&cell->foot, a0, b0), p1 = bilinear_vec(&cell->foot, a1, b1);
     Vec3 h0 = bilinear_vec(&cell->height, a0, b0), h1 = bilinear_vec(&cell->height, a1, b1);
@@ -194,7 +189,7 @@ Box3 skin_cell_bounds(const SkinCell *cell) {
     return box;
 }
 
-static bool cell_holds(const SkinCell *cell, Vec3 world, double tolerance, SkinPoint *p) {
+bool skin_cell_holds(const SkinCell *cell, Vec3 world, double tolerance, SkinPoint *p) {
     double beyond;
     p->a = p->b = cell->triangle ? 1.0 / 3 : 0.5;
     p->w = 0.5;
@@ -203,31 +198,38 @@ static bool cell_holds(const SkinCell *cell, Vec3 world, double tolerance, SkinP
     return beyond <= 1e-7 && p->w >= -1e-7 && p->w <= 1 + 1e-7;
 }
 
-/* The first t of the ray within this cell: the walls cut the ray into pieces; the first piece whose middle lies inside. */
-static bool enter_cell(const SkinCell *cell, const Ray *ray, double t_min, double t_max, SkinPoint *point, double *t) {
-    Box3 box = cell->bounds;
+bool skin_cell_cut(const SkinCell *cell, const Ray *ray, double t_min, double t_max, SkinCuts *c) {
     double lo = t_min, hi = t_max;
-    if (!box3_clip_ray(box, ray, &lo, &hi)) return false;
-    Crossings c = {.count = 0};
+    c->count = 0;
+    if (!box3_clip_ray(cell->bounds, ray, &lo, &hi)) return false;
     for (int k = 0; k < 2; k++) { /* foot and top */
         Vec3 q[4];
         for (int i = 0; i < 4; i++) q[i] = k ? vec3_add(cell->foot.c[i], cell->height.c[i]) : cell->foot.c[i];
-        if (cell->triangle) cross_triangle(&c, ray, q[0], q[1], q[2], lo, hi);
-        else cross_patch(&c, ray, q[0], q[1], q[2], q[3], lo, hi);
+        if (cell->triangle) cross_triangle(c, ray, q[0], q[1], q[2], lo, hi);
+        else cross_patch(c, ray, q[0], q[1], q[2], q[3], lo, hi);
     }
-    cross_wall(&c, ray, cell, 0, 0, 1, 0, lo, hi);
-    cross_wall(&c, ray, cell, 0, 0, 0, 1, lo, hi);
-    if (cell->triangle) cross_wall(&c, ray, cell, 1, 0, 0, 1, lo, hi);
+    cross_wall(c, ray, cell, 0, 0, 1, 0, lo, hi);
+    cross_wall(c, ray, cell, 0, 0, 0, 1, lo, hi);
+    if (cell->triangle) cross_wall(c, ray, cell, 1, 0, 0, 1, lo, hi);
     else {
-        cross_wall(&c, ray, cell, 1, 0, 1, 1, lo, hi);
-        cross_wall(&c, ray, cell, 0, 1, 1, 1, lo, hi);
+        cross_wall(c, ray, cell, 1, 0, 1, 1, lo, hi);
+        cross_wall(c, ray, cell, 0, 1, 1, 1, lo, hi);
     }
-    double size = vec3_length(vec3_sub(box.max, box.min)), tolerance = 1e-9 * size;
-    double from = lo;
-    for (int i = 0; i <= c.count; i++) {
-        double to = i < c.count ? c.t[i] : hi;
+    c->from = lo;
+    c->t[c->count++] = hi;
+    return true;
+}
+
+/* The first t of the ray within this cell: the first piece between walls whose middle lies inside. */
+static bool enter_cell(const SkinCell *cell, const Ray *ray, double t_min, double t_max, SkinPoint *point, double *t) {
+    SkinCuts cuts;
+    if (!skin_cell_cut(cell, ray, t_min, t_max, &cuts)) return false;
+    double size = vec3_length(vec3_sub(cell->bounds.max, cell->bounds.min)), tolerance = 1e-9 * size;
+    double from = cuts.from;
+    for (int i = 0; i < cuts.count; i++) {
+        double to = cuts.t[i];
         Vec3 middle = vec3_madd(ray->origin, ray->direction, (from + to) / 2);
-        if (to > from && cell_holds(cell, middle, tolerance, point)) {
+        if (to > from && skin_cell_holds(cell, middle, tolerance, point)) {
             *t = from;
             return true;
         }
@@ -249,7 +251,7 @@ typedef struct EnterQuery {
     SkinPoint point;
 } EnterQuery;
 
-static void bound_cell(const struct RTCBoundsFunctionArguments *args) {
+void skin_bound_cell(const struct RTCBoundsFunctionArguments *args) {
     const CompiledSkin *skin = args->geometryUserPtr;
     Box3 box = skin->cells[args->primID].bounds;
     /* Floats are coarser than doubles: grow by more than their rounding. */
@@ -282,7 +284,7 @@ CellTree *cell_tree_build(CompiledSkin *skin, void *embree_device) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)skin->cell_count);
     rtcSetGeometryUserData(geometry, skin);
-    rtcSetGeometryBoundsFunction(geometry, bound_cell, NULL);
+    rtcSetGeometryBoundsFunction(geometry, skin_bound_cell, NULL);
     rtcSetGeometryIntersectFunction(geometry, intersect_cell);
     rtcCommitGeometry(geometry);
     tree->scene = rtcNewScene(device);

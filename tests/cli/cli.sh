@@ -83,7 +83,7 @@ case_usage() {
   refused check scene.vts --alpha
   refused render scene.vts --alpha=1
   local word
-  for word in chart farm texel reference info stitch; do refused $word scene.vts; want_in err 'not available in this version'; done
+  for word in chart farm texel info stitch; do refused $word scene.vts; want_in err 'not available in this version'; done
   for word in --resume --preview=h:1 --aov=depth --frames=1-3 -f1-3; do refused render scene.vts $word; want_in err 'not available in this version'; done
   want_only scene.vts
 }
@@ -324,6 +324,36 @@ case_dump() {
   done
   refused run scene.vts --dump=nonsense
   refused render scene.vts --dump=ast
+}
+
+case_reference() {
+  scene
+  cat >>scene.vts <<'S'
+skin {
+  surface { patch_grid 1, 1 function(u, v) { <4*u - 2, 0, 4*v - 2> } }
+  texel { texel { layer { cone { <0.5, 0, 0.5>, 0.2, <0.5, 1, 0.5>, 0 } } } }
+  mapping { repeat 6 height 0.3 }
+}
+S
+  run reference scene.vts -s 8x6; want_status 0; want_empty out; want_empty err; want_file scene.png
+  local n
+  for n in 1 2 3; do run reference scene.vts -s 33x21 --samples 5 -t $n -o $n.exr --float-type float; want_status 0; done
+  cmp -s 1.exr 2.exr && cmp -s 1.exr 3.exr || fail "the number of threads changes the picture"
+  run reference scene.vts -s 33x21 --samples 5 --seed 7 -o 4.exr --float-type float; want_status 0
+  cmp -s 1.exr 4.exr && fail "the seed has no effect"
+  run reference scene.vts -s 33x21 --samples 5 --region 10,4,30,20 -o part.exr --float-type float; want_status 0
+  run reference scene.vts -s 16x12 --samples 2 -o a.ppm --report -; want_status 0
+  "$json_check" scene frames rays texels <out || fail "report on stdout"
+  refused reference; refused reference scene.vts a.vts; refused reference scene.vts --samples 0; refused reference scene.vts --samples 65537
+  refused reference scene.vts -q best; refused render scene.vts --samples 257
+  "$vts" reference scene.vts -s 4000x3000 --samples 1000 -o big.png >out 2>err &
+  local pid=$!
+  sleep 1
+  kill -s INT $pid 2>/dev/null || fail "the reference ended before the signal"
+  wait $pid
+  status=$? call='vts reference with SIGINT'
+  want_status 130
+  [ ! -e big.png ] || fail "an interrupted reference left a picture"
 }
 
 # A part is the same pixels as in the whole.

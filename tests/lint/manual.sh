@@ -66,7 +66,7 @@ done
 echo "$count examples"
 
 # The table of options says what --help says exists.
-for command in render check run; do
+for command in render check run reference; do
   while read -r option; do
     grep -q -- "$option" "$root/doc/manual.md" || { echo "doc/manual.md does not name $option of vts $command"; failed=1; }
   done < <("$vts" "$command" --help | grep -oE "^ +(-[a-zA-Z], )? *--[a-z-]+" | grep -oE -- "--[a-z-]+")

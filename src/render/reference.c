@@ -1,0 +1,139 @@
+#include "render/reference.h"
+
+#include "base/random.h"
+#include "render/exact_skin.h"
+
+typedef struct Reference {
+    const CompiledScene *compiled;
+    const RenderOptions *options;
+    TraceCounters *counters; /* one for each worker */
+} Reference;
+
+/* One ray at work. */
+typedef struct Sample {
+    const CompiledScene *compiled;
+    Ray ray;
+    double width, spread; /* of the pixel's cone: what is too small to matter */
+    TraceCounters *counters;
+} Sample;
+
+/* What a ray has met. */
+typedef struct Facet {
+    double t;
+    Vec3 normal, flat; /* unit; `flat` that of the surface itself, for telling on which side of it a place lies */
+    double bias;       /* shadows start so far beside it */
+    const Look *look;
+    Vec3f color;
+} Facet;
+
+static Vec3 facet_point(const Sample *s, double t) { return vec3_madd(s->ray.origin, s->ray.direction, t); }
+
+/* ---- what is met ---- */
+
+static Facet surface_facet(const Sample *s, const SurfaceHit *hit) {
+    Vec3 local = transform_point_back(hit->space, facet_point(s, hit->t));
+    Vec3 local_normal = vec3_normalize(mat3_apply_transposed(&hit->space->linear, hit->normal));
+    return (Facet){.t = hit->t, .normal = hit->normal, .flat = hit->flat, .bias = 1e-5 * hit->t + 0.01 * (s->width + s->spread * hit->t),
+                   .look = hit->look, .color = look_color(hit->look, local, local_normal, 0)};
+}
+
+static Facet skin_facet(const Sample *s, const SkinHit *hit) {
+    Vec3f color = vec3f_mul(look_color(hit->look, hit->place, hit->place_normal, 0), hit->tint);
+    /* Where the mapping is singular nothing tells how matter is turned. */
+    Vec3 normal = vec3_length_squared(hit->normal) > 0 ? hit->normal : vec3_negate(s->ray.direction);
+    return (Facet){.t = hit->t, .normal = normal, .flat = normal, .bias = hit->clearance, .look = hit->look, .color = color};
+}
+
+static bool nearest_facet(const Sample *s, Facet *facet) {
+    SurfaceHit surface;
+    SkinHit matter;
+    bool found = hierarchy_intersect(s->compiled->hierarchy, &s->ray, 1e-9, VTS_INFINITY, &surface), in_skin = false;
+    double t = found ? surface.t : VTS_INFINITY;
+    for (size_t i = 0; i < s->compiled->skin_count; i++)
+        if (exact_skin_intersect(&s->compiled->skins[i], &s->ray, 0, t, s->counters, &matter)) in_skin = true, t = matter.t;
+    if (in_skin) *facet = skin_facet(s, &matter);
+    else if (found) *facet = surface_facet(s, &surface);
+    return found || in_skin;
+}
+
+/* ---- light ---- */
+
+static bool lit(const Sample *s, const Light *light, const LightRay *to_light, const Facet *facet) {
+    if (light->shadowless) return true;
+    double side = vec3_dot(to_light->direction, facet->flat) > 0 ? facet->bias : -facet->bias;
+    Ray shadow = {vec3_madd(facet_point(s, facet->t), facet->flat, side), to_light->direction};
+    s->counters->shadow_rays++;
+    if (hierarchy_occluded(s->compiled->hierarchy, &shadow, facet->bias, to_light->distance)) return false;
+    for (size_t i = 0; i < s->compiled->skin_count; i++)
+        if (exact_skin_occluded(&s->compiled->skins[i], &shadow, 0, to_light->distance, s->counters)) return false;
+    return true;
+}
+
+static Vec3f shade(const Sample *s, const Facet *facet) {
+    const Scene *scene = s->compiled->scene;
+    Vec3 point = facet_point(s, facet->t);
+    Vec3f view = vec3f_from(vec3_negate(s->ray.direction));
+    Vec3f sum = vec3f_mul(vec3f_add(facet->look->ambient, facet->look->emission), facet->color);
+    for (size_t l = 0; l < scene->light_count; l++) {
+        LightRay ray = light_ray(&scene->lights[l], point);
+        NdfShade amount = sheet_shade(vec3f_from(facet->normal), view, vec3f_from(ray.direction), &facet->look->sheet);
+        if (amount.diffuse <= 0 && amount.highlight <= 0) continue;
+        if (lit(s, &scene->lights[l], &ray, facet)) sum = vec3f_add(sum, vec3f_mul(shade_tone(&amount, facet->look, facet->color), ray.color));
+    }
+    return sum;
+}
+
+static Radiance trace_sample(const Sample *s) {
+    const Scene *scene = s->compiled->scene;
+    Facet facet;
+    s->counters->camera_rays++;
+    if (nearest_facet(s, &facet)) return (Radiance){fog_over(scene, shade(s, &facet), 1, facet.t), 1};
+    return (Radiance){fog_over(scene, sky_radiance(scene, s->ray.direction, 0), 1, VTS_INFINITY), 0};
+}
+
+/* ---- samples ---- */
+
+/* Rows of equal height over the pixel's square, each cut into cells of equal width: `samples` cells in all, as square as
+ * they come. */
+typedef struct Strata {
+    int rows, samples;
+} Strata;
+
+static Strata strata_of(int samples) { return (Strata){int_max(1, (int)floor(sqrt(samples))), samples}; }
+static int strata_columns(const Strata *strata, int row) {
+    return strata->samples / strata->rows + (row < strata->samples % strata->rows);
+}
+
+static Radiance see_pixel(void *context, int worker, int px, int py) {
+    const Reference *reference = context;
+    const RenderOptions *options = reference->options;
+    Strata strata = strata_of(int_max(1, options->samples));
+    Radiance sum = {{0, 0, 0}, 0};
+    uint64_t number = 0;
+    for (int row = 0; row < strata.rows && !(options->interrupted && *options->interrupted); row++) {
+        int columns = strata_columns(&strata, row);
+        float share = 1 / ((float)strata.rows * (float)columns);
+        for (int column = 0; column < columns; column++) {
+            uint64_t bits = random_hash((uint64_t)px, (uint64_t)py, number++, options->seed);
+            double x = (column + random_unit(bits)) / columns, y = (row + random_unit(random_mix(bits))) / strata.rows;
+            Cone cone = view_cone(&reference->compiled->view, px + x, py + y, 1);
+            Sample sample = {reference->compiled, {cone.origin, cone.direction}, cone.width, cone.spread, &reference->counters[worker]};
+            Radiance seen = trace_sample(&sample);
+            sum.color = vec3f_madd(sum.color, seen.color, share);
+            sum.alpha += seen.alpha * share;
+        }
+    }
+    return sum;
+}
+
+bool reference_picture(const CompiledScene *compiled, const RenderOptions *options, MemoryBudget *memory, Image *out,
+                       RenderStats *stats, StrBuf *error) {
+    ArenaMark mark = arena_mark(compiled->arena);
+    int workers = pool_threads(options->pool);
+    Reference reference = {compiled, options, arena_new_array(compiled->arena, TraceCounters, (size_t)workers)};
+    bool done = film_expose(options, "reference", see_pixel, &reference, memory, out, error);
+    *stats = (RenderStats){0};
+    for (int i = 0; i < workers; i++) trace_counters_add(&stats->counters, &reference.counters[i]);
+    arena_reset_to(compiled->arena, mark);
+    return done;
+}

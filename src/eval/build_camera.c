@@ -18,7 +18,31 @@ typedef struct CameraDraft {
 
 static const double DEFAULT_ASPECT = 1.33; /* POV-Ray's right vector */
 
+static const char *const kinds[] = {"perspective", "orthographic", "fisheye",  "ultra_wide_angle", "omnimax",
+                                    "panoramic",   "spherical",    "cylinder", "mesh_camera"};
+
+/* As in POV-Ray, since the kind decides what the words after it mean. */
+static void expect_first(Reader *reader, const Word *word) {
+    for (size_t i = 0; i + 1 < reader->next; i++) {
+        Word before;
+        bool kind = false;
+        if (item_as_word(&reader->block->items[i], &before))
+            for (size_t k = 0; k < VTS_ARRAY_COUNT(kinds); k++)
+                kind = kind || strcmp(kinds[k], before.text) == 0;
+        if (kind) continue;
+        reader_error(reader, word->span, "the kind of a camera comes first");
+        return;
+    }
+}
+
+static void read_perspective(Reader *reader, const Word *word, void *target) {
+    (void)target;
+    expect_first(reader, word);
+    word_arguments(reader, word, 0, 0);
+}
+
 static void read_orthographic(Reader *reader, const Word *word, void *target) {
+    expect_first(reader, word);
     if (word_arguments(reader, word, 0, 0)) ((CameraDraft *)target)->camera.kind = CAMERA_ORTHOGRAPHIC;
 }
 
@@ -52,6 +76,7 @@ static void read_kind(Reader *reader, const Word *word, void *target) {
     CameraDraft *draft = target;
     double type = 1;
     draft->wide = true;
+    expect_first(reader, word);
     grammar_word(reader, word);
     if (strcmp(word->text, "cylinder") == 0 && word->count && word_float(reader, word, 0, &type) &&
         !(type >= 1 && type < 5))
@@ -77,7 +102,7 @@ static void read_blur_samples(Reader *reader, const Word *word, void *target) {
 #define KIND(word)                                                                                           \
     { word, WORD_CUSTOM, 0, read_kind, false }
 static const WordRule rules[] = {
-    IGNORED("perspective"),
+    {"perspective", WORD_CUSTOM, 0, read_perspective, false},
     {"orthographic", WORD_CUSTOM, 0, read_orthographic, false},
     {"location", WORD_VECTOR, FIELD(camera.location), NULL, false},
     {"direction", WORD_VECTOR, FIELD(camera.direction), NULL, false},

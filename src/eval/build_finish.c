@@ -136,9 +136,10 @@ static const size_t rule_bytes[] = {
 };
 
 static bool on_value(Reader *reader, const Argument *value, void *target) {
-    (void)reader;
     BuiltFinish *built = target;
     if (value->value.kind != VALUE_FINISH) return false;
+    if (reader->next > 1 || reader->block->items[0].kind == ITEM_WORD) /* or taken for an operand of it */
+        reader_error(reader, value->span, "a declared finish comes first in 'finish'");
     built->finish = *value->value.as.finish;
     built->set = ~(uint64_t)0;
     return true;

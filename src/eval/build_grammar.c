@@ -1,6 +1,6 @@
 /* The grammar of POV-Ray's blocks and words that are read and not modelled: grammar.def says what may stand where, and this
  * file holds a block or a word against it. */
-#include "eval/build_parts.h"
+#include "eval/build_pattern.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -238,12 +238,51 @@ static void read_entry(Reader *reader, const Grammar *grammar, const BlockItem *
     }
 }
 
+static bool has_value(const EvalBlock *block, ValueKind kind) {
+    for (size_t i = 0; i < block->count; i++)
+        if (block->items[i].kind == ITEM_VALUE && block->items[i].value.kind == kind) return true;
+    return false;
+}
+
+static bool has_map(const EvalBlock *block) {
+    for (size_t i = 0; i < block->count; i++) {
+        Word word;
+        if (item_as_word(&block->items[i], &word) && strstr(word.text, "_map")) return true;
+    }
+    return has_value(block, VALUE_COLOR_MAP);
+}
+
+/* A normal block changes the normal of the texture that it stands in, or the default one: a pattern may be there already. */
+static bool completes_another(const Reader *reader) {
+    const char *outer = reader->block->outer ? reader->block->outer->text : "";
+    if (strcmp(outer, "texture") == 0 || strcmp(outer, "default") == 0) return true;
+    for (const InertNote *note = texture_default(reader->context)->inert; note; note = note->next)
+        if (strcmp(note->word, "normal") == 0) return true;
+    return false;
+}
+
+/* What a block that was read whole must have held. */
+static void check_complete(Reader *reader, const Grammar *grammar, const char *pattern, bool typed) {
+    const EvalBlock *block = reader->block;
+    const char *name = grammar->block;
+    bool normal = strcmp(name, "normal") == 0;
+    if (block->count == 0 && find_operands(grammar, "["))
+        reader_error(reader, block->word_span, "'%s' without entries", block->word->text);
+    if (normal && !typed && !has_value(block, VALUE_NORMAL) && !has_value(block, VALUE_FUNCTION) &&
+        !has_value(block, VALUE_OBJECT) && !completes_another(reader))
+        reader_error(reader, block->word_span, "a normal needs a pattern or a bump_map");
+    if (pattern && strcmp(pattern, "average") == 0 && (normal || strcmp(name, "density") == 0) &&
+        !has_map(block))
+        reader_error(reader, block->word_span, "the pattern 'average' needs a map of what it averages");
+}
+
 bool grammar_read(Reader *reader, const char *block) {
     const Grammar *grammar = find_grammar(block, strlen(block));
     if (!grammar) return true;
     read_lead(reader, grammar);
     const BlockItem *item;
-    bool patterned = false;
+    const char *found = NULL; /* the pattern's word */
+    bool typed = false;
     while (!reader->failed && (item = reader_peek(reader))) {
         reader->next++;
         Word word;
@@ -254,13 +293,14 @@ bool grammar_read(Reader *reader, const char *block) {
             bool prefix =
                 strcmp(word.text, "magnet") == 0; /* of `magnet 1 mandel`: the pattern's first word of two */
             bool pattern = operands && !prefix && grammar_has("pattern_types", word.text);
-            if (pattern && patterned)
+            if (pattern && found)
                 reader_error(reader, word.span, "'%s' is a second pattern", word.text);
-            else if (operands)
-                check_word(reader, grammar, &word, operands);
-            else
+            else if (!operands)
                 unknown_word(reader, grammar, &word);
-            patterned |= pattern;
+            else if (pattern_takes(reader, found, &word))
+                check_word(reader, grammar, &word, operands);
+            if (pattern) found = word.text;
+            typed |= pattern || strcmp(word.text, "bump_map") == 0;
         } else if (item->value.kind == VALUE_ERROR) {
             reader->failed = true;
         } else if (!accepts_value(grammar, item->value.kind)) {
@@ -268,6 +308,7 @@ bool grammar_read(Reader *reader, const char *block) {
                          value_kind_text(item->value.kind), reader->block->word->text);
         }
     }
+    if (!reader->failed) check_complete(reader, grammar, found, typed);
     return !reader->failed;
 }
 

@@ -2,7 +2,7 @@
 
 typedef struct LightDraft {
     Light light;
-    bool parallel, colored;
+    bool parallel;
     Transform transform;
 } LightDraft;
 
@@ -26,7 +26,7 @@ static const WordRule rules[] = {
     {"radius", WORD_FLOAT, FIELD(radius), NULL, false},
     {"falloff", WORD_FLOAT, FIELD(falloff), NULL, false},
     {"tightness", WORD_FLOAT, FIELD(tightness), NULL, false},
-    {"shadowless", WORD_FLAG, FIELD(shadowless), NULL, false},
+    {"shadowless", WORD_MARK, FIELD(shadowless), NULL, false},
     {"fade_distance", WORD_FLOAT, FIELD(fade_distance), NULL, false},
     {"fade_power", WORD_FLOAT, FIELD(fade_power), NULL, false},
     INERT("area_light"),
@@ -50,10 +50,21 @@ static const WordRule rules[] = {
 static bool on_value(Reader *reader, const Argument *value, void *target) {
     LightDraft *draft = target;
     if (take_transform(value, &draft->transform)) return true;
-    if (draft->colored) return false;
-    draft->colored = true; /* `parallel rgb 1`: the colour may also follow words */
-    argument_color(reader, value, "the light's colour", &draft->light.color);
+    if (value->value.kind != VALUE_COLOR) return false;
+    reader_error(reader, value->span, "a light's place and colour stand before its other words");
     return true;
+}
+
+/* A place, and then a colour if one follows: `light_source { rgb 1 }` has forgotten the first. */
+static bool read_place(Reader *reader, Light *light) {
+    Argument color;
+    if (!reader_vector(reader, "the location", &light->location, NULL)) return false;
+    const BlockItem *item = reader_peek(reader);
+    ValueKind kind = item && item->kind == ITEM_VALUE ? item->value.kind : VALUE_ERROR;
+    bool colored = kind == VALUE_COLOR || kind == VALUE_VECTOR || kind == VALUE_FLOAT;
+    if (!colored) return true;
+    reader_take_value(reader, kind, &color);
+    return argument_color(reader, &color, "the light's colour", &light->color);
 }
 
 const Light *light_placed(const BuildContext *context, const Light *light, const Transform *t) {
@@ -82,7 +93,7 @@ bool build_light(BuildContext *context, const EvalBlock *block, Value *out) {
     Argument declared;
     if (reader_take_value(&reader, VALUE_LIGHT, &declared))
         draft.light = *declared.value.as.light;
-    else if (!reader_vector(&reader, "the location", &draft.light.location, NULL))
+    else if (!read_place(&reader, &draft.light))
         return false;
     draft.light.span = block->span;
     reader_add_table(&reader, rules, VTS_ARRAY_COUNT(rules), &draft);

@@ -48,6 +48,50 @@ static PatternKind find_pattern(const char *word) {
     return PATTERN_SOLID;
 }
 
+const char *pattern_word(PatternKind kind) {
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(pattern_words); i++)
+        if (pattern_words[i].kind == kind) return pattern_words[i].word;
+    return NULL;
+}
+
+/* Settings that mean something to some patterns only. */
+static const struct PatternSetting {
+    const char *word, *patterns;
+} pattern_settings[] = {
+    {"agate_turb", " agate "},
+    {"altitude", " slope "},
+    {"brick_size", " brick "},
+    {"mortar", " brick "},
+    {"form", " crackle pavement "},
+    {"metric", " crackle facets "},
+    {"offset", " crackle "},
+    {"solid", " crackle "},
+    {"coords", " facets "},
+    {"size", " facets "},
+    {"control0", " quilted "},
+    {"control1", " quilted "},
+    {"exponent", " mandel julia "},
+    {"exterior", " mandel julia pavement "},
+    {"interior", " mandel julia pavement "},
+    {"interpolate", " density_file "},
+    {"number_of_sides", " pavement "},
+    {"number_of_tiles", " pavement "},
+    {"pattern", " pavement "},
+};
+
+bool pattern_takes(Reader *reader, const char *pattern, const Word *setting) {
+    for (size_t i = 0; pattern && i < VTS_ARRAY_COUNT(pattern_settings); i++) {
+        const struct PatternSetting *s = &pattern_settings[i];
+        if (strcmp(s->word, setting->text) != 0) continue;
+        const char *at = strstr(s->patterns, pattern);
+        size_t size = strlen(pattern);
+        if (at && at[-1] == ' ' && at[size] == ' ') return true;
+        reader_error(reader, setting->span, "'%s' means nothing to the pattern '%s'", setting->text, pattern);
+        return false;
+    }
+    return true;
+}
+
 /* ---- block patterns ---- */
 
 size_t pattern_block_count(PatternKind kind) {
@@ -153,9 +197,10 @@ static void read_fractal(Reader *reader, const Word *word, PigmentDraft *draft) 
     size_t wanted = julia ? 2 : 1;
     if (!word_arguments(reader, word, wanted, wanted)) return;
     if (julia && !word_vector(reader, word, 0, &constant)) return;
-    if (!word_int(reader, word, wanted - 1, &f->iterations)) return;
+    double iterations;
+    if (!word_float(reader, word, wanted - 1, &iterations)) return;
     f->re = constant.x, f->im = constant.y;
-    f->iterations = int_clamp(f->iterations, 1, 10000000);
+    f->iterations = (int)double_clamp(iterations, 1, 10000000);
 }
 
 static void read_magnet(Reader *reader, const Word *word, void *target) {
@@ -201,6 +246,12 @@ static void read_list(Reader *reader, const Word *word, PigmentDraft *draft) {
                          blocks ? "such value" : "value");
 }
 
+static void read_arms(Reader *reader, const Word *word, int *out) {
+    double arms;
+    if (word_arguments(reader, word, 1, 1) && word_float(reader, word, 0, &arms))
+        *out = (int)double_clamp(arms, -1e9, 1e9);
+}
+
 static void read_pattern(Reader *reader, const Word *word, void *target) {
     PigmentDraft *draft = target;
     Pigment *pigment = &draft->pigment;
@@ -224,7 +275,7 @@ static void read_pattern(Reader *reader, const Word *word, void *target) {
         break;
     case PATTERN_SPIRAL1:
     case PATTERN_SPIRAL2:
-        if (word_arguments(reader, word, 1, 1)) word_int(reader, word, 0, &pigment->number);
+        read_arms(reader, word, &pigment->number);
         break;
     case PATTERN_MANDEL:
     case PATTERN_JULIA: read_fractal(reader, word, draft); break;

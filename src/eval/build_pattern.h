@@ -32,4 +32,10 @@ const Tape *object_inside_tape(const BuildContext *context, const Object *object
 /* The density file that the text at `span` names (eval_density.c); NULL after a report. */
 const DensityGrid *density_load(const BuildContext *context, const char *name, Span span);
 
+/* The word of a pattern, or NULL. */
+const char *pattern_word(PatternKind kind);
+/* Whether a setting (`mortar`) belongs to the pattern of this word (NULL: unknown, everything does); reports it if not. Words that
+ * are no settings of certain patterns pass. */
+bool pattern_takes(Reader *reader, const char *pattern, const Word *setting);
+
 #endif

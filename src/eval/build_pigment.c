@@ -14,9 +14,14 @@ static void read_image(Reader *reader, const Word *word, void *target) {
     ((PigmentDraft *)target)->pigment.image = image_read(reader, word);
 }
 
+static void read_undrawn(Reader *reader, const Word *word, void *target) {
+    read_unmodelled(reader, word, target);
+    grammar_word(reader, word);
+}
+
 #define FIELD(name) offsetof(PigmentDraft, pigment.name)
 #define UNMODELLED(word)                                                                                     \
-    { word, WORD_CUSTOM, 0, read_unmodelled, false }
+    { word, WORD_CUSTOM, 0, read_undrawn, false }
 #define INERT(word)                                                                                          \
     { word, WORD_INERT, FIELD(inert), NULL, false }
 static const WordRule rules[] = {
@@ -64,7 +69,11 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
     case VALUE_COLOR:
         draft->pigment.kind = PATTERN_SOLID;
         return argument_color(reader, value, "'pigment'", &draft->pigment.color);
-    case VALUE_PIGMENT: draft->pigment = *value->value.as.pigment; return true;
+    case VALUE_PIGMENT:
+        if (reader->block->items[0].kind == ITEM_WORD)
+            reader_error(reader, value->span, "the pattern or colour of a pigment comes first, and only once");
+        draft->pigment = *value->value.as.pigment;
+        return true;
     case VALUE_OBJECT: return take_object_pattern(reader, draft, value->value.as.object);
     case VALUE_COLOR_MAP: take_map(draft, value->value.as.color_map); return true;
     case VALUE_FUNCTION:
@@ -97,27 +106,47 @@ static bool lists_colors(const Word *kind) {
     return false;
 }
 
-/* What kind of pigment it is comes first, after a declared pigment and `uv_mapping`, and is said once. */
+static bool is_value(const BlockItem *item, ValueKind kind) {
+    return item->kind == ITEM_VALUE && item->value.kind == kind;
+}
+
+/* What kind of pigment it is comes first, after a declared pigment and `uv_mapping`, and is said once; the settings after it are its
+ * own. */
 static bool check_order(Reader *reader) {
     bool begun = false, listing = false;
-    for (size_t i = reader->next; i < reader->block->count; i++) {
+    const char *pattern = NULL;
+    size_t first = reader->next;
+    for (size_t i = first; i < reader->block->count; i++) {
         const BlockItem *item = &reader->block->items[i];
         Word word = {.text = ""};
         bool kind = gives_kind(item, &word);
-        bool color = item->kind == ITEM_VALUE && item->value.kind == VALUE_COLOR;
-        if (kind && begun && !(listing && color)) {
+        if ((kind && begun && !(listing && is_value(item, VALUE_COLOR))) ||
+            (is_value(item, VALUE_PIGMENT) && i > first && !listing)) {
             reader_error(reader, item->span, "the pattern or colour of a pigment comes first, and only once");
             return false;
         }
+        if (is_value(item, VALUE_PIGMENT) && i == first) pattern = pattern_word(item->value.as.pigment->kind);
+        if (kind) pattern = word.text[0] ? word.text : NULL;
+        if (word.text[0] && !pattern_takes(reader, pattern, &word)) return false;
         listing = kind ? listing || lists_colors(&word) : listing;
         if (begun && strcmp(word.text, "uv_mapping") == 0) {
             reader_error(reader, word.span, "'uv_mapping' stands before the pattern of a pigment");
             return false;
         }
-        begun |= kind ||
+        begun |= kind || is_value(item, VALUE_COLOR_MAP) ||
                  (word.text[0] && strcmp(word.text, "uv_mapping") != 0 && strcmp(word.text, "magnet") != 0);
     }
     return true;
+}
+
+/* `average` is the mean of pigments; a pattern that lists its colours has no use for a map. */
+static bool check_map(Reader *reader, const PigmentDraft *draft) {
+    const Pigment *p = &draft->pigment;
+    bool average = p->kind == PATTERN_AVERAGE;
+    bool pigments = p->entry_count && p->entries[0].pigment;
+    if (average && !pigments)
+        reader_error(reader, reader->block->word_span, "the pattern 'average' needs a map of what it averages");
+    return !average || pigments;
 }
 
 static const Pigment *read_from(Reader *reader, const Pigment *start) {
@@ -138,6 +167,7 @@ static const Pigment *read_from(Reader *reader, const Pigment *start) {
         draft->pigment.entries = draft->items;
         draft->pigment.entry_count = draft->count;
     }
+    if (!check_map(reader, draft)) return NULL;
     pigment_rehash(&draft->pigment);
     return &draft->pigment;
 }

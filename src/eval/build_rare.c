@@ -149,13 +149,16 @@ static void read_iterations(Reader *reader, const Word *word, void *target) {
     read_one(reader, word, &draft_of(target)->iterations, target);
 }
 
+/* Any solid that has an end; an empty block leaves the container as it is. */
 static void read_contained_by(Reader *reader, const Word *word, void *target) {
     const EvalBlock *body = word->body;
+    if (body && body->count == 0) return;
     const Argument value = {body && body->count ? body->items[0].value : (Value){0}, word->span};
     draft_of(target)->container = body && body->count && body->items[0].kind == ITEM_VALUE
                                       ? object_from_value(reader->context, &value)
                                       : NULL;
-    if (!draft_of(target)->container) reader_error(reader, word->span, "'contained_by' takes a solid");
+    if (!draft_of(target)->container || draft_of(target)->container->kind == OBJECT_PLANE || body->count > 1)
+        reader_error(reader, word->span, "'contained_by' takes one solid that has an end");
 }
 
 static void read_slice(Reader *reader, const Word *word, void *target) {

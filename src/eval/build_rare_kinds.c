@@ -235,12 +235,16 @@ static const Object *unit_container(const BuildContext *context) {
 }
 
 static bool next_function(RareDraft *draft, int parameters, const Tape **out) {
-    Argument none = {.span = draft->reader->block->word_span};
-    const Argument *argument = rare_numbers_left(draft) ? &draft->row.items[draft->next++] : &none;
+    const EvalBlock *block = draft->reader->block;
+    if (!rare_numbers_left(draft)) {
+        reader_error(draft->reader, block->word_span, "'%s' needs a function", block->word->text);
+        return false;
+    }
+    const Argument *argument = &draft->row.items[draft->next++];
     /* Without parameters of its own a function has three. */
     bool default_ones =
         argument->value.kind == VALUE_FUNCTION && argument->value.as.function->parameter_count == 3;
-    return argument_function(draft->reader, argument, draft->reader->block->word->text,
+    return argument_function(draft->reader, argument, block->word->text,
                              default_ones ? 3 : parameters, 1, out);
 }
 
@@ -272,6 +276,17 @@ bool build_parametric(BuildContext *context, const EvalBlock *block, Value *out)
     return rare_end(&draft, out);
 }
 
+/* What POV-Ray can draw: the quaternions' other functions have no known roots, and a slice must not contain the fourth axis. */
+static bool check_julia(RareDraft *draft) {
+    Span span = draft->reader->block->word_span;
+    bool power = draft->function == JULIA_SQR || draft->function == JULIA_CUBE;
+    if (!draft->hypercomplex && !power)
+        reader_error(draft->reader, span, "with quaternions a julia_fractal has the functions sqr and cube only");
+    else if (draft->solid.as.julia.slice[3] == 0)
+        reader_error(draft->reader, span, "the fourth component of a julia_fractal's slice cannot be 0");
+    return !draft->reader->failed;
+}
+
 bool build_julia(BuildContext *context, const EvalBlock *block, Value *out) {
     BEGIN(.solid.kind = SOLID_JULIA, .iterations = 20);
     Solid *s = &draft.solid;
@@ -283,6 +298,7 @@ bool build_julia(BuildContext *context, const EvalBlock *block, Value *out) {
             !rare_float(&draft, "the distance of the slice", &s->as.julia.distance))
             return false;
     }
+    if (!check_julia(&draft)) return false;
     s->as.julia.hypercomplex = draft.hypercomplex;
     s->as.julia.function = draft.function;
     s->as.julia.iterations = (int)double_clamp(draft.iterations, 0, 10000);

@@ -169,10 +169,12 @@ bool argument_vector(Reader *reader, const Argument *argument, const char *what,
     const Value *value = &argument->value;
     if (value->kind == VALUE_FLOAT)
         *out = vec3_splat(value->as.number);
-    else if (value->kind == VALUE_VECTOR || value->kind == VALUE_COLOR)
+    else if (value->kind == VALUE_VECTOR && value->size <= 3)
         *out = vec3(component(value, 0), component(value, 1), component(value, 2));
     else {
-        reader_mismatch(reader, argument->span, what, "a vector", value->kind);
+        bool color = value->kind == VALUE_VECTOR || value->kind == VALUE_COLOR;
+        reader_mismatch(reader, argument->span, what, color ? "a vector of 2 or 3 numbers" : "a vector",
+                        color ? VALUE_COLOR : value->kind);
         return false;
     }
     if (!vec3_is_finite(*out)) {

@@ -162,8 +162,8 @@ bool value_to_float(Eval *ev, const Value *v, Span span, double *out) {
 }
 
 bool value_to_vector(Eval *ev, const Value *v, Span span, double *out, int size) {
-    bool ok = value_is_numeric(v);
-    if (!ok) mismatch(ev, span, "a vector", v);
+    bool ok = value_is_numeric(v) && (size > 3 || (v->kind != VALUE_COLOR && v->size <= 3));
+    if (!ok) mismatch(ev, span, value_is_numeric(v) ? "a vector of 2 or 3 numbers" : "a vector", v);
     for (int i = 0; i < size; i++) out[i] = ok ? value_component(v, i) : 0;
     return ok;
 }

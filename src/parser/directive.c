@@ -231,6 +231,8 @@ static Node *switch_directive(Parser *p, TokenList *list, uint32_t index, uint32
     for (;;) {
         const Token *t = &list->items[g.end];
         bool is_else = t->keyword == KW_else && cases.count > 0;
+        if (t->keyword == KW_end && cases.count == 0)
+            return parser_fail(p, t->span, "this #end belongs to a #switch without #case and #range");
         if (t->keyword != KW_case && t->keyword != KW_range && !is_else) break;
         SwitchCase one = {0};
         size_t failures = p->diags->failures;

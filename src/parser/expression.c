@@ -57,8 +57,15 @@ static bool reference_follows(Parser *p) {
     }
 }
 
-/* macro_arguments = "(" [full { "," full }] ")" */
-bool parser_arguments(Parser *p, NodeList *out) {
+static bool is_relation(int kind) {
+    return kind == '=' || kind == '<' || kind == '>' || kind == TOKEN_LESS_EQUAL ||
+           kind == TOKEN_GREATER_EQUAL || kind == TOKEN_NOT_EQUAL;
+}
+
+static bool is_comparison(int kind) { return is_relation(kind) || kind == '&' || kind == '|' || kind == '?'; }
+
+/* "(" [argument { [","] argument } [","]] ")", plain names going by reference */
+static bool references(Parser *p, NodeList *out, Node *(*argument)(Parser *)) {
     if (!parser_expect(p, '(', "'('")) return false;
     p->brackets++;
     for (;;) {
@@ -69,7 +76,7 @@ bool parser_arguments(Parser *p, NodeList *out) {
         } else if (parser_peek(p)->kind == ')' && out->count == 0) {
             break;
         } else {
-            Node *e = parser_full(p);
+            Node *e = argument(p);
             if (!e) return false;
             *list_push(p->arena, out) = e;
         }
@@ -77,10 +84,20 @@ bool parser_arguments(Parser *p, NodeList *out) {
         if (!parser_accept(p, ',') && !parser_begins_expression(p, false)) break;
         if (!reference_follows(p) && parser_peek(p)->kind == ')') break;
     }
+    const Token *t = parser_peek(p);
+    if (is_comparison(t->kind)) {
+        parser_fail_hint(p, t->span, "put the comparison in parentheses", "expected ',' or ')', found %s",
+                         parser_found(p, t));
+        return false;
+    }
     if (!parser_expect(p, ')', "',' or ')'")) return false;
     p->brackets--;
     return true;
 }
+
+/* macro_arguments = "(" [expression { [","] expression } [","]] ")"
+ * A comparison needs parentheses of its own: in `M(a <1, 2>)` a vector follows. */
+bool parser_arguments(Parser *p, NodeList *out) { return references(p, out, parser_expression); }
 
 /* arguments = "(" [full { [","] full } [","]] ")" */
 static bool plain_arguments(Parser *p, NodeList *out) {
@@ -114,7 +131,7 @@ static Node *builtin(Parser *p) {
         if (ok) *list_push(p->arena, &n->as.list) = target;
     } else if (word.keyword == KW_trace || word.keyword == KW_rand || word.keyword == KW_dimensions ||
                word.keyword == KW_dimension_size) {
-        ok = parser_arguments(p, &n->as.list);
+        ok = references(p, &n->as.list, parser_full);
     } else if ((word.keyword == KW_sum || word.keyword == KW_prod) && !p->in_function) {
         parser_fail(p, word.span, "'%s' exists only inside functions", keyword_text((Keyword)word.keyword));
         ok = false;
@@ -179,8 +196,10 @@ static Node *name_or_call(Parser *p) {
     call->as.apply.base = n;
     size_t at = p->assumptions.count - 1;
     if (!p->slow) p->assumptions.items[at].call = call;
-    if (!(class == NAME_MACRO || class == NAME_UNKNOWN ? parser_arguments(p, &call->as.apply.list)
-                                                       : plain_arguments(p, &call->as.apply.list)))
+    NodeList *list = &call->as.apply.list;
+    if (!(class == NAME_MACRO     ? parser_arguments(p, list)
+          : class == NAME_UNKNOWN ? references(p, list, parser_full)
+                                  : plain_arguments(p, list)))
         return NULL;
     call->need = BIND_ANY;
     call->span = span_join(word.span, p->last.span);
@@ -215,6 +234,8 @@ static Node *value_token(Parser *p) {
 
 static Node *parenthesized(Parser *p) {
     Token open = parser_take(p);
+    if (parser_begins_color(p))
+        return parser_fail_hint(p, parser_peek(p)->span, "declare the colour first", "a colour is no operand, found %s", parser_found(p, parser_peek(p)));
     p->brackets++;
     Node *e = parser_full(p);
     if (!e || !parser_expect(p, ')', "')'")) return NULL;
@@ -424,11 +445,6 @@ Node *parser_expression(Parser *p) {
     }
     parser_leave(p);
     return p->failed ? NULL : a;
-}
-
-static bool is_relation(int kind) {
-    return kind == '=' || kind == '<' || kind == '>' || kind == TOKEN_LESS_EQUAL ||
-           kind == TOKEN_GREATER_EQUAL || kind == TOKEN_NOT_EQUAL;
 }
 
 /* relation = expression { ("=" | "!=" | "<" | "<=" | ">" | ">=") expression } */

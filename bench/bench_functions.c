@@ -35,7 +35,7 @@ static double measure(const Tape *tape, size_t side, double *sum) {
 static const Scene *load(const char *path, const char *stdlib, Arena arenas[3], DiagList *diags,
                          SourceSet *sources, Interner *names) {
     for (int k = 0; k < 3; k++) arena_init(&arenas[k], NULL, 0);
-    EvalGeometry geometry = hooks_geometry(&arenas[0]);
+    EvalGeometry geometry = hooks_geometry(&arenas[0], NULL);
     EvalOptions options = {.stdlib_dir = stdlib,
                            .image_width = 4,
                            .image_height = 4,

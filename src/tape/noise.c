@@ -1,5 +1,7 @@
 /* Perlin, Improving noise, SIGGRAPH 2002. */
 #include "tape/noise.h"
+#include "tape/noise_lattice.h"
+#include "tape/tape_rows.h"
 
 #include "base/random.h"
 
@@ -22,36 +24,45 @@ static const uint8_t permutation[256] = {
 static unsigned hash(unsigned i) { return permutation[i & 255]; }
 
 static double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
-static double mix(double t, double a, double b) { return a + t * (b - a); }
 
-/* The dot product of (x, y, z) with one of the twelve directions to the edges of a cube (four of them twice). */
-static double gradient(unsigned corner, double x, double y, double z) {
-    unsigned h = corner & 15;
-    double u = h < 8 ? x : y;
-    double v = h < 4 ? y : h == 12 || h == 14 ? x : z;
-    return (h & 1 ? -u : u) + (h & 2 ? -v : v);
+/* No value, and one of the twelve directions to the edges of a cube (four of them twice). */
+static const double directions[16][4] = {{0, 1, 1, 0}, {0, -1, 1, 0}, {0, 1, -1, 0}, {0, -1, -1, 0},
+                                         {0, 1, 0, 1}, {0, -1, 0, 1}, {0, 1, 0, -1}, {0, -1, 0, -1},
+                                         {0, 0, 1, 1}, {0, 0, -1, 1}, {0, 0, 1, -1}, {0, 0, -1, -1},
+                                         {0, 1, 1, 0}, {0, 0, -1, 1}, {0, -1, 1, 0}, {0, 0, -1, -1}};
+
+static const double *direction(unsigned i) { return directions[hash(i) & 15]; }
+
+static void find_corners(const int32_t cell[3], LatticeCorners corners) {
+    unsigned i = (unsigned)cell[0], j = (unsigned)cell[1], k = (unsigned)cell[2];
+    unsigned near = hash(i) + j, far = hash(i + 1) + j;
+    unsigned columns[4] = {hash(near) + k, hash(far) + k, hash(near + 1) + k, hash(far + 1) + k};
+    for (int c = 0; c < 4; c++) {
+        corners[c] = direction(columns[c]);
+        corners[c + 4] = direction(columns[c] + 1);
+    }
 }
 
 /* The lattice cell modulo 256, exact for doubles of any size; *fraction gets the place in the cell. */
-static unsigned cell(double x, double *fraction) {
+static int32_t cell(double x, double *fraction) {
     double whole = floor(x);
     *fraction = x - whole;
-    return (unsigned)(whole - 256 * floor(whole / 256));
+    return (int32_t)(whole - 256 * floor(whole / 256));
 }
 
 double noise_perlin(Vec3 p) {
     if (!vec3_is_finite(p)) return (double)NAN;
     double x, y, z;
-    unsigned i = cell(p.x, &x), j = cell(p.y, &y), k = cell(p.z, &z);
-    double u = fade(x), v = fade(y), w = fade(z);
-    unsigned a = hash(i) + j, aa = hash(a) + k, ab = hash(a + 1) + k;
-    unsigned b = hash(i + 1) + j, ba = hash(b) + k, bb = hash(b + 1) + k;
-    double near = mix(v, mix(u, gradient(hash(aa), x, y, z), gradient(hash(ba), x - 1, y, z)),
-                      mix(u, gradient(hash(ab), x, y - 1, z), gradient(hash(bb), x - 1, y - 1, z)));
-    double far =
-        mix(v, mix(u, gradient(hash(aa + 1), x, y, z - 1), gradient(hash(ba + 1), x - 1, y, z - 1)),
-            mix(u, gradient(hash(ab + 1), x, y - 1, z - 1), gradient(hash(bb + 1), x - 1, y - 1, z - 1)));
-    return mix(w, near, far);
+    LatticeCorners corners;
+    find_corners((int32_t[3]){cell(p.x, &x), cell(p.y, &y), cell(p.z, &z)}, corners);
+    return lattice_between(corners, 0, x, y, z, fade(x), fade(y), fade(z));
+}
+
+void row_PERLIN(double *restrict out, const double *restrict a, const double *restrict b,
+                const double *restrict c, size_t lanes) {
+    for (size_t l = 0; l < lanes; l += LATTICE_LANES)
+        lattice_rows(out + l, a + l, b + l, c + l, size_min(LATTICE_LANES, lanes - l), find_corners, fade,
+                     noise_perlin);
 }
 
 /* One of the six orders of the coordinates, mirrored in any of them: the lattice has no other turns. */

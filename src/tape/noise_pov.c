@@ -6,6 +6,8 @@
  *            big-endian doubles i·0.12345;
  *   random   the Mersenne twister MT19937 with its default seed 5489. */
 #include "tape/noise.h"
+#include "tape/noise_lattice.h"
+#include "tape/tape_rows.h"
 
 #include "tape/noise_pov_tables.inc"
 
@@ -37,71 +39,71 @@ static inline unsigned cell_at(double x, double *fraction) {
     return wrap(floor(x)) + LATTICE_ORIGIN;
 }
 
+static double curve_at(double t) { return t * t * (3 - 2 * t); }
+
 static Lattice lattice_at(Vec3 p) {
     Lattice l;
     l.cell[0] = cell_at(p.x, &l.fraction[0]);
     l.cell[1] = cell_at(p.y, &l.fraction[1]);
     l.cell[2] = cell_at(p.z, &l.fraction[2]);
-    for (int k = 0; k < 3; k++) l.curve[k] = l.fraction[k] * l.fraction[k] * (3 - 2 * l.fraction[k]);
+    for (int k = 0; k < 3; k++) l.curve[k] = curve_at(l.fraction[k]);
     return l;
 }
 
-/* The rows of weights of the eight corners, x changing fastest: hashed in x and y first, which the layers share. */
-static void corner_rows(const unsigned cell[3], const double *rows[8]) {
+/* The weights of the eight corners: hashed in x and y first, which the layers share. */
+static void find_corners(const unsigned cell[3], LatticeCorners corners) {
     unsigned mask = HASH_SIZE - 1, near = pov_hash[cell[0] & mask], far = pov_hash[(cell[0] + 1) & mask];
     unsigned y = cell[1] & mask, above = (cell[1] + 1) & mask, z = cell[2] & mask,
              behind = (cell[2] + 1) & mask;
     unsigned columns[4] = {pov_hash[near ^ y], pov_hash[far ^ y], pov_hash[near ^ above],
                            pov_hash[far ^ above]};
     for (int k = 0; k < 4; k++) {
-        rows[k] = &pov_weights[pov_hash[columns[k] ^ z] & 0xFF];
-        rows[k + 4] = &pov_weights[pov_hash[columns[k] ^ behind] & 0xFF];
+        corners[k] = &pov_weights[pov_hash[columns[k] ^ z] & 0xFF];
+        corners[k + 4] = &pov_weights[pov_hash[columns[k] ^ behind] & 0xFF];
     }
 }
 
-/* A value (halved) and a gradient. */
-static inline double at_corner(const double *w, double x, double y, double z) {
-    return w[0] * 0.5 + w[1] * x + w[2] * y + w[3] * z;
-}
-
-static inline double mix(double t, double a, double b) { return a + t * (b - a); }
-
-/* Between the corners along x, then y, then z; the rows of another output are four numbers further. */
-static inline double between_corners(const double *const rows[8], int skip, const double f[3],
-                                     const double c[3]) {
-    double x = f[0], y = f[1], z = f[2], line[4];
-    for (int k = 0; k < 4; k++) {
-        double up = k & 1 ? y - 1 : y, back = k & 2 ? z - 1 : z;
-        line[k] = mix(c[0], at_corner(rows[2 * k] + skip, x, up, back),
-                      at_corner(rows[2 * k + 1] + skip, x - 1, up, back));
-    }
-    return mix(c[2], mix(c[1], line[0], line[1]), mix(c[1], line[2], line[3]));
+/* The rows of another output are four numbers further. */
+static inline double between_corners(const double *const corners[8], int skip, const Lattice *l) {
+    return lattice_between(corners, skip, l->fraction[0], l->fraction[1], l->fraction[2], l->curve[0],
+                           l->curve[1], l->curve[2]);
 }
 
 static double raw_noise(Vec3 p) {
+    if (!vec3_is_finite(p)) return (double)NAN;
     Lattice lattice = lattice_at(p);
-    const double *rows[8];
-    corner_rows(lattice.cell, rows);
-    return between_corners(rows, 0, lattice.fraction, lattice.curve);
+    LatticeCorners corners;
+    find_corners(lattice.cell, corners);
+    return between_corners(corners, 0, &lattice);
 }
 
-double noise_pov(Vec3 p) {
-    /* The sum's range, measured by POV-Ray's authors, is moved to [0, 1]. */
-    return vec3_is_finite(p) ? double_clamp((raw_noise(p) + 1.05242) * 0.48985582, 0, 1) : (double)NAN;
+/* The sum's range, measured by POV-Ray's authors, is moved to [0, 1]. */
+static inline double corrected(double raw) { return double_clamp((raw + 1.05242) * 0.48985582, 0, 1); }
+
+double noise_pov(Vec3 p) { return corrected(raw_noise(p)); }
+double noise_pov_original(Vec3 p) { return double_clamp(raw_noise(p) + 0.5, 0, 1); }
+
+static void find_near(const int32_t cell[3], LatticeCorners corners) {
+    unsigned moved[3];
+    for (int k = 0; k < 3; k++) moved[k] = (unsigned)cell[k] + LATTICE_ORIGIN;
+    find_corners(moved, corners);
 }
 
-double noise_pov_original(Vec3 p) {
-    return vec3_is_finite(p) ? double_clamp(raw_noise(p) + 0.5, 0, 1) : (double)NAN;
+void row_POV_NOISE(double *restrict out, const double *restrict a, const double *restrict b,
+                   const double *restrict c, size_t lanes) {
+    for (size_t l = 0; l < lanes; l += LATTICE_LANES)
+        lattice_rows(out + l, a + l, b + l, c + l, size_min(LATTICE_LANES, lanes - l), find_near, curve_at,
+                     raw_noise);
+    for (size_t l = 0; l < lanes; l++) out[l] = corrected(out[l]);
 }
 
 Vec3 noise_pov_vector(Vec3 p) {
     if (!vec3_is_finite(p)) return vec3_splat((double)NAN);
     Lattice lattice = lattice_at(p);
-    const double *rows[8];
-    corner_rows(lattice.cell, rows);
-    return vec3(between_corners(rows, 0, lattice.fraction, lattice.curve),
-                between_corners(rows, 4, lattice.fraction, lattice.curve),
-                between_corners(rows, 8, lattice.fraction, lattice.curve));
+    LatticeCorners corners;
+    find_corners(lattice.cell, corners);
+    return vec3(between_corners(corners, 0, &lattice), between_corners(corners, 4, &lattice),
+                between_corners(corners, 8, &lattice));
 }
 
 /* Cells count from 0, not from the lattice's origin. */

@@ -14,4 +14,7 @@ typedef void TapeRow3(double *restrict out, const double *restrict a, const doub
 TapeRow1 row_EXP, row_LN, row_SIN, row_COS, row_TAN, row_ATAN;
 TapeRow2 row_ATAN2;
 
+/* ---- noise.c, noise_pov.c ---- */
+TapeRow3 row_PERLIN, row_POV_NOISE;
+
 #endif

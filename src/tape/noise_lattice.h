@@ -1,0 +1,110 @@
+/* What lattice noises share: every corner of a unit cell has a value and a gradient, and a place in the cell gets the eight
+ * corners' linear functions, mixed along x, then y, then z. Over arrays, neighbours that lie in the same cell share the look-up
+ * of its corners and are computed together; bits do not depend on that. */
+#ifndef VTS_TAPE_NOISE_LATTICE_H
+#define VTS_TAPE_NOISE_LATTICE_H
+
+#include "base/vec.h"
+
+/* A corner's numbers: twice its value, its gradient. The eight corners of a cell: x changes fastest. */
+typedef const double *LatticeCorners[8];
+
+/* Finds the corners of a cell by its lowest corner. */
+typedef void LatticeFind(const int32_t cell[3], LatticeCorners corners);
+/* How far the far side counts at t in [0, 1]. */
+typedef double LatticeCurve(double t);
+/* The noise at one place, for places that are alone or far away. */
+typedef double LatticeNoise(Vec3 p);
+
+static inline double lattice_mix(double t, double a, double b) { return a + t * (b - a); }
+
+static inline double lattice_at_corner(const double *w, double x, double y, double z) {
+    return w[0] * 0.5 + w[1] * x + w[2] * y + w[3] * z;
+}
+
+/* At (x, y, z) in the cell, whose curves are u, v and w. The corners' numbers begin `skip` numbers further. */
+static inline double lattice_between(const double *const corners[8], int skip, double x, double y, double z,
+                                     double u, double v, double w) {
+    double near_low = lattice_mix(u, lattice_at_corner(corners[0] + skip, x, y, z),
+                                  lattice_at_corner(corners[1] + skip, x - 1, y, z));
+    double near_high = lattice_mix(u, lattice_at_corner(corners[2] + skip, x, y - 1, z),
+                                   lattice_at_corner(corners[3] + skip, x - 1, y - 1, z));
+    double far_low = lattice_mix(u, lattice_at_corner(corners[4] + skip, x, y, z - 1),
+                                 lattice_at_corner(corners[5] + skip, x - 1, y, z - 1));
+    double far_high = lattice_mix(u, lattice_at_corner(corners[6] + skip, x, y - 1, z - 1),
+                                  lattice_at_corner(corners[7] + skip, x - 1, y - 1, z - 1));
+    return lattice_mix(w, lattice_mix(v, near_low, near_high), lattice_mix(v, far_low, far_high));
+}
+
+/* ---- arrays ---- */
+
+enum { LATTICE_LANES = 64, LATTICE_RUN = 4 /* shorter runs in one cell are not worth a vector loop */ };
+#define LATTICE_FAR 0x1p30 /* places beyond have cells that are no int32_t */
+
+/* Of some lanes, along one axis. */
+typedef struct LatticeAxis {
+    int32_t cell[LATTICE_LANES];
+    double place[LATTICE_LANES], curve[LATTICE_LANES];
+} LatticeAxis;
+
+static inline void lattice_locate(LatticeAxis *axis, const double *restrict at, size_t lanes,
+                                  LatticeCurve *curve) {
+    for (size_t l = 0; l < lanes; l++) {
+        double x = fabs(at[l]) < LATTICE_FAR ? at[l] : 0;
+        int32_t whole = (int32_t)x;
+        whole -= x < whole ? 1 : 0;
+        axis->cell[l] = whole;
+        axis->place[l] = x - whole;
+        axis->curve[l] = curve(x - whole);
+    }
+}
+
+static inline void lattice_run(const LatticeAxis axes[3], size_t begin, size_t end, LatticeFind *find,
+                               double *restrict out) {
+    LatticeCorners found, corners;
+    double numbers[8][4];
+    find((int32_t[3]){axes[0].cell[begin], axes[1].cell[begin], axes[2].cell[begin]}, found);
+    for (int k = 0; k < 8; k++) {
+        for (int j = 0; j < 4; j++) numbers[k][j] = found[k][j];
+        corners[k] = numbers[k];
+    }
+    for (size_t l = begin; l < end; l++)
+        out[l] = lattice_between(corners, 0, axes[0].place[l], axes[1].place[l], axes[2].place[l],
+                                 axes[0].curve[l], axes[1].curve[l], axes[2].curve[l]);
+}
+
+static inline size_t lattice_run_end(const LatticeAxis axes[3], size_t begin, size_t lanes) {
+    size_t end = begin + 1;
+    while (end < lanes && axes[0].cell[end] == axes[0].cell[begin] &&
+           axes[1].cell[end] == axes[1].cell[begin] && axes[2].cell[end] == axes[2].cell[begin])
+        end++;
+    return end;
+}
+
+static inline bool lattice_all_near(const double *restrict at, size_t lanes) {
+    uint64_t far = 0;
+    for (size_t l = 0; l < lanes; l++) far |= fabs(at[l]) < LATTICE_FAR ? 0 : 1;
+    return !far;
+}
+
+/* out[l] = one((x[l], y[l], z[l])) for at most LATTICE_LANES lanes. */
+static inline void lattice_rows(double *restrict out, const double *restrict x, const double *restrict y,
+                                const double *restrict z, size_t lanes, LatticeFind *find,
+                                LatticeCurve *curve, LatticeNoise *one) {
+    LatticeAxis axes[3];
+    bool near = lattice_all_near(x, lanes) && lattice_all_near(y, lanes) && lattice_all_near(z, lanes);
+    if (near) {
+        lattice_locate(&axes[0], x, lanes, curve);
+        lattice_locate(&axes[1], y, lanes, curve);
+        lattice_locate(&axes[2], z, lanes, curve);
+    }
+    for (size_t begin = 0, end; begin < lanes; begin = end) {
+        end = near ? lattice_run_end(axes, begin, lanes) : begin + 1;
+        if (end - begin >= LATTICE_RUN)
+            lattice_run(axes, begin, end, find, out);
+        else
+            for (size_t l = begin; l < end; l++) out[l] = one(vec3(x[l], y[l], z[l]));
+    }
+}
+
+#endif

@@ -20,15 +20,16 @@ static double measure(const Tape *tape, size_t side, double *sum) {
     static double x[CHUNK], y[CHUNK], z[CHUNK], value[CHUNK];
     double start = stopwatch_cpu();
     *sum = 0;
-    for (size_t begin = 0; begin < side * side; begin += CHUNK) {
-        size_t count = side * side - begin < CHUNK ? side * side - begin : CHUNK;
-        for (size_t k = 0; k < count; k++) {
-            x[k] = (double)((begin + k) % side) / (double)side;
-            y[k] = (double)((begin + k) / side) / (double)side;
+    for (size_t row = 0; row < side; row++)
+        for (size_t begin = 0; begin < side; begin += CHUNK) {
+            size_t count = side - begin < CHUNK ? side - begin : CHUNK;
+            for (size_t k = 0; k < count; k++) {
+                x[k] = (double)(begin + k) / (double)side;
+                y[k] = (double)row / (double)side;
+            }
+            tape_eval_batch(tape, count, (const double *const[]){x, y, z}, (double *const[]){value});
+            for (size_t k = 0; k < count; k++) *sum += value[k];
         }
-        tape_eval_batch(tape, count, (const double *const[]){x, y, z}, (double *const[]){value});
-        for (size_t k = 0; k < count; k++) *sum += value[k];
-    }
     return stopwatch_cpu() - start;
 }
 

@@ -43,16 +43,13 @@ enum { LATTICE_LANES = 64, LATTICE_RUN = 4 /* shorter runs in one cell are not w
 
 /* Of some lanes, along one axis. */
 typedef struct LatticeAxis {
-    int32_t cell[LATTICE_LANES];
-    double place[LATTICE_LANES], curve[LATTICE_LANES];
+    double cell[LATTICE_LANES], place[LATTICE_LANES], curve[LATTICE_LANES];
 } LatticeAxis;
 
 static inline void lattice_locate(LatticeAxis *axis, const double *restrict at, size_t lanes,
                                   LatticeCurve *curve) {
     for (size_t l = 0; l < lanes; l++) {
-        double x = fabs(at[l]) < LATTICE_FAR ? at[l] : 0;
-        int32_t whole = (int32_t)x;
-        whole -= x < whole ? 1 : 0;
+        double x = at[l], nearest = (x + 0x1.8p52) - 0x1.8p52, whole = nearest - (x < nearest ? 1.0 : 0.0);
         axis->cell[l] = whole;
         axis->place[l] = x - whole;
         axis->curve[l] = curve(x - whole);
@@ -63,7 +60,9 @@ static inline void lattice_run(const LatticeAxis axes[3], size_t begin, size_t e
                                double *restrict out) {
     LatticeCorners found, corners;
     double numbers[8][4];
-    find((int32_t[3]){axes[0].cell[begin], axes[1].cell[begin], axes[2].cell[begin]}, found);
+    int32_t cell[3];
+    for (int k = 0; k < 3; k++) cell[k] = (int32_t)axes[k].cell[begin];
+    find(cell, found);
     for (int k = 0; k < 8; k++) {
         for (int j = 0; j < 4; j++) numbers[k][j] = found[k][j];
         corners[k] = numbers[k];
@@ -73,12 +72,14 @@ static inline void lattice_run(const LatticeAxis axes[3], size_t begin, size_t e
                                  axes[0].curve[l], axes[1].curve[l], axes[2].curve[l]);
 }
 
-static inline size_t lattice_run_end(const LatticeAxis axes[3], size_t begin, size_t lanes) {
-    size_t end = begin + 1;
-    while (end < lanes && axes[0].cell[end] == axes[0].cell[begin] &&
-           axes[1].cell[end] == axes[1].cell[begin] && axes[2].cell[end] == axes[2].cell[begin])
-        end++;
-    return end;
+/* first[l]: lane l is not in the cell of the lane before it. */
+static inline void lattice_mark_runs(const LatticeAxis axes[3], size_t lanes, uint64_t *restrict first) {
+    const double *x = axes[0].cell, *y = axes[1].cell, *z = axes[2].cell;
+    first[0] = 1;
+    for (size_t l = 1; l < lanes; l++) {
+        double moved = fabs(x[l] - x[l - 1]) + fabs(y[l] - y[l - 1]) + fabs(z[l] - z[l - 1]);
+        first[l] = moved > 0 ? 1 : 0;
+    }
 }
 
 static inline bool lattice_all_near(const double *restrict at, size_t lanes) {
@@ -91,15 +92,18 @@ static inline bool lattice_all_near(const double *restrict at, size_t lanes) {
 static inline void lattice_rows(double *restrict out, const double *restrict x, const double *restrict y,
                                 const double *restrict z, size_t lanes, LatticeFind *find,
                                 LatticeCurve *curve, LatticeNoise *one) {
-    LatticeAxis axes[3];
     bool near = lattice_all_near(x, lanes) && lattice_all_near(y, lanes) && lattice_all_near(z, lanes);
+    LatticeAxis axes[3];
+    uint64_t first[LATTICE_LANES];
     if (near) {
         lattice_locate(&axes[0], x, lanes, curve);
         lattice_locate(&axes[1], y, lanes, curve);
         lattice_locate(&axes[2], z, lanes, curve);
+        lattice_mark_runs(axes, lanes, first);
     }
     for (size_t begin = 0, end; begin < lanes; begin = end) {
-        end = near ? lattice_run_end(axes, begin, lanes) : begin + 1;
+        end = begin + 1;
+        while (near && end < lanes && !first[end]) end++;
         if (end - begin >= LATTICE_RUN)
             lattice_run(axes, begin, end, find, out);
         else

@@ -1,6 +1,7 @@
 /* Perlin's noise against a second, plain implementation in long double and against what is known of it. */
 #include "base/random.h"
 #include "tape/noise.h"
+#include "tape/tape_rows.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -11,6 +12,8 @@
 #include <string.h>
 
 #include <cmocka.h>
+
+enum { ARRAY = 150 };
 
 /* ---- a plain implementation: the sum over the cell's corners of weight · gradient · offset ---- */
 
@@ -187,6 +190,51 @@ static void fbm_is_a_sum_of_octaves(void **state) {
     }
 }
 
+/* ---- arrays ---- */
+
+typedef struct Arrays {
+    double x[ARRAY], y[ARRAY], z[ARRAY], out[ARRAY];
+} Arrays;
+
+static double awkward(RandomStream *random) {
+    static const double values[] = {0, -0.0, 1, -1, 0x1p30, -0x1p30, 0x1p31, 1e300, 5e-324, -5e-324, 0x1p52};
+    uint64_t k = random_next(random) % (VTS_ARRAY_COUNT(values) + 2);
+    if (k < VTS_ARRAY_COUNT(values)) return values[k];
+    return k == VTS_ARRAY_COUNT(values) ? (double)NAN : (double)INFINITY;
+}
+
+/* Places on a line whose steps are of any size, so that there are long runs in one cell, short ones and none. */
+static void fill_arrays(Arrays *a, size_t count, bool tame, RandomStream *random) {
+    double step = exp2(12 * random_next_unit(random) - 10);
+    Vec3 at = vec3(span(random, 1e4), span(random, 50), span(random, 3));
+    for (size_t l = 0; l < count; l++) {
+        at = vec3_add(at, vec3(span(random, step), span(random, step), span(random, step)));
+        a->x[l] = at.x, a->y[l] = at.y, a->z[l] = floor(at.z * 64) / 64;
+        if (!tame && random_next(random) % 16 == 0) a->x[l] = awkward(random);
+        if (!tame && random_next(random) % 16 == 0) a->z[l] = awkward(random);
+    }
+}
+
+static void check_row(TapeRow3 *row, double (*one)(Vec3), Arrays *a, size_t count) {
+    row(a->out, a->x, a->y, a->z, count);
+    for (size_t l = 0; l < count; l++) {
+        double expected = one(vec3(a->x[l], a->y[l], a->z[l]));
+        assert_true(isnan(expected) ? isnan(a->out[l]) : !memcmp(&expected, &a->out[l], sizeof expected));
+    }
+}
+
+static void arrays_give_the_same_bits(void **state) {
+    (void)state;
+    RandomStream random = {31};
+    Arrays a;
+    for (int i = 0; i < 2000; i++) {
+        size_t count = (size_t)(random_next(&random) % (ARRAY + 1));
+        fill_arrays(&a, count, i % 3 != 0, &random);
+        check_row(row_PERLIN, noise_perlin, &a, count);
+        check_row(row_POV_NOISE, noise_pov, &a, count);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_table_is_a_permutation),
@@ -199,6 +247,7 @@ int main(void) {
         cmocka_unit_test(is_undefined_only_where_the_place_is),
         cmocka_unit_test(seeds_are_unrelated),
         cmocka_unit_test(fbm_is_a_sum_of_octaves),
+        cmocka_unit_test(arrays_give_the_same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

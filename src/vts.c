@@ -1,4 +1,4 @@
-#include "vts.h"
+#include "vts_session.h"
 
 #include "base/stopwatch.h"
 #include "eval/eval.h"
@@ -11,30 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-struct VtsSession {
-    VtsOptions options;
-    MemoryBudget memory;
-    jmp_buf out_of_memory;      /* valid while `guarded` */
-    Pool *pool;
-    TexelCache *texels;         /* built and loaded, from one call to the next */
-    Progress progress;
-    atomic_bool interrupted; /* set from signal handlers and other threads */
-    /* of the session */
-    Arena arena;
-    SourceSet sources;
-    DiagList diags;
-    Interner names;
-    StrBuf stdlib, printed, report;
-    const Diagnostic *last_printed;
-    /* of one call */
-    Arena parse, scene_arena, compiled_arena;
-    const Scene *scene;
-    Scene scene_with_settings;
-    CompiledScene compiled;
-    Image picture;
-    double started_wall, started_cpu;
-};
 
 const char *vts_version(void) { return VTS_VERSION; }
 
@@ -152,7 +128,7 @@ const char *vts_diagnostics(const VtsSession *session) { return session->printed
 const char *vts_report(const VtsSession *session) { return session->report.data ? session->report.data : ""; }
 
 /* Formats what was found since the last time. */
-static void print_diagnostics(VtsSession *session) {
+void session_print_diagnostics(VtsSession *session) {
     const Diagnostic *d = session->last_printed ? session->last_printed->next : session->diags.first;
     for (; d; d = d->next) {
         StrBuf text = {0};
@@ -270,11 +246,7 @@ static void pass_text(void *context, EvalStream stream, const char *text) {
     if (session->options.on_text) session->options.on_text(session->options.context, streams[stream], text);
 }
 
-typedef struct EvalMode {
-    bool writes_in_memory, is_program, print_tokens, print_ast;
-} EvalMode;
-
-static VtsStatus evaluate(VtsSession *session, const char *path, EvalMode mode) {
+VtsStatus session_evaluate(VtsSession *session, const char *path, EvalMode mode) {
     const VtsOptions *o = &session->options;
     struct EvalDeclare *declares = arena_new_array(&session->parse, struct EvalDeclare, o->declare_count);
     for (size_t i = 0; i < o->declare_count; i++) declares[i] = (struct EvalDeclare){o->declares[i].name, o->declares[i].value};
@@ -297,7 +269,7 @@ static VtsStatus evaluate(VtsSession *session, const char *path, EvalMode mode) 
     if (status != VTS_OK) return status;
     EvalStatus result = eval_file(path, &options, &session->sources, &session->diags, &session->names, &session->parse,
                                   &session->scene_arena, &session->scene);
-    print_diagnostics(session);
+    session_print_diagnostics(session);
     switch (result) {
     case EVAL_OK: return VTS_OK;
     case EVAL_NO_FILE: return VTS_ERROR_FILE;
@@ -307,14 +279,15 @@ static VtsStatus evaluate(VtsSession *session, const char *path, EvalMode mode) 
     return VTS_ERROR_SCENE;
 }
 
-static VtsStatus compile(VtsSession *session, bool exact) {
+VtsStatus session_compile(VtsSession *session, bool exact, int texel_resolution) {
     VtsStatus status = apply_settings(session);
     if (status != VTS_OK) return status;
     CompileOptions options = {.pool = session->pool, .memory = &session->memory, .texels = session->texels, .progress = &session->progress,
                               .width = session->options.width, .height = session->options.height,
+                              .texel_resolution = texel_resolution,
                               .interrupted = &session->interrupted, .exact = exact};
     CompileStatus result = compile_scene(session->scene, &options, &session->compiled_arena, &session->diags, &session->compiled);
-    print_diagnostics(session);
+    session_print_diagnostics(session);
     return result == COMPILE_OK ? VTS_OK : result == COMPILE_INTERRUPTED ? VTS_INTERRUPTED : VTS_ERROR_SCENE;
 }
 
@@ -337,21 +310,35 @@ static void describe(VtsSession *session, const char *scene_path) {
     image_set_number(picture, "vts:samples", s->samples);
 }
 
-static VtsStatus file_error(VtsSession *session, const StrBuf *why) {
+VtsStatus session_file_error(VtsSession *session, const StrBuf *why) {
     diag_error(&session->diags, (Span){0}, "no picture: %s", why->size ? why->data : "it could not be written");
-    print_diagnostics(session);
+    session_print_diagnostics(session);
     return VTS_ERROR_FILE;
 }
 
-static VtsStatus save(VtsSession *session, const char *scene_path, const char *output_path) {
+VtsStatus session_save_picture(VtsSession *session, const char *scene_path, const char *output_path) {
     describe(session, scene_path);
     StrBuf error = {0};
     ImageSample sample = IMAGE_SAMPLE_AUTO;
     if (session->options.float_type && strcmp(session->options.float_type, "float") == 0) sample = IMAGE_SAMPLE_FLOAT;
     bool ok = image_save(&session->picture, output_path, sample, &error);
-    VtsStatus status = ok ? VTS_OK : file_error(session, &error);
+    VtsStatus status = ok ? VTS_OK : session_file_error(session, &error);
     strbuf_free(&error);
     return status;
+}
+
+VtsStatus session_draw(VtsSession *session, bool exact, RenderStats *stats) {
+    const VtsOptions *o = &session->options;
+    RenderOptions options = {.pool = session->pool, .progress = &session->progress, .interrupted = &session->interrupted,
+                             .samples = exact ? o->reference_samples : session->scene->settings.samples,
+                             .seed = o->seed, .exposure = o->exposure, .alpha = o->alpha};
+    memcpy(options.region, o->region, sizeof options.region);
+    if (options.region[2] == 0) options.region[2] = o->width, options.region[3] = o->height;
+    bool done = !session->interrupted && (exact ? reference_picture : render_picture)(&session->compiled, &options, &session->memory,
+                                                                                      &session->picture, stats, NULL);
+    if (session->interrupted) return VTS_INTERRUPTED;
+    if (!done) memory_budget_fail(&session->memory);
+    return VTS_OK;
 }
 
 /* The picture as users see it, or the reference. */
@@ -359,24 +346,16 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
     const VtsOptions *o = &session->options;
     StrBuf error = {0};
     bool writable = image_can_write(output_path, &error);
-    VtsStatus status = writable ? evaluate(session, scene_path, (EvalMode){0}) : file_error(session, &error);
+    VtsStatus status = writable ? session_evaluate(session, scene_path, (EvalMode){0}) : session_file_error(session, &error);
     strbuf_free(&error);
     if (status != VTS_OK) return status;
     double parsed = stopwatch_wall();
-    if ((status = compile(session, exact)) != VTS_OK) return status;
+    if ((status = session_compile(session, exact, 0)) != VTS_OK) return status;
     double built = stopwatch_wall();
-    RenderOptions options = {.pool = session->pool, .progress = &session->progress, .interrupted = &session->interrupted,
-                             .samples = exact ? o->reference_samples : session->scene->settings.samples,
-                             .seed = o->seed, .exposure = o->exposure, .alpha = o->alpha};
-    memcpy(options.region, o->region, sizeof options.region);
-    if (options.region[2] == 0) options.region[2] = o->width, options.region[3] = o->height;
     RenderStats stats;
-    bool done = !session->interrupted && (exact ? reference_picture : render_picture)(&session->compiled, &options, &session->memory,
-                                                                                      &session->picture, &stats, NULL);
-    if (session->interrupted) return VTS_INTERRUPTED;
-    if (!done) memory_budget_fail(&session->memory);
+    if ((status = session_draw(session, exact, &stats)) != VTS_OK) return status;
     double rendered = stopwatch_wall();
-    if ((status = save(session, scene_path, output_path)) != VTS_OK) return status;
+    if ((status = session_save_picture(session, scene_path, output_path)) != VTS_OK) return status;
     double written = stopwatch_wall();
     FrameReport report = {.frame = o->frame, .clock = o->clock, .output = output_path, .wall_s = written - session->started_wall,
                           .cpu_s = stopwatch_cpu() - session->started_cpu, .parse_s = parsed - session->started_wall,
@@ -389,21 +368,22 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
 
 /* ---- calls ---- */
 
-typedef enum CallKind { CALL_CHECK, CALL_RUN, CALL_RENDER, CALL_REFERENCE, CALL_DUMP } CallKind;
+typedef enum CallKind { CALL_CHECK, CALL_RUN, CALL_RENDER, CALL_REFERENCE, CALL_DUMP, CALL_TEXEL } CallKind;
 
 typedef struct Call {
     CallKind kind;
     const char *scene_path, *output_path;
     VtsDump dump;
+    const char *texel_name, *save_path; /* CALL_TEXEL */
 } Call;
 
 static VtsStatus dump(VtsSession *session, const Call *call) {
     EvalMode mode = {.writes_in_memory = true, .print_tokens = call->dump == VTS_DUMP_TOKENS, .print_ast = call->dump == VTS_DUMP_AST};
-    VtsStatus status = evaluate(session, call->scene_path, mode);
+    VtsStatus status = session_evaluate(session, call->scene_path, mode);
     if (status != VTS_OK || mode.print_tokens || mode.print_ast) return status;
     StrBuf text = {0};
     if (call->dump == VTS_DUMP_COMPILED) {
-        if ((status = compile(session, false)) == VTS_OK) compiled_scene_print(&session->compiled, &text);
+        if ((status = session_compile(session, false, 0)) == VTS_OK) compiled_scene_print(&session->compiled, &text);
     } else {
         scene_print(session->scene, &text);
     }
@@ -414,11 +394,12 @@ static VtsStatus dump(VtsSession *session, const Call *call) {
 
 static VtsStatus perform(VtsSession *session, const Call *call) {
     switch (call->kind) {
-    case CALL_CHECK: return evaluate(session, call->scene_path, (EvalMode){.writes_in_memory = true});
-    case CALL_RUN: return evaluate(session, call->scene_path, (EvalMode){.is_program = true});
+    case CALL_CHECK: return session_evaluate(session, call->scene_path, (EvalMode){.writes_in_memory = true});
+    case CALL_RUN: return session_evaluate(session, call->scene_path, (EvalMode){.is_program = true});
     case CALL_RENDER: return render(session, call->scene_path, call->output_path, false);
     case CALL_REFERENCE: return render(session, call->scene_path, call->output_path, true);
     case CALL_DUMP: return dump(session, call);
+    case CALL_TEXEL: return session_texel(session, call->scene_path, call->texel_name, call->save_path, call->output_path);
     }
     return VTS_ERROR_USAGE;
 }
@@ -445,7 +426,7 @@ static VtsStatus guarded(VtsSession *session, const Call *call) {
     VtsStatus status;
     if (setjmp(session->out_of_memory) == 0) {
         status = perform(session, call);
-        print_diagnostics(session);
+        session_print_diagnostics(session);
     } else {
         status = VTS_ERROR_MEMORY;
         report_memory(session);
@@ -470,4 +451,8 @@ VtsStatus vts_reference(VtsSession *session, const char *scene_path, const char 
 }
 VtsStatus vts_dump(VtsSession *session, const char *scene_path, VtsDump stage) {
     return guarded(session, &(Call){.kind = CALL_DUMP, .scene_path = scene_path, .dump = stage});
+}
+VtsStatus vts_texel(VtsSession *session, const char *scene_path, const char *name, const char *save_path, const char *picture_path) {
+    return guarded(session, &(Call){.kind = CALL_TEXEL, .scene_path = scene_path, .output_path = picture_path,
+                                    .texel_name = name, .save_path = save_path});
 }

@@ -112,6 +112,11 @@ VTS_API VtsStatus vts_reference(VtsSession *session, const char *scene_path, con
 /* Evaluates (as vts_check) and passes the printed form of one stage to on_text(VTS_STREAM_STATISTICS). */
 VTS_API VtsStatus vts_dump(VtsSession *session, const char *scene_path, VtsDump stage);
 
+/* Builds the texel that `name` was declared as ("Grass", "Trees[2]"), as finely as it asks for (128 if it leaves that open), whatever
+ * is seen of it. `save_path` (or NULL) gets it as a .vtx file, `picture_path` (or NULL) a picture of it alone. vts_report() is then a
+ * table as text. VTS_ERROR_USAGE when there is no such texel. */
+VTS_API VtsStatus vts_texel(VtsSession *session, const char *scene_path, const char *name, const char *save_path, const char *picture_path);
+
 typedef struct VtsDifference {
     int width, height;
     double rmse;       /* over pixels and channels, linear light clamped to [0,1] */
@@ -128,7 +133,7 @@ VTS_API VtsStatus vts_compare(const char *reference_path, const char *test_path,
 
 /* All diagnostics so far as text; "" when none. Valid until the next call with this session. */
 VTS_API const char *vts_diagnostics(const VtsSession *session);
-/* The report of the last vts_render() or vts_reference() as JSON (cli.md, --report); "" before. Valid until the next call. */
+/* The report of the last vts_render() or vts_reference() as JSON (--report), or vts_texel()'s table; "" before. Valid until the next call. */
 VTS_API const char *vts_report(const VtsSession *session);
 /* From any thread or a signal handler: the running call stops soon and returns VTS_INTERRUPTED. */
 VTS_API void vts_interrupt(VtsSession *session);

@@ -9,6 +9,7 @@
 int command_render(Settings *settings);
 int command_check(Settings *settings);
 int command_run(Settings *settings);
+int command_texel(Settings *settings);
 int command_compare(Settings *settings);
 int command_reference(Settings *settings);
 

@@ -135,6 +135,10 @@ static const char *apply_diff(Settings *s, const char *value) {
     s->diff = value;
     return *value ? NULL : "a file name";
 }
+static const char *apply_save(Settings *s, const char *value) {
+    s->save = value;
+    return *value ? NULL : "a file name";
+}
 static const char *apply_json(Settings *s, const char *value) {
     (void)value;
     s->json = true;
@@ -153,19 +157,19 @@ static const Option OPTIONS[] = {
     {"size", 's', "WxH", COMMAND_ALL, apply_size, "size of the picture in pixels; default 768x576"},
     {"threads", 't', "N", COMMAND_ALL, apply_threads, "workers; default 0: all processors"},
     {"clock", 0, "V", COMMAND_ALL, apply_clock, "value of `clock` in the scene"},
-    {"quality", 'q', "draft|good|best", COMMAND_RENDER, apply_quality,
+    {"quality", 'q', "draft|good|best", COMMAND_RENDER | COMMAND_TEXEL, apply_quality,
      "--max-error 4/255, 1/255 or 0.25/255"},
-    {"max-error", 0, "E", COMMAND_RENDER, apply_max_error,
+    {"max-error", 0, "E", COMMAND_RENDER | COMMAND_TEXEL, apply_max_error,
      "accepted RMSE over pixels and channels, linear light in [0,1]"},
-    {"samples", 0, "N", COMMAND_RENDER, apply_samples,
+    {"samples", 0, "N", COMMAND_RENDER | COMMAND_TEXEL, apply_samples,
      "samples of a pixel where it needs several; default: by --max-error"},
     {"samples", 0, "N", COMMAND_REFERENCE, apply_rays, "rays of a pixel, 1 to 65536; default 64"},
     {"declare", 'D', "NAME=VALUE", COMMAND_ALL, apply_declare,
      "declares a float, or a string if VALUE is no number"},
     {"include", 'I', "DIR", COMMAND_ALL, apply_include, "where includes and data are looked for as well"},
-    {"region", 0, "x0,y0,x1,y1", COMMAND_DRAW, apply_region,
+    {"region", 0, "x0,y0,x1,y1", COMMAND_RENDER | COMMAND_REFERENCE, apply_region,
      "renders this part only, in pixels, x1 and y1 exclusive"},
-    {"report", 0, "F|-", COMMAND_DRAW, apply_report, "writes what was modelled, counted and timed as JSON"},
+    {"report", 0, "F|-", COMMAND_RENDER | COMMAND_REFERENCE, apply_report, "writes what was modelled, counted and timed as JSON"},
     {"progress", 0, "auto|bar|plain|none", COMMAND_ALL, apply_progress,
      "how to show progress; auto: a bar on a terminal"},
     {"seed", 0, "N", COMMAND_DRAW, apply_seed, "of the sampling; default 0"},
@@ -194,7 +198,7 @@ static const Option OPTIONS[] = {
     {"diff", 0, "F", COMMAND_COMPARE, apply_diff,
      "a picture of FLIP's errors; numbers in .exr and .pfm, else colours"},
     {"json", 0, NULL, COMMAND_COMPARE, apply_json, "prints JSON"},
-    {"save", 0, "F", COMMAND_ALL, NULL, NULL},
+    {"save", 0, "F", COMMAND_TEXEL, apply_save, "writes the texel as a file, for texel { \"F\" } (.vtx)"},
 };
 enum { OPTION_COUNT = sizeof OPTIONS / sizeof *OPTIONS };
 

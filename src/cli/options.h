@@ -7,8 +7,16 @@
 #include <stdio.h>
 
 /* Bits: which sub-commands an option belongs to. */
-enum { COMMAND_RENDER = 1, COMMAND_CHECK = 2, COMMAND_RUN = 4, COMMAND_COMPARE = 8, COMMAND_REFERENCE = 16,
-       COMMAND_ALL = 23 /* that take scenes */, COMMAND_DRAW = 17 /* that make pictures of them */ };
+enum {
+    COMMAND_RENDER = 1,
+    COMMAND_CHECK = 2,
+    COMMAND_RUN = 4,
+    COMMAND_COMPARE = 8,
+    COMMAND_REFERENCE = 16,
+    COMMAND_TEXEL = 32,
+    COMMAND_ALL = 55, /* that take scenes */
+    COMMAND_DRAW = 49 /* that make pictures of them */
+};
 
 /* Reads the arguments of `command` (one bit), also in POV-Ray's spelling. 0, or VTS_ERROR_USAGE or VTS_ERROR_FILE after
  * saying why on stderr. */

@@ -32,6 +32,7 @@ typedef struct Settings {
     TextList scenes;
     const char *output;         /* NULL: by the scene's name */
     const char *suffix;         /* of pictures whose name has none; ".png" */
+    const char *save;           /* of texel: the file, or NULL */
     const char *report;         /* file, "-" for stdout, or NULL */
     const char *metrics, *diff; /* of compare; NULL: the usual ones, no picture */
     bool json;

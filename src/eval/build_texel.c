@@ -204,18 +204,6 @@ static bool check_content(Reader *reader, const TexelDraft *draft) {
     return !reader->failed;
 }
 
-/* The block itself does not outlive its builder. Numbers and nodes are all that a reference holds. */
-static Value keep_reference(BuildContext *context, const EvalBlock *block) {
-    EvalBlock *kept = arena_copy(context->arena, block, sizeof *block);
-    BlockItem *items = arena_copy(context->arena, block->items, block->count * sizeof *items);
-    for (size_t i = 0; i < block->count; i++)
-        items[i].arguments =
-            arena_copy(context->arena, items[i].arguments ? (const void *)items[i].arguments : "",
-                       items[i].argument_count * sizeof(Argument));
-    kept->items = items;
-    return (Value){.kind = VALUE_BLOCK, .as.block = kept};
-}
-
 /* ---- texel { "forest.vtx" } ---- */
 
 static bool is_from_file(const EvalBlock *block) {
@@ -231,11 +219,11 @@ static bool texel_from_file(BuildContext *context, const EvalBlock *block, Value
     if (block->declared_as) texel->name = block->declared_as->text;
     Value value = {.kind = VALUE_TEXEL, .as.texel = texel};
     if (block->count > 1) {
-        EvalBlock reference = *block;
+        EvalBlock *reference = arena_copy(context->arena, block, sizeof *block);
         BlockItem *items = arena_copy(context->arena, block->items, block->count * sizeof *items);
         items[0].value = value;
-        reference.items = items;
-        value = keep_reference(context, &reference);
+        reference->items = items;
+        value = (Value){.kind = VALUE_BLOCK, .as.block = reference};
     }
     *out = value;
     return true;
@@ -243,7 +231,7 @@ static bool texel_from_file(BuildContext *context, const EvalBlock *block, Value
 
 bool build_texel(BuildContext *context, const EvalBlock *block, Value *out) {
     if (is_reference(block)) {
-        *out = block->count == 1 ? block->items[0].value : keep_reference(context, block);
+        *out = block->count == 1 ? block->items[0].value : (Value){.kind = VALUE_BLOCK, .as.block = block};
         return true;
     }
     if (is_from_file(block)) return texel_from_file(context, block, out);

@@ -78,7 +78,7 @@ Value eval_block(Eval *ev, const Node *node, Name declared_as) {
         diag_error(ev->diags, block->word_span, "'%s' cannot be declared", block->word->text);
     } else if (builder) {
         if (!builder(&ev->build, block, &v)) v = value_error();
-        if (v.kind == VALUE_BLOCK) v.as.block = block_keep(ev->build.arena, block);
+        if (v.kind == VALUE_BLOCK) v.as.block = block_keep(ev->build.arena, v.as.block);
     } else {
         v = (Value){.kind = VALUE_BLOCK, .as.block = block_keep(ev->build.arena, block)};
     }

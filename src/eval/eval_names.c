@@ -18,8 +18,7 @@ static void add_value(TexelNames *names, const char *name, const Slot *slot, int
         *list_push(names->arena, names) = (NamedTexel){name, slot->value.as.texel};
     if (slot->value.kind != VALUE_ARRAY || depth == DEEPEST_ARRAY) return;
     const Array *array = slot->value.as.array;
-    bool texels = array->rows || !array->class || *array->class == VALUE_TEXEL;
-    for (size_t i = 0; texels && i < array->count && names->count < MOST_NAMED_TEXELS; i++) {
+    for (size_t i = 0; i < array->count && names->count < MOST_NAMED_TEXELS; i++) {
         ValueKind kind = array->items[i].value.kind;
         if (kind == VALUE_TEXEL || kind == VALUE_ARRAY)
             add_value(names, arena_printf(names->arena, "%s[%zu]", name, i), &array->items[i], depth + 1);

@@ -23,6 +23,7 @@ typedef struct CompileOptions {
     TexelCache *texels; /* voxels built before, and those from files; may be NULL if the scene has none from files */
     const Progress *progress;
     int width, height;
+    int texel_resolution; /* to build texels at, as far as they allow it; 0: what the view can see */
     const atomic_bool *interrupted;
     bool exact; /* for the reference: texels and skins keep their geometry, no voxels are built */
 } CompileOptions;

@@ -335,7 +335,10 @@ static bool place_texel(const Skin *skin, size_t index, const CompileOptions *op
     placed->seed = random_hash(skin->jitter.seed, index, 0, 0);
     for (size_t k = 0; k < family; k++) {
         const TexelDef *def = in->texel->choice_count ? in->texel->choices[k] : in->texel;
-        int needed = options->exact ? 0 : (int)needed_resolution(out, &compiled->view, texel_extent(def), (double)compiled->march.voxel_width);
+        int needed = options->exact              ? 0
+                     : options->texel_resolution ? options->texel_resolution
+                                                 : (int)needed_resolution(out, &compiled->view, texel_extent(def),
+                                                                          (double)compiled->march.voxel_width);
         const BuiltTexel *texel = texel_build(def, needed, options, compiled, diags);
         if (!texel) return false;
         if (texel->matter_count == 0) continue;

@@ -59,8 +59,10 @@ void texel_cache_trim(TexelCache *cache) {
     for (CacheEntry **place = &cache->entries; *place;) {
         bool used = (*place)->used;
         (*place)->used = false;
-        if (used) place = &(*place)->next;
-        else drop(place);
+        if (used)
+            place = &(*place)->next;
+        else
+            drop(place);
     }
 }
 
@@ -109,7 +111,8 @@ const TexelFile *texel_cache_opened(TexelCache *cache, Hash128 content) {
     return entry ? &entry->file : NULL;
 }
 
-const TexelFile *texel_cache_open(TexelCache *cache, const char *path, TexelFileStatus *status, StrBuf *error) {
+const TexelFile *texel_cache_open(TexelCache *cache, const char *path, TexelFileStatus *status,
+                                  StrBuf *error) {
     TexelFile file;
     *status = texel_file_load(path, cache->memory, &file, error);
     if (*status != TEXEL_FILE_OK) return NULL;
@@ -126,14 +129,16 @@ const TexelFile *texel_cache_open(TexelCache *cache, const char *path, TexelFile
 /* ---- the folder ---- */
 
 static void path_of(const TexelCache *cache, Hash128 key, StrBuf *path) {
-    strbuf_addf(path, "%s/%016llx%016llx.vtx", cache->folder, (unsigned long long)key.hi, (unsigned long long)key.lo);
+    strbuf_addf(path, "%s/%016llx%016llx.vtx", cache->folder, (unsigned long long)key.hi,
+                (unsigned long long)key.lo);
 }
 
 static bool same_vector(Vec3 a, Vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
 static bool is_as_asked(const TexelFile *file, Hash128 key, const TexelDef *def, int resolution) {
-    return hash_equal(file->key, key) && file->layer_count == 1 && file->built == resolution && file->cyclic == def->cyclic &&
-           same_vector(file->bounds.min, def->bounds.min) && same_vector(file->bounds.max, def->bounds.max);
+    return hash_equal(file->key, key) && file->layer_count == 1 && file->built == resolution &&
+           file->cyclic == def->cyclic && same_vector(file->bounds.min, def->bounds.min) &&
+           same_vector(file->bounds.max, def->bounds.max);
 }
 
 static bool is_plain_file(const char *path) {
@@ -163,15 +168,22 @@ VoxelLayer *texel_cache_find(TexelCache *cache, Hash128 key, const TexelDef *def
     return voxels;
 }
 
-bool texel_cache_add(TexelCache *cache, Hash128 key, const TexelDef *def, int resolution, VoxelLayer *voxels, StrBuf *error) {
+bool texel_cache_add(TexelCache *cache, Hash128 key, const TexelDef *def, int resolution, VoxelLayer *voxels,
+                     StrBuf *error) {
     keep(cache, key, voxels);
     if (!cache->folder) return true;
     StrBuf path = {0};
     path_of(cache, key, &path);
     mkdir(cache->folder, 0777); /* when it fails, so does writing, which says why */
     TexelFileLayer layer = {.voxels = voxels};
-    TexelFile file = {.name = (char *)(uintptr_t)def->name, .bounds = def->bounds, .asked = def->resolution, .built = resolution,
-                      .cyclic = def->cyclic, .key = key, .layers = &layer, .layer_count = 1};
+    TexelFile file = {.name = (char *)(uintptr_t)def->name,
+                      .bounds = def->bounds,
+                      .asked = def->resolution,
+                      .built = resolution,
+                      .cyclic = def->cyclic,
+                      .key = key,
+                      .layers = &layer,
+                      .layer_count = 1};
     bool ok = texel_file_save(&file, path.data, error);
     strbuf_free(&path);
     return ok;

@@ -19,10 +19,12 @@ Hash128 texel_layer_key(const TexelDef *def, const TexelLayer *layer, int resolu
 VoxelLayer *texel_cache_find(TexelCache *cache, Hash128 key, const TexelDef *def, int resolution);
 /* Keeps the voxels in memory until texel_cache_trim(), and writes them to the folder if there is one; false with a line of text
  * in `error` when that fails. */
-bool texel_cache_add(TexelCache *cache, Hash128 key, const TexelDef *def, int resolution, VoxelLayer *voxels, StrBuf *error);
+bool texel_cache_add(TexelCache *cache, Hash128 key, const TexelDef *def, int resolution, VoxelLayer *voxels,
+                     StrBuf *error);
 
 /* The texel in a file, which the cache owns until texel_cache_trim(); NULL with a status and a line of text in `error`. */
-const TexelFile *texel_cache_open(TexelCache *cache, const char *path, TexelFileStatus *status, StrBuf *error);
+const TexelFile *texel_cache_open(TexelCache *cache, const char *path, TexelFileStatus *status,
+                                  StrBuf *error);
 /* The texel that was opened with this content, or NULL. */
 const TexelFile *texel_cache_opened(TexelCache *cache, Hash128 content);
 

@@ -35,16 +35,21 @@ static bool lack_memory(FormatReader *r) {
 
 static bool read_header(FormatReader *r) {
     FormatHeader *h = &r->header;
-    if (r->size < sizeof h->magic || memcmp(r->data, TEXEL_MAGIC, sizeof h->magic) != 0) return format_refuse(r, "it is not a texel file");
+    if (r->size < sizeof h->magic || memcmp(r->data, TEXEL_MAGIC, sizeof h->magic) != 0)
+        return format_refuse(r, "it is not a texel file");
     if (r->size < sizeof *h) return format_refuse(r, "it is damaged: it ends within its header");
     memcpy(h, r->data, sizeof *h);
-    if (h->byte_order != TEXEL_BYTE_ORDER) return format_refuse(r, "it was written by a machine of another byte order, or is damaged");
+    if (h->byte_order != TEXEL_BYTE_ORDER)
+        return format_refuse(r, "it was written by a machine of another byte order, or is damaged");
     if (h->version != TEXEL_FILE_VERSION)
-        return format_refuse(r, "its format is version %u; this program reads version %d", h->version, TEXEL_FILE_VERSION);
+        return format_refuse(r, "its format is version %u; this program reads version %d", h->version,
+                             TEXEL_FILE_VERSION);
     if (h->file_size != r->size)
-        return format_refuse(r, "it is damaged: it has %zu bytes and should have %llu", r->size, (unsigned long long)h->file_size);
+        return format_refuse(r, "it is damaged: it has %zu bytes and should have %llu", r->size,
+                             (unsigned long long)h->file_size);
     size_t table_size = (size_t)h->section_count * sizeof(FormatSection);
-    if (table_size > r->size - sizeof *h) return format_refuse(r, "it is damaged: its table of sections does not fit into it");
+    if (table_size > r->size - sizeof *h)
+        return format_refuse(r, "it is damaged: its table of sections does not fit into it");
     if (!hash_equal(h->checksum, format_header_checksum(h, r->data + sizeof *h, table_size)))
         return format_refuse(r, "it is damaged: the checksum of its header is wrong");
     if (h->zero) return format_refuse(r, "it is damaged: its header holds what it should not");
@@ -53,8 +58,11 @@ static bool read_header(FormatReader *r) {
 }
 
 static const char *section_name(uint32_t kind) {
-    static const char *const names[] = {[SECTION_TEXEL] = "texel", [SECTION_LOOK] = "look", [SECTION_INDEX] = "index",
-                                        [SECTION_SLICES] = "block of masks", [SECTION_CODES] = "block of voxels"};
+    static const char *const names[] = {[SECTION_TEXEL] = "texel",
+                                        [SECTION_LOOK] = "look",
+                                        [SECTION_INDEX] = "index",
+                                        [SECTION_SLICES] = "block of masks",
+                                        [SECTION_CODES] = "block of voxels"};
     return kind < VTS_ARRAY_COUNT(names) && names[kind] ? names[kind] : "section";
 }
 
@@ -68,8 +76,10 @@ static bool is_zero(const unsigned char *bytes, size_t size) {
 static bool refuse_section(FormatReader *r, const char *what) {
     const FormatSection *s = &r->section;
     if (s->kind == SECTION_TEXEL) return format_refuse(r, "it is damaged: its description %s", what);
-    if (s->kind == SECTION_LOOK) return format_refuse(r, "it is damaged: the look of layer %u %s", s->layer, what);
-    return format_refuse(r, "it is damaged: the %s of layer %u, level %u, %s", section_name(s->kind), s->layer, s->level, what);
+    if (s->kind == SECTION_LOOK)
+        return format_refuse(r, "it is damaged: the look of layer %u %s", s->layer, what);
+    return format_refuse(r, "it is damaged: the %s of layer %u, level %u, %s", section_name(s->kind),
+                         s->layer, s->level, what);
 }
 
 /* The next section, which has to be this one; NULL if it is not there, not where it has to be, or altered. */
@@ -84,7 +94,8 @@ static const unsigned char *open_section(FormatReader *r, SectionKind kind, size
     uint64_t begin = format_align(r->end);
     if (begin > r->size || found.offset != begin || found.size > r->size - begin)
         return refuse_section(r, "lies outside of the file or over another part"), NULL;
-    if (!is_zero(r->data + r->end, begin - r->end)) return refuse_section(r, "has something written before it"), NULL;
+    if (!is_zero(r->data + r->end, begin - r->end))
+        return refuse_section(r, "has something written before it"), NULL;
     *s = found;
     r->end = begin + found.size;
     if (!hash_equal(found.checksum, format_checksum(r->data + begin, found.size)))
@@ -96,7 +107,8 @@ static const unsigned char *open_section(FormatReader *r, SectionKind kind, size
 
 static bool bounds_are_valid(Box3 b) {
     Vec3 size = vec3_sub(b.max, b.min);
-    if (!vec3_is_finite(b.min) || !vec3_is_finite(b.max) || !(size.x > 0 && size.y > 0 && size.z > 0)) return false;
+    if (!vec3_is_finite(b.min) || !vec3_is_finite(b.max) || !(size.x > 0 && size.y > 0 && size.z > 0))
+        return false;
     return vec3_is_finite(vec3_from_f(texel_extent_of(b)));
 }
 
@@ -105,15 +117,19 @@ static bool read_texel(FormatReader *r, TexelFile *out, FormatTexel *texel) {
     if (!at) return false;
     if (r->section.size < sizeof *texel) return refuse_section(r, "is too short");
     memcpy(texel, at, sizeof *texel);
-    out->bounds = (Box3){{texel->bounds[0], texel->bounds[1], texel->bounds[2]}, {texel->bounds[3], texel->bounds[4], texel->bounds[5]}};
+    out->bounds = (Box3){{texel->bounds[0], texel->bounds[1], texel->bounds[2]},
+                         {texel->bounds[3], texel->bounds[4], texel->bounds[5]}};
     if (texel->name_size > TEXEL_NAME_LARGEST || r->section.size - sizeof *texel != texel->name_size ||
         memchr(at + sizeof *texel, 0, texel->name_size))
         return refuse_section(r, "has a name that does not fit");
     if (!bounds_are_valid(out->bounds)) return refuse_section(r, "has bounds without a volume");
-    if (texel->asked > TEXEL_LARGEST_RESOLUTION || texel->built < 1 || texel->built > TEXEL_LARGEST_RESOLUTION)
+    if (texel->asked > TEXEL_LARGEST_RESOLUTION || texel->built < 1 ||
+        texel->built > TEXEL_LARGEST_RESOLUTION)
         return refuse_section(r, "has no valid resolution");
-    if (texel->cyclic > (TEXEL_CYCLIC_X | TEXEL_CYCLIC_Y | TEXEL_CYCLIC_Z)) return refuse_section(r, "has cyclic axes that there are not");
-    if (texel->layer_count < 1 || texel->layer_count > TEXEL_FILE_MOST_LAYERS) return refuse_section(r, "has no valid number of layers");
+    if (texel->cyclic > (TEXEL_CYCLIC_X | TEXEL_CYCLIC_Y | TEXEL_CYCLIC_Z))
+        return refuse_section(r, "has cyclic axes that there are not");
+    if (texel->layer_count < 1 || texel->layer_count > TEXEL_FILE_MOST_LAYERS)
+        return refuse_section(r, "has no valid number of layers");
     out->asked = (int)texel->asked;
     out->built = (int)texel->built;
     out->cyclic = texel->cyclic;
@@ -176,7 +192,8 @@ static bool read_index(FormatReader *r, VoxelLayer *layer, size_t number, int l)
     const unsigned char *at = open_section(r, SECTION_INDEX, number, l);
     size_t bricks = voxel_level_bricks(level);
     if (!at) return false;
-    if (r->section.size != bricks * sizeof *level->index) return refuse_section(r, "has not the size that it should have");
+    if (r->section.size != bricks * sizeof *level->index)
+        return refuse_section(r, "has not the size that it should have");
     level->index = voxel_layer_allocate(layer, bricks, sizeof *level->index);
     if (!level->index) return lack_memory(r);
     memcpy(level->index, at, bricks * sizeof *level->index);
@@ -189,7 +206,8 @@ static bool read_slices(FormatReader *r, VoxelLayer *layer, size_t number, int l
     enum { SLICES_SIZE = BRICK_SIDE * sizeof(uint64_t) };
     if (!at) return false;
     size_t count = (size_t)r->section.size / SLICES_SIZE;
-    if (r->section.size % SLICES_SIZE || count > voxel_level_bricks(level)) return refuse_section(r, "has not the size that it should have");
+    if (r->section.size % SLICES_SIZE || count > voxel_level_bricks(level))
+        return refuse_section(r, "has not the size that it should have");
     level->bricks = voxel_layer_allocate(layer, count, sizeof *level->bricks);
     if (!level->bricks) return lack_memory(r);
     level->brick_count = count;
@@ -213,37 +231,48 @@ static bool read_codes(FormatReader *r, VoxelLayer *layer, size_t number, int l)
     VoxelLevel *level = &layer->level[l];
     const unsigned char *at = open_section(r, SECTION_CODES, number, l);
     if (!at) return false;
-    if (r->section.size != level->code_count * sizeof *level->codes) return refuse_section(r, "has not the size that the masks ask for");
+    if (r->section.size != level->code_count * sizeof *level->codes)
+        return refuse_section(r, "has not the size that the masks ask for");
     level->codes = voxel_layer_allocate(layer, level->code_count + 2, sizeof *level->codes);
     if (!level->codes) return lack_memory(r);
     memcpy(level->codes, at, (size_t)r->section.size);
     return voxel_level_mark_support(layer, level) || lack_memory(r);
 }
 
-static bool read_voxels(FormatReader *r, const FormatTexel *texel, size_t number, const TexelBuildOptions *options, TexelFileLayer *out) {
+static bool read_voxels(FormatReader *r, const FormatTexel *texel, size_t number,
+                        const TexelBuildOptions *options, TexelFileLayer *out) {
     VoxelLayer *layer = out->voxels = voxel_layer_create(options);
     if (!layer) return lack_memory(r);
     r->section = (FormatSection){.kind = SECTION_TEXEL};
     for (int i = 0; i < 3; i++)
-        if (texel->size[i] != (uint32_t)layer->level[0].size[i]) return refuse_section(r, "has other sizes than its bounds and resolution give");
+        if (texel->size[i] != (uint32_t)layer->level[0].size[i])
+            return refuse_section(r, "has other sizes than its bounds and resolution give");
     for (int l = 0; l < layer->levels; l++)
-        if (!read_index(r, layer, number, l) || !read_slices(r, layer, number, l) || !read_codes(r, layer, number, l)) return false;
+        if (!read_index(r, layer, number, l) || !read_slices(r, layer, number, l) ||
+            !read_codes(r, layer, number, l))
+            return false;
     return true;
 }
 
 static bool read_file(FormatReader *r, MemoryBudget *memory, TexelFile *out) {
     FormatTexel texel;
     if (!read_header(r) || !read_texel(r, out, &texel)) return false;
-    TexelBuildOptions options = {.resolution = out->built, .extent = texel_extent_of(out->bounds), .cyclic = out->cyclic, .memory = memory};
+    TexelBuildOptions options = {.resolution = out->built,
+                                 .extent = texel_extent_of(out->bounds),
+                                 .cyclic = out->cyclic,
+                                 .memory = memory};
     for (size_t i = 0; i < texel.layer_count; i++) {
         out->layer_count = i + 1;
-        if (!read_look(r, i, &out->layers[i]) || !read_voxels(r, &texel, i, &options, &out->layers[i])) return false;
+        if (!read_look(r, i, &out->layers[i]) || !read_voxels(r, &texel, i, &options, &out->layers[i]))
+            return false;
     }
-    if (r->next != r->header.section_count || r->end != r->size) return format_refuse(r, "it is damaged: there is more in it than there should be");
+    if (r->next != r->header.section_count || r->end != r->size)
+        return format_refuse(r, "it is damaged: there is more in it than there should be");
     return true;
 }
 
-TexelFileStatus texel_file_decode(const unsigned char *data, size_t size, MemoryBudget *memory, TexelFile *out, StrBuf *error) {
+TexelFileStatus texel_file_decode(const unsigned char *data, size_t size, MemoryBudget *memory,
+                                  TexelFile *out, StrBuf *error) {
     FormatReader reader = {.data = data, .size = size, .error = error};
     *out = (TexelFile){0};
     if (read_file(&reader, memory, out)) return TEXEL_FILE_OK;

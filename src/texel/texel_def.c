@@ -17,7 +17,8 @@ static const Texture *texture_of(const TexelFileLayer *layer, Span span, Arena *
     pigment_rehash(pigment);
     *finish = layer->finish;
     finish_rehash(finish);
-    *texture = (Texture){.span = span, .pigment = pigment, .finish = finish, .transform = transform_identity()};
+    *texture =
+        (Texture){.span = span, .pigment = pigment, .finish = finish, .transform = transform_identity()};
     texture_rehash(texture);
     return texture;
 }
@@ -25,12 +26,19 @@ static const Texture *texture_of(const TexelFileLayer *layer, Span span, Arena *
 void texel_def_from_file(const TexelFile *file, const char *path, Span span, Arena *arena, TexelDef *out) {
     TexelLayer *layers = arena_new_array(arena, TexelLayer, file->layer_count);
     for (size_t i = 0; i < file->layer_count; i++) {
-        layers[i] = (TexelLayer){.span = span, .texture = texture_of(&file->layers[i], span, arena), .hash = file->content};
+        layers[i] = (TexelLayer){
+            .span = span, .texture = texture_of(&file->layers[i], span, arena), .hash = file->content};
         hash_add_u64(&layers[i].hash, i);
     }
-    *out = (TexelDef){.span = span, .name = arena_strdup(arena, file->name), .bounds = file->bounds, .resolution = file->built,
-                      .cyclic = file->cyclic, .layers = layers, .layer_count = file->layer_count,
-                      .file = arena_strdup(arena, path), .file_content = file->content};
+    *out = (TexelDef){.span = span,
+                      .name = arena_strdup(arena, file->name),
+                      .bounds = file->bounds,
+                      .resolution = file->built,
+                      .cyclic = file->cyclic,
+                      .layers = layers,
+                      .layer_count = file->layer_count,
+                      .file = arena_strdup(arena, path),
+                      .file_content = file->content};
     texel_rehash(out);
 }
 

@@ -39,9 +39,11 @@ static void end_section(Writer *w) {
 static void write_texel(Writer *w, const TexelFile *file) {
     const VoxelLevel *finest = &file->layers[0].voxels->level[0];
     const char *name = file->name ? file->name : "";
-    FormatTexel texel = {.bounds = {file->bounds.min.x, file->bounds.min.y, file->bounds.min.z, file->bounds.max.x,
-                                    file->bounds.max.y, file->bounds.max.z},
-                         .asked = (uint32_t)file->asked, .built = (uint32_t)file->built, .cyclic = file->cyclic,
+    FormatTexel texel = {.bounds = {file->bounds.min.x, file->bounds.min.y, file->bounds.min.z,
+                                    file->bounds.max.x, file->bounds.max.y, file->bounds.max.z},
+                         .asked = (uint32_t)file->asked,
+                         .built = (uint32_t)file->built,
+                         .cyclic = file->cyclic,
                          .layer_count = (uint32_t)file->layer_count,
                          .name_size = (uint32_t)size_min(strlen(name), TEXEL_NAME_LARGEST)};
     for (int i = 0; i < 3; i++) texel.size[i] = (uint32_t)finest->size[i];
@@ -97,8 +99,11 @@ unsigned char *texel_file_encode(const TexelFile *file, size_t *size) {
     if (data && table) {
         Writer w = {.data = data, .table = table, .end = sizeof(FormatHeader) + table_size};
         write_sections(&w, file);
-        FormatHeader header = {.version = TEXEL_FILE_VERSION, .byte_order = TEXEL_BYTE_ORDER, .file_size = sizes.end,
-                               .section_count = (uint32_t)sizes.section_count, .key = file->key};
+        FormatHeader header = {.version = TEXEL_FILE_VERSION,
+                               .byte_order = TEXEL_BYTE_ORDER,
+                               .file_size = sizes.end,
+                               .section_count = (uint32_t)sizes.section_count,
+                               .key = file->key};
         memcpy(header.magic, TEXEL_MAGIC, sizeof header.magic);
         header.checksum = format_header_checksum(&header, table, table_size);
         memcpy(data, &header, sizeof header);

@@ -26,18 +26,18 @@ enum { TEXEL_FILE_VERSION = 1, TEXEL_BUILDER_VERSION = 1, TEXEL_FILE_MOST_LAYERS
 
 typedef struct TexelFileLayer {
     VoxelLayer *voxels;
-    Color color;    /* linear */
-    Finish finish;  /* its hash is not stored */
-    bool averaged;  /* `color` is the mean of a pattern */
+    Color color;   /* linear */
+    Finish finish; /* its hash is not stored */
+    bool averaged; /* `color` is the mean of a pattern */
 } TexelFileLayer;
 
 typedef struct TexelFile {
     char *name;
-    Box3 bounds;       /* finite, with volume */
-    int asked, built;  /* resolutions; asked 0: auto */
-    unsigned cyclic;   /* TEXEL_CYCLIC_… */
-    Hash128 key;       /* of a cache: what the voxels were built from; else 0 */
-    Hash128 content;   /* of all that the file holds; set by reading */
+    Box3 bounds;      /* finite, with volume */
+    int asked, built; /* resolutions; asked 0: auto */
+    unsigned cyclic;  /* TEXEL_CYCLIC_… */
+    Hash128 key;      /* of a cache: what the voxels were built from; else 0 */
+    Hash128 content;  /* of all that the file holds; set by reading */
     TexelFileLayer *layers;
     size_t layer_count; /* 1 … TEXEL_FILE_MOST_LAYERS, all of one size and `cyclic` */
 } TexelFile;
@@ -52,7 +52,8 @@ typedef enum TexelFileStatus {
 unsigned char *texel_file_encode(const TexelFile *file, size_t *size);
 /* From the bytes of a file. On success the caller calls texel_file_release(); otherwise *out is empty and `error` (may be NULL)
  * has one line that begins "it …" or "the …". */
-TexelFileStatus texel_file_decode(const unsigned char *data, size_t size, MemoryBudget *memory, TexelFile *out, StrBuf *error);
+TexelFileStatus texel_file_decode(const unsigned char *data, size_t size, MemoryBudget *memory,
+                                  TexelFile *out, StrBuf *error);
 
 /* Writes the file whole or not at all; false with a line of text in `error` (may be NULL). */
 bool texel_file_save(const TexelFile *file, const char *path, StrBuf *error);

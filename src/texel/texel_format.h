@@ -20,7 +20,13 @@ typedef struct FormatHeader {
 } FormatHeader;
 static_assert(sizeof(FormatHeader) == 64, "the header has no gaps");
 
-typedef enum SectionKind { SECTION_TEXEL = 1, SECTION_LOOK, SECTION_INDEX, SECTION_SLICES, SECTION_CODES } SectionKind;
+typedef enum SectionKind {
+    SECTION_TEXEL = 1,
+    SECTION_LOOK,
+    SECTION_INDEX,
+    SECTION_SLICES,
+    SECTION_CODES
+} SectionKind;
 enum { SECTIONS_PER_LEVEL = 3 };
 
 typedef struct FormatSection {
@@ -48,14 +54,17 @@ typedef struct FormatLook {
 static inline void look_numbers(TexelFileLayer *layer, double *out[LOOK_NUMBERS]) {
     Finish *f = &layer->finish;
     Color *colors[] = {&layer->color, &f->ambient, &f->emission, &f->reflection_min, &f->reflection_max};
-    double *rest[] = {&f->diffuse, &f->transmission, &f->brilliance, &f->specular, &f->roughness, &f->phong, &f->phong_size, &f->metallic};
+    double *rest[] = {&f->diffuse,   &f->transmission, &f->brilliance, &f->specular,
+                      &f->roughness, &f->phong,        &f->phong_size, &f->metallic};
     size_t n = 0;
     for (size_t i = 0; i < VTS_ARRAY_COUNT(colors); i++) {
-        double *parts[] = {&colors[i]->red, &colors[i]->green, &colors[i]->blue, &colors[i]->filter, &colors[i]->transmit};
+        double *parts[] = {&colors[i]->red, &colors[i]->green, &colors[i]->blue, &colors[i]->filter,
+                           &colors[i]->transmit};
         for (size_t k = 0; k < VTS_ARRAY_COUNT(parts); k++) out[n++] = parts[k];
     }
     for (size_t i = 0; i < VTS_ARRAY_COUNT(rest); i++) out[n++] = rest[i];
-    static_assert(VTS_ARRAY_COUNT(colors) * 5 + VTS_ARRAY_COUNT(rest) + 1 == LOOK_NUMBERS, "every number has its place");
+    static_assert(VTS_ARRAY_COUNT(colors) * 5 + VTS_ARRAY_COUNT(rest) + 1 == LOOK_NUMBERS,
+                  "every number has its place");
 }
 
 static inline Hash128 format_checksum(const void *data, size_t size) {
@@ -64,11 +73,14 @@ static inline Hash128 format_checksum(const void *data, size_t size) {
     return hash;
 }
 /* Of the header (but its last field) and the table. */
-static inline Hash128 format_header_checksum(const FormatHeader *header, const void *table, size_t table_size) {
+static inline Hash128 format_header_checksum(const FormatHeader *header, const void *table,
+                                             size_t table_size) {
     Hash128 hash = format_checksum(header, offsetof(FormatHeader, checksum));
     hash_add(&hash, table, table_size);
     return hash;
 }
-static inline uint64_t format_align(uint64_t offset) { return (offset + TEXEL_ALIGNMENT - 1) / TEXEL_ALIGNMENT * TEXEL_ALIGNMENT; }
+static inline uint64_t format_align(uint64_t offset) {
+    return (offset + TEXEL_ALIGNMENT - 1) / TEXEL_ALIGNMENT * TEXEL_ALIGNMENT;
+}
 
 #endif

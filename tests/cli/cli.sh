@@ -51,7 +51,7 @@ case_help() {
   run; want_status 2; want_empty out; want_in err Usage
   run help compare; want_status 0; want_in out --diff
   local command
-  for command in render check run; do
+  for command in render check run texel; do
     run $command --help; want_status 0; want_empty err; want_in out "Usage: vts $command"; want_in out --include
     cp out first; run help $command; want_status 0; cmp -s first out || fail "help $command is not $command --help"
     run $command -h; want_status 0
@@ -83,7 +83,7 @@ case_usage() {
   refused check scene.vts --alpha
   refused render scene.vts --alpha=1
   local word
-  for word in chart farm texel info stitch; do refused $word scene.vts; want_in err 'not available in this version'; done
+  for word in chart farm info stitch; do refused $word scene.vts; want_in err 'not available in this version'; done
   for word in --resume --preview=h:1 --aov=depth --frames=1-3 -f1-3; do refused render scene.vts $word; want_in err 'not available in this version'; done
   want_only scene.vts
 }
@@ -198,6 +198,120 @@ case_compare() {
   refused compare a.png; refused compare a.png a.png a.png; refused compare a.png a.png --metric ssim; want_in err rmse
   refused compare a.png a.png -s 3x3
   want_only scene.vts a.png b.exr wide.png map.png map.exr
+}
+
+texel_scene() {
+  cat >texels.vts <<'S'
+#declare Ball = texel { bounds <0, 0, 0>, <1, 1, 2> cyclic x resolution 16
+  layer { sphere { <0.5, 0.5, 1>, 0.3 } texture { pigment { rgb <0.8, 0.3, 0.1> } finish { specular 0.4 diffuse 0.5, 0.2 } } }
+  layer { box { <0.1, 0, 0.2>, <0.2, 0.9, 1.5> } texture { pigment { rgb <0.1, 0.5, 0.2> } } } }
+#declare Checked = texel { layer { sphere { 0.5, 0.4 } texture { pigment { checker rgb x, rgb y } } } }
+#declare Both = texel { choose Ball, Checked }
+#declare Trees = array[2] { Ball, Checked }
+S
+  cat >ground.inc <<'S'
+camera { location <0, 2, -3> look_at 0 right x*image_width/image_height }
+light_source { <-20, 30, -25> rgb 1 }
+background { rgb <0.5, 0.7, 1> }
+skin { surface { patch_grid 2, 2 function(u, v) { <4*u - 2, 0.2*sin(5*u), 4*v - 2> } } texel { Ball } mapping { repeat <3, 3> height 0.6 } }
+object { Ball scale 0.5 translate <1, 0.5, -1> }
+S
+}
+
+case_texel() {
+  texel_scene
+  run texel texels.vts Ball; want_status 0; want_empty err
+  want_in out 'texel Ball: bounds <0, 0, 0>, <1, 1, 2>, cyclic: x'
+  want_in out 'layer 2 of 2'; want_in out '8 x 8 x 16'; want_in out '1 x 1 x 1'; want_in out 'resolution: 16 asked, 16 built'; want_in out 'built in'
+  grep -qE '^stored: [0-9]+ voxels, [0-9.]+ kB$' out || fail "no sum: $(cat out)"
+  run texel texels.vts 'Trees[0]' -o ball.ppm -s 40x30; want_status 0; want_file ball.ppm
+  [ "$(sed -n 2p ball.ppm)" = "40 30" ] || fail "the picture has not the size asked for"
+  tail -c 3600 ball.ppm | od -An -tu1 -w3 -v | sort -u | wc -l | { read -r colours; [ "$colours" -gt 50 ]; } || fail "there is nothing in the picture"
+  run texel texels.vts Checked; want_status 0; want_in out '128 built'
+  # A sphere of radius 0.4 hides 0.503 of the unit square behind it.
+  awk '$1 == 0 { ok = $NF > 0.48 && $NF < 0.53 && $(NF - 1) > 0.48 && $(NF - 1) < 0.53 } END { exit !ok }' out || fail "coverage: $(cat out)"
+  run texel texels.vts Bal; want_status 2; want_empty out; want_in err "did you mean 'Ball'?"; want_in err 'Ball, Both, Checked, Trees[0], Trees[1]'
+  run texel texels.vts Both; want_status 2; want_in err 'Ball, Checked'
+  refused texel texels.vts; refused texel; refused texel texels.vts Ball Checked; refused texel texels.vts Ball --report r.json
+  run texel none.vts Ball; want_status 3
+  run texel texels.vts Ball --save no/such.vtx; want_status 3; want_empty out
+  run texel texels.vts Ball -o no/such.png; want_status 3
+  echo 'sphere { 0, }' >wrong.vts
+  run texel wrong.vts Ball; want_status 1
+  echo '#declare P = texel { layer { intersection { plane { y, 0 } plane { x, 0 } } } }' >endless.vts
+  run texel endless.vts P --save p.vtx; want_status 1; want_in err 'endless.vts:1:'
+  want_only texels.vts ground.inc ball.ppm wrong.vts endless.vts
+}
+
+case_texel_file() {
+  texel_scene
+  run texel texels.vts Ball --save ball.vtx; want_status 0; want_file ball.vtx
+  run texel texels.vts Ball --save again.vtx -t 1; want_status 0
+  cmp -s ball.vtx again.vtx || fail "the same texel gave other bytes"
+  run texel texels.vts Checked --save checked.vtx; want_status 0; want_in err 'mean colour'
+  { cat texels.vts; echo '#include "ground.inc"'; } >built.vts
+  { echo '#declare Ball = texel { "ball.vtx" }'; echo '#include "ground.inc"'; } >loaded.vts
+  run render built.vts -s 64x48 -o built.pfm; want_status 0
+  run render loaded.vts -s 64x48 -o loaded.pfm --report report.json; want_status 0; want_empty err
+  cmp -s built.pfm loaded.pfm || fail "a loaded texel is drawn otherwise than a built one"
+  grep -q '"name":"Ball".*"cached":true' report.json || fail "not loaded: $(cat report.json)"
+  echo '#declare B = texel { "ball.vtx" }' >again.vts
+  run texel again.vts B --save third.vtx; want_status 0; want_in out 'loaded in'
+  # In a skin a file's name stands where a texel's does.
+  sed 's/texel { Ball }/texel { "ball.vtx" density 1 }/; s/object { Ball/object { texel { "ball.vtx" }/' ground.inc >inline.vts
+  run render inline.vts -s 64x48 -o inline.pfm; want_status 0
+  cmp -s built.pfm inline.pfm || fail "a texel named in the skin is drawn otherwise"
+  # Damaged at any place, cut, not there, not allowed: the scene is wrong at that name.
+  head -c 3000 ball.vtx >cut.vtx
+  cp ball.vtx bent.vtx; printf 'altered' | dd of=bent.vtx bs=1 seek=2500 conv=notrunc 2>/dev/null
+  mkdir far; cp ball.vtx far
+  local name
+  for name in cut bent none; do
+    echo "#declare Ball = texel { \"$name.vtx\" }" >broken.vts
+    run check broken.vts; want_status 1; want_in err "broken.vts:1:25: error"; want_in err "$name.vtx"
+  done
+  mkdir near; echo '#declare Ball = texel { "../far/ball.vtx" }' >near/scene.vts
+  run check near/scene.vts; want_status 1; want_in err 'may not read'
+  run check near/scene.vts --allow-read far; want_status 0
+  echo '#declare Ball = texel { "ball.vtx" }' >near/scene.vts
+  run check near/scene.vts -I far; want_status 0
+}
+
+case_cache() {
+  texel_scene
+  { cat texels.vts; echo '#include "ground.inc"'; } >scene.vts
+  run render scene.vts -s 64x48 -o plain.pfm --cache off --report first.json; want_status 0
+  grep -q '"cached":true' first.json && fail "cached without a cache"
+  run render scene.vts -s 64x48 -o cold.pfm --cache kept --report cold.json; want_status 0; want_empty err
+  grep -q '"cached":true' cold.json && fail "an empty cache gave a texel"
+  run render scene.vts -s 64x48 -o warm.pfm --cache kept --report warm.json; want_status 0
+  grep -q '"cached":true' warm.json || fail "nothing came from the cache: $(cat warm.json)"
+  [ "$(ls kept | wc -l)" = 2 ] || fail "the cache holds $(ls kept)"
+  # Another colour is the same geometry; another radius is not.
+  sed 's/rgb <0.8, 0.3, 0.1>/rgb <0.1, 0.3, 0.9>/' scene.vts >blue.vts
+  run render blue.vts -s 64x48 -o blue.pfm --cache kept --report blue.json; want_status 0
+  grep -q '"cached":true' blue.json || fail "a colour made the cache useless"
+  cmp -s blue.pfm warm.pfm && fail "the cache kept a colour"
+  sed 's/, 0.3 }/, 0.31 }/' scene.vts >large.vts
+  run render large.vts -s 64x48 -o large.pfm --cache kept --report large.json; want_status 0
+  grep -q '"cached":true' large.json && fail "another radius came from the cache"
+  # Broken files are as good as none, and are written anew.
+  local file
+  for file in kept/*; do printf 'broken' >"$file"; done
+  run render scene.vts -s 64x48 -o healed.pfm --cache kept --report healed.json; want_status 0; want_empty err
+  grep -q '"cached":true' healed.json && fail "a broken file was used"
+  run render scene.vts -s 64x48 -o healed.pfm --cache kept --report healed.json
+  grep -q '"cached":true' healed.json || fail "a broken file stayed"
+  for file in cold warm healed; do cmp -s plain.pfm $file.pfm || fail "$file.pfm differs"; done
+  # Several at once.
+  rm -rf kept
+  for file in 1 2 3 4; do "$vts" render scene.vts -t 1 -s 64x48 -o p$file.pfm --cache kept >/dev/null 2>p$file.err & done
+  wait
+  for file in 1 2 3 4; do cmp -s plain.pfm p$file.pfm || fail "process $file drew otherwise: $(cat p$file.err)"; done
+  ls -A kept | grep -v '^[0-9a-f]\{32\}\.vtx$' && fail "left in the cache"
+  echo file >plain
+  run render scene.vts -s 64x48 -o a.pfm --cache plain; want_status 0; want_in err 'the cache stays as it is'
+  refused render scene.vts --cache=
 }
 
 case_streams() {

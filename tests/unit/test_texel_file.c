@@ -19,7 +19,8 @@
 
 static VoxelLayer *build(TestMesh mesh, int resolution, unsigned cyclic, Vec3f extent, MemoryBudget *memory) {
     TexelMesh view = scene_view(&mesh);
-    TexelBuildOptions options = {.resolution = resolution, .extent = extent, .cyclic = cyclic, .memory = memory};
+    TexelBuildOptions options = {
+        .resolution = resolution, .extent = extent, .cyclic = cyclic, .memory = memory};
     VoxelLayer *layer = voxel_layer_build(&view, &options, NULL);
     scene_free(&mesh);
     return layer;
@@ -29,7 +30,8 @@ static VoxelLayer *build(TestMesh mesh, int resolution, unsigned cyclic, Vec3f e
 static TexelFile meadow(int resolution, unsigned cyclic) {
     Box3 bounds = {{-1, 0, 2}, {1, 1, 3.5}};
     Vec3f extent = vec3f(1, .5f, .75f);
-    TexelFile file = {.bounds = bounds, .asked = resolution, .built = resolution, .cyclic = cyclic, .layer_count = 2};
+    TexelFile file = {
+        .bounds = bounds, .asked = resolution, .built = resolution, .cyclic = cyclic, .layer_count = 2};
     file.name = calloc(1, 7);
     memcpy(file.name, "Meadow", 7);
     file.layers = calloc(2, sizeof *file.layers);
@@ -39,7 +41,8 @@ static TexelFile meadow(int resolution, unsigned cyclic) {
         look_numbers(layer, numbers);
         for (size_t k = 0; k < LOOK_NUMBERS - 1; k++) *numbers[k] = 0.125 * (double)k + (double)i;
         layer->finish.fresnel = layer->averaged = i == 1;
-        layer->voxels = build(i ? scene_grass(40, .4, .02, 3) : scene_leaves(60, .05, 2), resolution, cyclic, extent, NULL);
+        layer->voxels = build(i ? scene_grass(40, .4, .02, 3) : scene_leaves(60, .05, 2), resolution, cyclic,
+                              extent, NULL);
         assert_non_null(layer->voxels);
     }
     return file;
@@ -57,7 +60,9 @@ static Bytes encode(const TexelFile *file) {
     return b;
 }
 
-static TexelFileStatus decode(Bytes b, TexelFile *out, StrBuf *error) { return texel_file_decode(b.data, b.size, NULL, out, error); }
+static TexelFileStatus decode(Bytes b, TexelFile *out, StrBuf *error) {
+    return texel_file_decode(b.data, b.size, NULL, out, error);
+}
 
 static void test_what_is_written_comes_back(void **state) {
     (void)state;
@@ -75,11 +80,14 @@ static void test_what_is_written_comes_back(void **state) {
         assert_true(hash_equal(back.key, file.key));
         assert_int_equal(back.layer_count, 2);
         for (size_t k = 0; k < 2; k++) {
-            assert_true(hash_equal(voxel_layer_hash(back.layers[k].voxels), voxel_layer_hash(file.layers[k].voxels)));
-            assert_int_equal(voxel_layer_bytes(back.layers[k].voxels), voxel_layer_bytes(file.layers[k].voxels));
+            assert_true(
+                hash_equal(voxel_layer_hash(back.layers[k].voxels), voxel_layer_hash(file.layers[k].voxels)));
+            assert_int_equal(voxel_layer_bytes(back.layers[k].voxels),
+                             voxel_layer_bytes(file.layers[k].voxels));
             assert_memory_equal(&back.layers[k].color, &file.layers[k].color, sizeof(Color));
             assert_true(back.layers[k].finish.metallic == file.layers[k].finish.metallic);
-            assert_true(back.layers[k].finish.reflection_max.transmit == file.layers[k].finish.reflection_max.transmit);
+            assert_true(back.layers[k].finish.reflection_max.transmit ==
+                        file.layers[k].finish.reflection_max.transmit);
             assert_int_equal(back.layers[k].finish.fresnel, k == 1);
             assert_int_equal(back.layers[k].averaged, k == 1);
         }
@@ -119,7 +127,8 @@ static void sign(Bytes b) {
         section.checksum = format_checksum(b.data + section.offset, (size_t)section.size);
         memcpy(at, &section, sizeof section);
     }
-    header.checksum = format_header_checksum(&header, b.data + sizeof header, header.section_count * sizeof(FormatSection));
+    header.checksum =
+        format_header_checksum(&header, b.data + sizeof header, header.section_count * sizeof(FormatSection));
     memcpy(b.data, &header, sizeof header);
 }
 
@@ -136,7 +145,8 @@ static void test_altered_files_are_refused(void **state) {
             for (uint64_t flips = 1 + random_next(&random) % 3; flips; flips--)
                 b.data[random_next(&random) % b.size] ^= (unsigned char)(1u << random_next(&random) % 8);
         StrBuf error = {0};
-        bool same = b.size == whole.size && memcmp(b.data, whole.data, whole.size) == 0; /* a bit turned twice */
+        bool same =
+            b.size == whole.size && memcmp(b.data, whole.data, whole.size) == 0; /* a bit turned twice */
         /* Exactly as long as the file, so that a sanitizer sees what reads past it. */
         Bytes exact = {malloc(b.size ? b.size : 1), b.size};
         memcpy(exact.data, b.data, b.size);
@@ -156,7 +166,8 @@ static void test_hostile_files_do_no_harm(void **state) {
     RandomStream random = {6};
     TexelFile file = meadow(16, TEXEL_CYCLIC_Z), back;
     Bytes whole = encode(&file);
-    size_t header_end = sizeof(FormatHeader) + (1 + 2 * (1 + SECTIONS_PER_LEVEL * 5)) * sizeof(FormatSection), accepted = 0;
+    size_t header_end = sizeof(FormatHeader) + (1 + 2 * (1 + SECTIONS_PER_LEVEL * 5)) * sizeof(FormatSection),
+           accepted = 0;
     for (int i = 0; i < CASES; i++) {
         Bytes b = {malloc(whole.size), whole.size};
         memcpy(b.data, whole.data, whole.size);
@@ -165,8 +176,10 @@ static void test_hostile_files_do_no_harm(void **state) {
             size_t at = random_next(&random) % (i % 2 ? size_min(b.size, header_end + 400) : b.size);
             static const uint32_t words[] = {0, 1, 7, 0x7fffffff, 0x80000000u, 0xffffffffu, 1024, 65535};
             uint32_t word = words[random_next(&random) % VTS_ARRAY_COUNT(words)];
-            if (at + 4 <= b.size && random_next(&random) % 2) memcpy(b.data + at / 4 * 4, &word, 4);
-            else b.data[at] ^= (unsigned char)(1u << random_next(&random) % 8);
+            if (at + 4 <= b.size && random_next(&random) % 2)
+                memcpy(b.data + at / 4 * 4, &word, 4);
+            else
+                b.data[at] ^= (unsigned char)(1u << random_next(&random) % 8);
         }
         sign(b);
         MemoryBudget memory = {.limit = 80 * b.size + 65536};
@@ -229,7 +242,11 @@ static void test_headers_of_others(void **state) {
         size_t at;
         unsigned char value;
         const char *says;
-    } cases[] = {{0, 'P', "not a texel file"}, {8, 2, "version 2"}, {12, 1, "byte order"}, {16, 1, "should have"}, {48, 7, "checksum of its header"}};
+    } cases[] = {{0, 'P', "not a texel file"},
+                 {8, 2, "version 2"},
+                 {12, 1, "byte order"},
+                 {16, 1, "should have"},
+                 {48, 7, "checksum of its header"}};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(cases); i++) {
         Bytes b = encode(&file);
         StrBuf error = {0};
@@ -281,9 +298,12 @@ static void test_files_on_disk(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_is_written_comes_back), cmocka_unit_test(test_altered_files_are_refused),
-        cmocka_unit_test(test_hostile_files_do_no_harm),   cmocka_unit_test(test_refusals_name_what_is_wrong),
-        cmocka_unit_test(test_headers_of_others),          cmocka_unit_test(test_memory_that_runs_out),
+        cmocka_unit_test(test_what_is_written_comes_back),
+        cmocka_unit_test(test_altered_files_are_refused),
+        cmocka_unit_test(test_hostile_files_do_no_harm),
+        cmocka_unit_test(test_refusals_name_what_is_wrong),
+        cmocka_unit_test(test_headers_of_others),
+        cmocka_unit_test(test_memory_that_runs_out),
         cmocka_unit_test(test_files_on_disk),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,59 @@
+/* Inside of a session, for the files that make up the library's calls. */
+#ifndef VTS_VTS_SESSION_H
+#define VTS_VTS_SESSION_H
+
+#include "vts.h"
+
+#include "eval/eval.h"
+#include "image/image.h"
+#include "render/render.h"
+
+#include <setjmp.h>
+
+struct VtsSession {
+    VtsOptions options;
+    MemoryBudget memory;
+    jmp_buf out_of_memory; /* valid while `guarded` */
+    Pool *pool;
+    TexelCache *texels; /* built and loaded, from one call to the next */
+    Progress progress;
+    atomic_bool interrupted; /* set from signal handlers and other threads */
+    /* of the session */
+    Arena arena;
+    SourceSet sources;
+    DiagList diags;
+    Interner names;
+    StrBuf stdlib, printed, report;
+    const Diagnostic *last_printed;
+    /* of one call */
+    Arena parse, scene_arena, compiled_arena;
+    const Scene *scene;
+    Scene scene_with_settings;
+    CompiledScene compiled;
+    Image picture;
+    double started_wall, started_cpu;
+};
+
+typedef struct EvalMode {
+    bool writes_in_memory, is_program, print_tokens, print_ast;
+} EvalMode;
+
+/* Stages of a call. Those that return a status have told why it is not VTS_OK. */
+
+/* Evaluates the scene into session->scene. */
+VtsStatus session_evaluate(VtsSession *session, const char *path, EvalMode mode);
+/* Prepares session->scene for drawing, or for the reference (exact); texel_resolution: see CompileOptions. */
+VtsStatus session_compile(VtsSession *session, bool exact, int texel_resolution);
+/* Draws session->compiled into session->picture. */
+VtsStatus session_draw(VtsSession *session, bool exact, RenderStats *stats);
+VtsStatus session_save_picture(VtsSession *session, const char *scene_path, const char *output_path);
+/* Tells that there is no picture, and why. */
+VtsStatus session_file_error(VtsSession *session, const StrBuf *why);
+/* Passes on what was found since the last time. */
+void session_print_diagnostics(VtsSession *session);
+
+/* vts_texel.c: vts_texel() without its guard. */
+VtsStatus session_texel(VtsSession *session, const char *scene_path, const char *name, const char *save_path,
+                        const char *picture_path);
+
+#endif

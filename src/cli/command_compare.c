@@ -73,7 +73,7 @@ int command_compare(Settings *settings) {
     VtsStatus status = vts_compare(settings->scenes.items[0], settings->scenes.items[1], settings->diff, &d, error, sizeof error);
     if (status != VTS_OK) {
         complain(settings, "%s", error);
-        return status;
+        return (int)status;
     }
     if (d.not_finite)
         complain_warning(settings, "%zu samples are infinite or no numbers", d.not_finite);

@@ -138,7 +138,7 @@ static void never_closed(Parser *p, const Token *open, Span end, const char *nam
 static bool is_misplaced(Parser *p, Name block) {
     const Token *t = parser_peek(p);
     return block && t->kind == TOKEN_WORD && t->keyword && parser_peek_after(p)->kind == '{' &&
-           nesting_never(keyword_of(p->keywords, block), t->keyword);
+           nesting_never((int)keyword_of(p->keywords, block), t->keyword);
 }
 
 static Node *missing_close(Parser *p, const Token *open, Name block) {

@@ -29,7 +29,6 @@ static const Case errors[] = {
      "1:21: this cylinder is degenerate: its base and cap points are the same", NULL},
     {"cone { 0, 1, 0, 0.5 }", "1:14: this cone is degenerate: its base and cap points are the same", NULL},
     {"plane { 0, 1 }", "1:9: the normal of 'plane' has no length", NULL},
-    {"disc { 0, 0, 1 }", "1:11: the normal of 'disc' has no length", NULL},
     {"mesh { triangle { 0, x, x } }", "1:1: 'mesh' without triangles", NULL},
     {"mesh2 { vertex_vectors { 3, 0, x, y } face_indices { 1, <0,1,3> } }",
      "1:57: triangle 0: there is no vertex 3; they count from 0 to 2", NULL},
@@ -48,13 +47,10 @@ static const Case errors[] = {
     {"sphere { Ball 1 }", "1:10: 'Ball' is not declared", NULL},
     {"camera { location 0 look_at 0 }", "1:21: the camera looks at its own location", NULL},
     {"camera { angle 180 }", "1:16: the angle of this camera must be less than 180 degrees, found 180", NULL},
-    {"camera { right 0 }", "1:1: the camera's direction, right and up span no space", NULL},
     {"camera { loction 0 }", "1:10: 'loction' is neither declared nor a word of 'camera'",
      "did you mean 'location'?"},
     {"light_source { 0, rgb 1 spotligth }",
      "1:25: 'spotligth' is neither declared nor a word of 'light_source'", "did you mean 'spotlight'?"},
-    {"light_source { 0, rgb 1 parallel point_at 0 }",
-     "1:1: this light has no direction: it stands where it points at", NULL},
     {"pigment { graddient y }", "1:11: 'graddient' is neither declared nor a word of 'pigment'",
      "did you mean 'gradient'?"},
     {"pigment { <1,0,0> }", "1:11: a vector has no meaning here in 'pigment'", NULL},
@@ -124,6 +120,10 @@ static const Case errors[] = {
 };
 
 static const Case warnings[] = {
+    {"disc { 0, 0, 1 }", "1:11: the normal of 'disc' has no length: nothing will be seen", NULL},
+    {"camera { right 0 } sphere { 0, 1 }", "1:1: the camera's direction, right and up span no space", NULL},
+    {"light_source { 0, rgb 1 parallel point_at 0 } sphere { 0, 1 }",
+     "1:1: this light has no direction, for it stands where it points at: it lights nothing", NULL},
     {"sphere { 0, 1 scale <2, 0, 3> }", "1:21: scale by 0 along y is changed to 1", NULL},
     {"sphere { 0, -1 }", "1:13: the radius of 'sphere' is negative: -1 is taken as 1", NULL},
     {"union { sphere { 0, 1 } }", "1:1: 'union' should hold at least 2 objects, found 1", NULL},

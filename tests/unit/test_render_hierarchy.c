@@ -236,7 +236,7 @@ static void unions_are_flattened(void **state) {
     world_begin(&w);
     Texture own = w.texture;
     const Transform right = transform_translate(vec3(2, 0, 0));
-    Object ball = {.kind = OBJECT_SPHERE, .place = PLACE(right), .as.sphere = {{0, 0, 0}, 1}};
+    Object ball = {.kind = OBJECT_SPHERE, .place = PLACE(right), .as.sphere = {{0, 0, 0}, 1, 0}};
     Object box = {.kind = OBJECT_BOX, .as.box = {{-1, -1, -1}, {1, 1, 1}}, .texture = &own};
     const Object *inner[] = {&ball, &box};
     Object *o = world_add(&w, OBJECT_UNION);

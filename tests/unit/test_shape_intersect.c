@@ -85,7 +85,7 @@ static Vec3 random_vec(RandomStream *random) {
 }
 
 static Object random_solid(RandomStream *random, int i) {
-    Object object = {.kind = (ObjectKind[]){OBJECT_SPHERE, OBJECT_BOX, OBJECT_CONE, OBJECT_TORUS}[i % 4]};
+    Object object = {.kind = (uint8_t[]){OBJECT_SPHERE, OBJECT_BOX, OBJECT_CONE, OBJECT_TORUS}[i % 4]};
     switch (object.kind) {
     case OBJECT_SPHERE:
         object.as.sphere.center = random_vec(random);
@@ -336,7 +336,7 @@ static void rays_that_start_on_a_convex_solid_leave_it(void **state) {
 
 static void spheres_are_met_to_the_last_digits_of_their_rim(void **state) {
     (void)state;
-    const Object object = {.kind = OBJECT_SPHERE, .as.sphere = {{0, 0, 0}, 1}};
+    const Object object = {.kind = OBJECT_SPHERE, .as.sphere = {{0, 0, 0}, 1, 0}};
     for (int i = 1; i < 15; i++) {
         double gap = pow(10, -i);
         Ray within = {{-5, 1 - gap, 0}, {1, 0, 0}}, beyond = {{-5, 1 + gap, 0}, {1, 0, 0}};
@@ -378,7 +378,7 @@ static void no_ray_slips_through_rims_and_edges(void **state) {
 
 static void rays_nearly_along_a_generator_keep_their_digits(void **state) {
     (void)state;
-    Object object = {.kind = OBJECT_CONE, .as.cone = {{0, 0, 0}, {0, 1, 0}, 1, 0, false}};
+    Object object = {.kind = OBJECT_CONE, .as.cone = {{0, 0, 0}, {0, 1, 0}, 1, 0, false, 0}};
     for (int i = 1; i < 18; i++) {
         /* Down beside the generator x = 1 - y: in by the side, out by the base. */
         double tilt = (i & 1 ? 1 : -1) * pow(10, -i);
@@ -418,7 +418,7 @@ static void sheets_and_planes(void **state) {
     (void)state;
     const Object plane = {.kind = OBJECT_PLANE, .as.plane = {{0, 1, 0}, 2}};
     const Object disc = {.kind = OBJECT_DISC, .as.disc = {{1, 0, 0}, {0, 0, -3}, 2, 0.5}};
-    const Object tube = {.kind = OBJECT_CYLINDER, .as.cone = {{0, 0, 0}, {0, 2, 0}, 1, 1, true}};
+    const Object tube = {.kind = OBJECT_CYLINDER, .as.cone = {{0, 0, 0}, {0, 2, 0}, 1, 1, true, 0}};
     Ray down = {{7, 5, -3}, {1, -2, 0}}, level = {{0, 2, 0}, {1, 0, 0}}, through = {{2.5, 0, 4}, {0, 0, -2}};
     ShapeHit hit;
     assert_true(shape_intersect(&plane, &down, 0, 10, &hit));
@@ -441,13 +441,13 @@ static void what_is_degenerate_is_missed_without_harm(void **state) {
     const double nan_value = (double)NAN;
     const Object objects[] = {
         {.kind = OBJECT_SPHERE},
-        {.kind = OBJECT_CONE, .as.cone = {{0, 0, 0}, {0, 0, 0}, 1, 1, false}},
-        {.kind = OBJECT_CONE, .as.cone = {{0, 0, 0}, {0, 1, 0}, 0, 0, false}},
+        {.kind = OBJECT_CONE, .as.cone = {{0, 0, 0}, {0, 0, 0}, 1, 1, false, 0}},
+        {.kind = OBJECT_CONE, .as.cone = {{0, 0, 0}, {0, 1, 0}, 0, 0, false, 0}},
         {.kind = OBJECT_TORUS, .as.torus = {1, 0}},
         {.kind = OBJECT_TORUS, .as.torus = {0, 0}},
         {.kind = OBJECT_DISC, .as.disc = {{0, 0, 0}, {0, 0, 0}, 1, 0}},
-        {.kind = OBJECT_SPHERE, .as.sphere = {{0, 0, 0}, 1}},
-        {.kind = OBJECT_CONE, .as.cone = {{0, 0, 0}, {0, 1, 0}, 1, 1, false}},
+        {.kind = OBJECT_SPHERE, .as.sphere = {{0, 0, 0}, 1, 0}},
+        {.kind = OBJECT_CONE, .as.cone = {{0, 0, 0}, {0, 1, 0}, 1, 1, false, 0}},
         {.kind = OBJECT_TORUS, .as.torus = {1, 0.5}},
         {.kind = OBJECT_BOX, .as.box = {{0, 0, 0}, {1, 1, 1}}},
     };
@@ -543,7 +543,7 @@ static void bounds_are_tight_and_hold_trees(void **state) {
 static void csg_insides(void **state) {
     (void)state;
     const Transform right = transform_translate(vec3(1, 0, 0));
-    Object ball = {.kind = OBJECT_SPHERE, .place = PLACE(right), .as.sphere = {{0, 0, 0}, 1}};
+    Object ball = {.kind = OBJECT_SPHERE, .place = PLACE(right), .as.sphere = {{0, 0, 0}, 1, 0}};
     Object cube = {
         .kind = OBJECT_BOX, .as.box = {{-1, -1, -1}, {1, 1, 1}}};
     const Object *items[2] = {&cube, &ball};
@@ -556,7 +556,7 @@ static void csg_insides(void **state) {
                   {OBJECT_DIFFERENCE, {false, true, false, false}},
                   {OBJECT_MERGE, {true, true, true, false}}};
     for (int k = 0; k < 8; k++) {
-        Object tree = {.kind = cases[k / 2].kind, .inverse = k & 1};
+        Object tree = {.kind = (uint8_t)cases[k / 2].kind, .inverse = k & 1};
         tree.as.group = GROUP(items, 2);
         for (int i = 0; i < 4; i++)
             assert_int_equal(shape_inside(&tree, points[i]), cases[k / 2].expected[i] != tree.inverse);

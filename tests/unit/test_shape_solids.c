@@ -519,7 +519,7 @@ static void test_many_copies(void **context) {
 static void test_hostile(void **context) {
     Object o = sphere(vec3(0, 0, 0), 1);
     ShapeTracer *tracer = shape_tracer_create(&arena);
-    const Ray ray = {{0, 0, -5}, {0, 0, 1}}, strange[] = {{{NAN, 0, 0}, {0, 0, 1}},
+    const Ray ray = {{0, 0, -5}, {0, 0, 1}}, strange[] = {{{(double)NAN, 0, 0}, {0, 0, 1}},
                                                           {{0, 0, -5}, {0, 0, 0}},
                                                           {{0, 0, 1e308}, {0, 0, -1e-300}}};
     TraceHit hit;
@@ -574,7 +574,7 @@ static void test_near_double_roots(void **context) {
     }
     double found[4];
     assert_int_equal(roots_in((double[]){0, 0, 0}, 2, -1, 1, found), 0);
-    assert_int_equal(roots_in((double[]){NAN, 1}, 1, -1, 1, found), 0);
+    assert_int_equal(roots_in((double[]){(double)NAN, 1}, 1, -1, 1, found), 0);
     assert_int_equal(roots_in((double[]){1, 0, 0, 0, 0}, 4, -1, 1, found), 0);
 }
 

@@ -85,7 +85,7 @@ static void assert_near(double value, double expected, double tolerance) {
 }
 
 static Object object_of(ObjectKind kind) {
-    Object object = {.kind = kind};
+    Object object = {.kind = (uint8_t)kind};
     return object;
 }
 

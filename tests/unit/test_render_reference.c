@@ -212,27 +212,27 @@ static const Bed FLAT = {1, 1, 5, flat_foot, flat_height}, HILL = {4, 3, 6, hill
 
 static void flat_tiles_are_the_objects_they_repeat(void **state) {
     (void)state;
-    compare_pictures(&(Trial){"flat", FLAT, 0, 0.25, 0.75, 0, 5, 1, {0}, NEAR_EYE, 50, 0.004});
-    compare_pictures(&(Trial){"flat, edge-on", FLAT, 0, 0.25, 0.75, 0, 5, 1, {0}, {0.1, 0.4, -6}, 40, 0.004});
+    compare_pictures(&(Trial){"flat", FLAT, 0, 0.25, 0.75, 0, 5, 1, {0}, NEAR_EYE, 50, 0.0025});
+    compare_pictures(&(Trial){"flat, edge-on", FLAT, 0, 0.25, 0.75, 0, 5, 1, {0}, {0.1, 0.4, -6}, 40, 0.0025});
 }
 
 static void bent_tiles_are_the_objects_bent(void **state) {
     (void)state;
-    compare_pictures(&(Trial){"hill", HILL, 0, 0.25, 0.75, 0, 6, 12, {0}, NEAR_EYE, 50, 0.006});
+    compare_pictures(&(Trial){"hill", HILL, 0, 0.25, 0.75, 0, 6, 12, {0}, NEAR_EYE, 50, 0.0025});
 }
 
 static void content_goes_on_across_borders_of_tiles(void **state) {
     (void)state;
     const unsigned both = TEXEL_CYCLIC_X | TEXEL_CYCLIC_Z;
-    compare_pictures(&(Trial){"cyclic", {1, 1, 7, flat_foot, flat_height}, both, -0.3, 1.3, -1, 8, 1, {0}, {0, 4, -0.6}, 24, 0.004});
-    compare_pictures(&(Trial){"cyclic hill", {4, 3, 7, hill_foot, hill_height}, both, -0.3, 1.3, -1, 8, 12, {0}, {0, 4, -0.6}, 24, 0.006});
+    compare_pictures(&(Trial){"cyclic", {1, 1, 7, flat_foot, flat_height}, both, -0.3, 1.3, -1, 8, 1, {0}, {0, 4, -0.6}, 24, 0.0025});
+    compare_pictures(&(Trial){"cyclic hill", {4, 3, 7, hill_foot, hill_height}, both, -0.3, 1.3, -1, 8, 12, {0}, {0, 4, -0.6}, 24, 0.0025});
 }
 
 static void jittered_copies_lie_where_the_placing_says(void **state) {
     (void)state;
     InstanceJitter jitter = {.present = true, .displace = 0.8, .rotate = 360, .scale = 0.5, .mirror = true, .density = 0.8};
-    compare_pictures(&(Trial){"jittered", {1, 1, 9, flat_foot, flat_height}, 0, 0.3, 0.7, -2, 11, 1, jitter, {0, 4, -0.6}, 24, 0.004});
-    compare_pictures(&(Trial){"jittered hill", {4, 3, 9, hill_foot, hill_height}, 0, 0.3, 0.7, -2, 11, 10, jitter, {0, 4, -0.6}, 24, 0.006});
+    compare_pictures(&(Trial){"jittered", {1, 1, 9, flat_foot, flat_height}, 0, 0.3, 0.7, -2, 11, 1, jitter, {0, 4, -0.6}, 24, 0.0025});
+    compare_pictures(&(Trial){"jittered hill", {4, 3, 9, hill_foot, hill_height}, 0, 0.3, 0.7, -2, 11, 10, jitter, {0, 4, -0.6}, 24, 0.0025});
 }
 
 /* ---- single rays ---- */

@@ -3,7 +3,7 @@
 #include "eval/eval_function.h"
 
 #include "eval/build_pattern.h"
-#include "tape/internal.h"
+#include "tape/internal_tape.h"
 
 #include <string.h>
 
@@ -69,6 +69,16 @@ static Value other_noise_function(Eval *ev, const Node *node, int generator) {
     return as_function(ev, node, 3, tape, &out, 1);
 }
 
+/* As operations, where that can be: they are faster, and other arithmetics know them. */
+static bool operations_function(Eval *ev, const Node *node, const InternalFunction *f, Value *value) {
+    TapeBuilder *tape = tape_builder_create(ev->build.arena, f->inputs);
+    TapeRef in[INTERNAL_INPUTS], out;
+    for (int i = 0; i < f->inputs; i++) in[i] = tape_input(tape, i);
+    if (!internal_tape(tape, f, in, &out, node->span)) return false;
+    *value = as_function(ev, node, f->inputs, tape, &out, 1);
+    return true;
+}
+
 Value internal_function(Eval *ev, const Node *node, int id) {
     const InternalFunction *f = internal_find(id);
     if (!f) {
@@ -78,6 +88,8 @@ Value internal_function(Eval *ev, const Node *node, int id) {
     int generator = build_noise_generator(&ev->build);
     if (f->eval == internal_noise3d && generator == NOISE_CORRECTED) return noise_function(ev, node);
     if (f->eval == internal_noise3d) return other_noise_function(ev, node, generator);
+    Value value;
+    if (operations_function(ev, node, f, &value)) return value;
     return external_function(ev, node, internal_external(ev, f));
 }
 

@@ -95,20 +95,18 @@ static inline Double2 double2_divide(Double2 a, Double2 b) {
 
 /* ---- sine, cosine, tangent ---- */
 
-#define ELEMENTARY_ANGLE_LIMIT 0x1p19
+#define ELEMENTARY_ANGLE_LIMIT 0x1p13
 
 typedef struct ReducedAngle {
     Double2 r;        /* in about [-pi/4, pi/4] */
     uint64_t quarter; /* x = quarter·pi/2 + r; only its two lowest bits count */
 } ReducedAngle;
 
-/* Cody and Waite: pi/2 in pieces of 33 bits, whose multiples are exact. */
+/* Cody and Waite: pi/2 in pieces of 40 bits, whose multiples are exact, and a rest. */
 static inline ReducedAngle elementary_reduced(double x) {
     double shifted = x * 0x1.45f306dc9c883p-1 + ELEMENTARY_ROUND, n = shifted - ELEMENTARY_ROUND;
-    Double2 first = double2_sum(x - n * 0x1.921fb544p+0, -(n * 0x1.0b4611a6p-34));
-    Double2 second = double2_sum(first.hi, -(n * 0x1.3198a2ep-69));
-    double rest = (first.lo + second.lo) - n * 0x1.b839a252049c1p-104;
-    return (ReducedAngle){double2_fast_sum(second.hi, rest), elementary_bits(shifted)};
+    Double2 r = double2_sum(x - n * 0x1.921fb54442p+0, -(n * 0x1.a308d31318p-41));
+    return (ReducedAngle){double2_fast_sum(r.hi, r.lo - n * 0x1.8a2e03707344ap-81), elementary_bits(shifted)};
 }
 
 /* sin r = r.hi + this */

@@ -1,5 +1,6 @@
 /* The internal functions against POV-Ray's own values, and against arguments that nobody means. */
-#include "tape/internal.h"
+#include "base/random.h"
+#include "tape/internal_tape.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -63,7 +64,8 @@ static void each_is_tested(void **state) {
 /* Nothing to compare: they come back, and soon. */
 static void survive_absurd_arguments(void **state) {
     (void)state;
-    static const double spicy[] = {0, -0.0, 1, -1, 1e-300, 1e300, -1e300, 4.5, VTS_INFINITY, -VTS_INFINITY, (double)NAN};
+    static const double spicy[] = {
+        0, -0.0, 1, -1, 1e-300, 1e300, -1e300, 4.5, VTS_INFINITY, -VTS_INFINITY, (double)NAN};
     size_t count;
     const InternalFunction *all = internal_all(&count);
     for (size_t i = 0; i < count; i++)
@@ -76,9 +78,46 @@ static void survive_absurd_arguments(void **state) {
         }
 }
 
+/* ---- those that are operations of tapes ---- */
+
+static const Tape *operations(Arena *arena, const InternalFunction *f) {
+    TapeBuilder *b = tape_builder_create(arena, f->inputs);
+    TapeRef in[INTERNAL_INPUTS], out;
+    for (int k = 0; k < f->inputs; k++) in[k] = tape_input(b, k);
+    return internal_tape(b, f, in, &out, (Span){1, 0, 1}) ? tape_finish(b, &out, 1) : NULL;
+}
+
+static void check_operations(const Tape *tape, const InternalFunction *f) {
+    static const double spicy[] = {0, -0.0, 1, -1, 1e-300, 1e300, VTS_INFINITY, (double)NAN};
+    RandomStream random = {5};
+    for (int i = 0; i < 20000; i++) {
+        double p[INTERNAL_INPUTS], value, expected;
+        for (int k = 0; k < f->inputs; k++)
+            p[k] = random_next(&random) % 8 ? 4 * random_next_unit(&random) - 2
+                                            : spicy[random_next(&random) % VTS_ARRAY_COUNT(spicy)];
+        tape_eval_once(tape, p, &value);
+        expected = f->eval(p);
+        assert_true(isnan(expected) ? isnan(value) : memcmp(&value, &expected, sizeof value) == 0);
+    }
+}
+
+static void operations_give_the_same_bits(void **state) {
+    (void)state;
+    size_t count, written = 0;
+    const InternalFunction *all = internal_all(&count);
+    Arena arena;
+    arena_init(&arena, NULL, 0);
+    for (size_t i = 0; i < count; i++) {
+        const Tape *tape = operations(&arena, &all[i]);
+        if (tape) check_operations(tape, &all[i]), written++;
+    }
+    assert_int_equal(written, 5);
+    arena_destroy(&arena);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(give_povrays_values),
-                                       cmocka_unit_test(each_is_tested),
-                                       cmocka_unit_test(survive_absurd_arguments)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(give_povrays_values), cmocka_unit_test(each_is_tested),
+        cmocka_unit_test(survive_absurd_arguments), cmocka_unit_test(operations_give_the_same_bits)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -69,6 +69,23 @@ static double number_after(const char *text, const char *key) {
     return strtod(at + strlen(quoted), NULL);
 }
 
+/* Within a session, texels are built once. */
+static void texels_are_kept_from_call_to_call(void **state) {
+    const Bench *b = *state;
+    VtsOptions o = options_of_size(40, 30);
+    bench_write(b, meadow);
+    VtsSession *session = vts_session_create(&o, NULL);
+    assert_int_equal(vts_render(session, b->scene, b->output), VTS_OK);
+    assert_null(strstr(vts_report(session), "\"cached\":true"));
+    assert_int_equal(vts_render(session, b->scene, b->output), VTS_OK);
+    assert_non_null(strstr(vts_report(session), "\"cached\":true"));
+    assert_null(strstr(vts_report(session), "\"cached\":false"));
+    assert_int_equal(vts_check(session, b->scene), VTS_OK); /* asks for none: they are let go */
+    assert_int_equal(vts_render(session, b->scene, b->output), VTS_OK);
+    assert_null(strstr(vts_report(session), "\"cached\":true"));
+    vts_session_destroy(session);
+}
+
 static void the_report_counts_what_was_done(void **state) {
     const Bench *b = *state;
     VtsOptions o = options_of_size(70, 50);
@@ -179,6 +196,7 @@ static void alpha_is_coverage(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(threads_do_not_change_pixels),
+        cmocka_unit_test(texels_are_kept_from_call_to_call),
         cmocka_unit_test(the_report_counts_what_was_done),
         cmocka_unit_test(memory_runs_out_anywhere_without_harm),
         cmocka_unit_test(interruption_from_another_thread),

@@ -179,6 +179,7 @@ bool build_mesh(BuildContext *context, const EvalBlock *block, Value *out) {
         reader_error(&reader, block->word_span, "'mesh' without triangles");
         return false;
     }
+    if (!reader_mesh_fits(&reader, block->word_span, 3 * (double)draft.parts.count)) return false;
     draft.common.object.as.mesh = join_triangles(context, &draft);
     return object_make(&reader, &draft.common, out);
 }

@@ -362,6 +362,7 @@ static bool sample_heights(RareDraft *draft, const UserFunction *function) {
                      "the function of a 'height_field' needs a resolution from 2, 2 to 16384, 16384");
         return false;
     }
+    if (!reader_mesh_fits(draft->reader, draft->reader->block->word_span, (double)columns * rows)) return false;
     double *heights = arena_new_array(draft->reader->context->arena, double, (size_t)columns *(size_t)rows);
     double *out = heights;
     bool colored = tape_output_count(function->tape) >= 3; /* a pigment: its grey */

@@ -473,3 +473,11 @@ bool reader_run(Reader *reader) {
     }
     return !reader->failed;
 }
+
+bool reader_mesh_fits(Reader *reader, Span span, double vertices) {
+    if (vertices <= (double)reader->context->most_vertices) return true;
+    Diagnostic *d = reader_error(reader, span, "'%s' would have more than %llu vertices", reader->block->word->text,
+                                 (unsigned long long)reader->context->most_vertices);
+    if (d) diag_hint(reader->context->diags, d, "--limit mesh=N allows more");
+    return false;
+}

@@ -109,6 +109,9 @@ bool argument_color(Reader *reader, const Argument *argument, const char *what, 
 bool argument_function(Reader *reader, const Argument *argument, const char *what, int parameters,
                        int components, const Tape **out);
 
+/* Whether so many vertices are within the limit; an error at the span else. */
+bool reader_mesh_fits(Reader *reader, Span span, double vertices);
+
 /* Report an error at a span and mark the reader as failed. */
 Diagnostic *reader_error(Reader *reader, Span span, const char *format, ...) VTS_PRINTF(3, 4);
 /* "'mapping' takes a float, found a vector" */

@@ -13,7 +13,6 @@ typedef struct SurfaceDraft {
     Transform transform;
 } SurfaceDraft;
 
-static const double MAX_GRID_VERTICES = 1 << 26;
 
 /* ---- patch_grid NU, NV function(u, v) { … } ---- */
 
@@ -31,10 +30,7 @@ static void read_patch_grid(Reader *reader, const Word *word, void *target) {
     if (!word_arguments(reader, word, 2, 3) || !grid_size(reader, word, 0, &surface->nu) ||
         !grid_size(reader, word, 1, &surface->nv))
         return;
-    if ((surface->nu + 1.0) * (surface->nv + 1.0) > MAX_GRID_VERTICES) {
-        reader_error(reader, word->whole, "a grid of %d x %d patches is too large", surface->nu, surface->nv);
-        return;
-    }
+    if (!reader_mesh_fits(reader, word->whole, (surface->nu + 1.0) * (surface->nv + 1.0))) return;
     surface->kind = SURFACE_PATCHES;
     draft->has_grid = true;
     draft->grid_span = word->span;

@@ -12,6 +12,7 @@ EvalLimits eval_limits_default(void) {
                         .include_depth = 32,
                         .steps = 1000000000,
                         .array_elements = 64000000,
+                        .mesh_vertices = 64000000,
                         .string_bytes = 64u << 20,
                         .written_bytes = 256u << 20};
 }
@@ -193,6 +194,7 @@ static void init(Eval *ev, const EvalOptions *options, SourceSet *sources, DiagL
     keyword_table_init(&ev->keywords, names, parse);
     ev->build = (BuildContext){.arena = scene, .names = names, .diags = diags, .eval = ev};
     ev->build.is_program = options->is_program;
+    ev->build.most_vertices = options->limits.mesh_vertices;
     ev->build.image_aspect = options->image_width > 0 && options->image_height > 0
                                  ? (double)options->image_width / options->image_height
                                  : 4.0 / 3;
@@ -302,6 +304,7 @@ EvalStatus eval_file(const char *path, const EvalOptions *options, SourceSet *so
     Scope global;
     EvalOptions filled = *options;
     if (filled.limits.loops == 0) filled.limits = eval_limits_default();
+    if (filled.limits.mesh_vertices == 0) filled.limits.mesh_vertices = eval_limits_default().mesh_vertices;
     if (filled.limits.written_bytes == 0) filled.limits.written_bytes = eval_limits_default().written_bytes;
     if (filled.limits.steps == 0) filled.limits.steps = eval_limits_default().steps;
     *scene = NULL;

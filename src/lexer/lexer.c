@@ -251,7 +251,9 @@ static bool is_idle(Lexer *lx) {
 /* directive = "#" word: blanks and line ends may stand between. */
 static void lex_directive(Lexer *lx) {
     uint32_t begin = lx->at++;
+    size_t tokens = lx->tokens.count;
     skip_blanks(lx);
+    if (lx->tokens.count > tokens) return; /* a comment without end: nothing follows */
     if (is_idle(lx)) {
         lx->at = begin + 1;
         return;

@@ -58,6 +58,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
                                     .recursion = 20,
                                     .include_depth = 4,
                                     .array_elements = 10000,
+                                    .mesh_vertices = 5000,
                                     .string_bytes = 10000}};
         eval_file(path, &o, &sources, &diags, &names, &parse, &scene_arena, &scene);
         StrBuf out = {0};

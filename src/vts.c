@@ -228,11 +228,12 @@ static VtsStatus apply_limits(VtsSession *session, EvalLimits *limits) {
         else if (strcmp(pair->name, "includes") == 0) limits->include_depth = small;
         else if (strcmp(pair->name, "steps") == 0) limits->steps = count;
         else if (strcmp(pair->name, "mesh") == 0) limits->mesh_vertices = count;
+        else if (strcmp(pair->name, "memory") == 0) limits->memory_bytes = count;
         else if (strcmp(pair->name, "written") == 0) limits->written_bytes = count;
         else if (strcmp(pair->name, "array") == 0) limits->array_elements = count;
         else if (strcmp(pair->name, "string") == 0) limits->string_bytes = count;
         else {
-            diag_error(&session->diags, (Span){0}, "--limit %s: no such limit; there are loops, steps, recursion, includes, array, string, written, mesh", pair->name);
+            diag_error(&session->diags, (Span){0}, "--limit %s: no such limit; there are loops, steps, recursion, includes, array, string, written, mesh, memory", pair->name);
             return VTS_ERROR_USAGE;
         }
     }

@@ -34,6 +34,10 @@ static inline float float_clamp(float x, float lo, float hi) { return x < lo ? l
 static inline int int_min(int a, int b) { return a < b ? a : b; }
 static inline int int_max(int a, int b) { return a > b ? a : b; }
 static inline int int_clamp(int x, int lo, int hi) { return x < lo ? lo : x > hi ? hi : x; }
+/* The whole part of x within [lo, hi]; NaN counts as 0. */
+static inline int double_to_int(double x, int lo, int hi) {
+    return x > lo && x < hi ? (int)x : x >= hi ? hi : x <= lo ? lo : int_clamp(0, lo, hi);
+}
 static inline size_t size_min(size_t a, size_t b) { return a < b ? a : b; }
 static inline size_t size_max(size_t a, size_t b) { return a > b ? a : b; }
 

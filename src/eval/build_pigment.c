@@ -149,6 +149,18 @@ static bool check_map(Reader *reader, const PigmentDraft *draft) {
     return !average || pigments;
 }
 
+/* Loops can make a pigment out of itself for ever. */
+static bool check_size(Reader *reader, const Pigment *pigment) {
+    if (pigment->depth > PIGMENT_DEEPEST)
+        reader_error(reader, reader->block->word_span, "pigments are nested more than %d deep", PIGMENT_DEEPEST);
+    else if (pigment->work > PIGMENT_MOST_WORK)
+        reader_error(reader, reader->block->word_span, "one colour of this pigment takes more than %g steps",
+                     PIGMENT_MOST_WORK);
+    else
+        return true;
+    return false;
+}
+
 static const Pigment *read_from(Reader *reader, const Pigment *start) {
     PigmentDraft *draft = arena_new(reader->context->arena, PigmentDraft);
     draft->pigment = *start;
@@ -168,6 +180,8 @@ static const Pigment *read_from(Reader *reader, const Pigment *start) {
         draft->pigment.entry_count = draft->count;
     }
     if (!check_map(reader, draft)) return NULL;
+    pigment_measure(&draft->pigment);
+    if (!check_size(reader, &draft->pigment)) return NULL;
     pigment_rehash(&draft->pigment);
     return &draft->pigment;
 }

@@ -301,7 +301,7 @@ bool build_julia(BuildContext *context, const EvalBlock *block, Value *out) {
     if (!check_julia(&draft)) return false;
     s->as.julia.hypercomplex = draft.hypercomplex;
     s->as.julia.function = draft.function;
-    s->as.julia.iterations = (int)double_clamp(draft.iterations, 0, 10000);
+    s->as.julia.iterations = double_to_int(draft.iterations, 0, 10000);
     return rare_end(&draft, out);
 }
 
@@ -329,7 +329,7 @@ static const char *font_name(RareDraft *draft) {
                                            "povlogo.ttf"};
     const Value *v = &draft->row.items[draft->next++].value;
     if (v->kind == VALUE_STRING) return v->as.string.text;
-    return v->kind == VALUE_FLOAT ? internal[(int)double_clamp(v->as.number, 0, 4)] : internal[0];
+    return v->kind == VALUE_FLOAT ? internal[double_to_int(v->as.number, 0, 4)] : internal[0];
 }
 
 bool build_text(BuildContext *context, const EvalBlock *block, Value *out) {

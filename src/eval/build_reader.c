@@ -33,7 +33,10 @@ void reader_mismatch(Reader *reader, Span span, const char *what, const char *wa
         reader_error(reader, span, "%s takes %s, found %s", what, wanted, value_kind_text(found));
 }
 
+/* Each word once, where it stood first: a texture that a loop makes out of itself would list its words without end. */
 void inert_add(const BuildContext *context, const InertNote **list, const char *word, Span span) {
+    for (const InertNote *known = *list; known; known = known->next)
+        if (strcmp(known->word, word) == 0) return;
     InertNote *note = arena_new(context->arena, InertNote);
     *note = (InertNote){word, span, *list};
     *list = note;

@@ -38,6 +38,12 @@ const Texture *texture_over(const BuildContext *context, const Texture *top, con
     return copy;
 }
 
+static size_t layer_count(const Texture *texture) {
+    size_t count = 0;
+    for (; texture; texture = texture->under) count++;
+    return count;
+}
+
 static const Pigment *pigment_placed(const BuildContext *context, const Pigment *pigment,
                                      const Transform *t) {
     if (transform_is_identity(t)) return pigment;
@@ -87,7 +93,10 @@ bool take_looks(BuildContext *context, const Argument *value, const Texture **te
     switch (value->value.kind) {
     case VALUE_TEXTURE:
         made = value->value.as.texture;
-        if (*texture) made = texture_over(context, made, texture_placed(context, *texture, place));
+        if (layer_count(made) + layer_count(*texture) > TEXTURE_MOST_LAYERS)
+            diag_error(context->diags, value->span, "a texture has at most %d layers", TEXTURE_MOST_LAYERS);
+        else if (*texture)
+            made = texture_over(context, made, texture_placed(context, *texture, place));
         break;
     case VALUE_PIGMENT:
         made = with_pigment(context, current(context, *texture, place), value->value.as.pigment);

@@ -14,6 +14,7 @@ EvalLimits eval_limits_default(void) {
                         .array_elements = 64000000,
                         .mesh_vertices = 64000000,
                         .string_bytes = 64u << 20,
+                        .memory_bytes = 2ull << 30,
                         .written_bytes = 256u << 20};
 }
 
@@ -307,8 +308,10 @@ EvalStatus eval_file(const char *path, const EvalOptions *options, SourceSet *so
     if (filled.limits.mesh_vertices == 0) filled.limits.mesh_vertices = eval_limits_default().mesh_vertices;
     if (filled.limits.written_bytes == 0) filled.limits.written_bytes = eval_limits_default().written_bytes;
     if (filled.limits.steps == 0) filled.limits.steps = eval_limits_default().steps;
+    if (filled.limits.memory_bytes == 0) filled.limits.memory_bytes = eval_limits_default().memory_bytes;
     *scene = NULL;
     init(&ev, &filled, sources, diags, names, parse_arena, scene_arena);
+    ev.stack = (uintptr_t)__builtin_frame_address(0);
     watch_memory(&ev);
     eval_set_scene_path(&ev, path);
     scope_enter(&ev, &global);

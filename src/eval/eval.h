@@ -14,6 +14,7 @@ typedef struct EvalLimits {
     uint64_t steps;          /* passes of all loops and calls of all macros together: 1000 million */
     uint64_t array_elements; /* of all arrays together, their copies counted: 64 million */
     uint64_t string_bytes;   /* 64 MiB */
+    uint64_t memory_bytes;   /* taken while the scene is read: 2 GiB */
     uint64_t written_bytes;  /* by #write, to all files together: 256 MiB */
     uint64_t mesh_vertices;  /* of one mesh, grid or field of heights: 64 million */
 } EvalLimits;

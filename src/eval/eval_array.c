@@ -31,7 +31,7 @@ const Value *array_element(const Array *array, const size_t *indices, int count)
 bool array_take(Eval *ev, uint64_t count, Span span) {
     if (ev->stopped) return false;
     uint64_t limit = ev->options->limits.array_elements;
-    if (count <= limit && (ev->elements += count) <= limit) return true;
+    if (count <= limit && (ev->elements += count) <= limit) return eval_has_memory(ev, count * sizeof(Slot), span);
     diag_error(ev->diags, span, "the scene's arrays would hold more than %llu elements",
                (unsigned long long)limit);
     ev->stopped = true;

@@ -193,7 +193,7 @@ static Value vturbulence(Eval *ev, const Node *node) {
         if (!eval_float(ev, node->as.list.items[i], &a[i])) return value_error();
     if (!vector_argument(ev, node, 3, p)) return value_error();
     Vec3 at = vec3(p[0], p[1], p[2]), sum = vec3_splat(0);
-    int octaves = int_clamp((int)double_clamp(a[2], 0, 100), 1, 10);
+    int octaves = int_clamp(double_to_int(a[2], 0, 100), 1, 10);
     double scale = 1, weight = 1;
     for (int k = 0; k < octaves; k++, scale *= a[0], weight *= a[1])
         sum = vec3_madd(sum, noise_pov_vector(vec3_scale(at, scale)), weight);

@@ -75,7 +75,7 @@ static unsigned char_code(const char *text, size_t length) {
 
 /* POV-Ray's format: as C's %w.df; a negative width pads with zeros; negative digits ask for C's own six. */
 static void add_number(StrBuf *out, double value, double width, double digits) {
-    int w = (int)double_clamp(width, -1000, 1000), d = digits < 0 ? 6 : (int)double_clamp(digits, 0, 1000);
+    int w = double_to_int(width, -1000, 1000), d = digits < 0 ? 6 : double_to_int(digits, 0, 1000);
     if (w < 0)
         strbuf_addf(out, "%0*.*f", -w, d, value);
     else
@@ -105,7 +105,7 @@ static Value vstr(Eval *ev, const Node *node) {
     double c[5];
     if (!value_to_vector(ev, &v, node->as.list.items[1]->span, c, 5)) return value_error();
     if (v.kind == VALUE_FLOAT) c[1] = c[2] = c[3] = c[4] = 0;
-    int n = int_clamp((int)double_clamp(count, 0, 10), 2, 5);
+    int n = int_clamp(double_to_int(count, 0, 10), 2, 5);
     StrBuf out = {0};
     for (int i = 0; i < n; i++) {
         if (i) strbuf_adds(&out, separator);

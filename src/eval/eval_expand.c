@@ -250,6 +250,7 @@ static const Node *slow_head(Source *outer, Frame *f, uint32_t at, uint32_t *nex
     ParserHost host;
     source_init(&inner, outer->ev, &p, &host, f, at);
     p.block = outer->parser->block;
+    p.depth = outer->parser->depth;
     inner.in_head = f->list->items[at].match != 0;
     parser_take(&p);
     Node *n = parser_directive(&p, f->list, at, next);
@@ -331,7 +332,8 @@ static void begin_call(Source *s, Frame *from, const Macro *macro, Span name_spa
     NodeList arguments = {0};
     source_init(&inner, ev, &p, &host, from, from->at);
     inner.at_start = false;
-    bool ok = parser_arguments(&p, &arguments);
+    p.depth = s->parser->depth;
+    bool ok = parser_enter(&p) && parser_arguments(&p, &arguments);
     Span span = span_join(name_span, p.last.span);
     while (inner.top != &inner.base) pop(&inner);
     from->at = inner.base.at;

@@ -14,6 +14,10 @@ typedef struct Compiler {
 
 enum { WHOLE_VALUE = -1 }; /* of a call without .x, .red … */
 
+/* Functions of functions grow fast: each call within one is a copy. */
+enum { FUNCTION_MOST_OPERATIONS = 1000000, FUNCTION_DEEPEST = 100 };
+static const double FUNCTION_MOST_WORK = 1e9;
+
 static TapeRef compile(Compiler *c, const Node *n);
 
 static TapeRef VTS_PRINTF(3, 4) compiler_fail(Compiler *c, Span span, const char *format, ...) {
@@ -237,6 +241,8 @@ static TapeRef inline_function(Compiler *c, const UserFunction *f, const NodeLis
     bool gray = output == DOT_GRAY && tape_output_count(f->tape) >= 3;
     if (!gray && (output >= tape_output_count(f->tape) || output < 0))
         return compiler_fail(c, span, "the function's value has no such component");
+    if (tape_builder_size(c->tape) + tape_instruction_count(f->tape) > FUNCTION_MOST_OPERATIONS)
+        return compiler_fail(c, span, "this function has more than %d operations", FUNCTION_MOST_OPERATIONS);
     tape_inline(c->tape, f->tape, inputs, outputs);
     return gray ? gray_of(c, outputs, span) : outputs[output];
 }
@@ -319,8 +325,8 @@ UserFunction *function_new(Eval *ev, const Node *node, int count) {
     if (!node->as.function.columns) return f;
     double columns, rows;
     if (eval_float(ev, node->as.function.columns, &columns) && eval_float(ev, node->as.function.rows, &rows)) {
-        f->columns = (int)double_clamp(columns, 0, 1e6);
-        f->rows = (int)double_clamp(rows, 0, 1e6);
+        f->columns = double_to_int(columns, 0, 1e6);
+        f->rows = double_to_int(rows, 0, 1e6);
     }
     return f;
 }
@@ -345,7 +351,7 @@ static Value block_function(Eval *ev, const Node *node, const Node *body) {
         double id;
         if (!builtin_argument_count(ev, body, 1, 1) || !eval_float(ev, body->as.list.items[0], &id))
             return value_error();
-        return internal_function(ev, node, (int)double_clamp(id, -1, 1000));
+        return internal_function(ev, node, double_to_int(id, -1, 1000));
     }
     Value v = eval_node(ev, body);
     if (v.kind == VALUE_ERROR) return v;
@@ -371,6 +377,16 @@ static const Name *default_parameters(Eval *ev) {
     return names;
 }
 
+static bool check_size(Eval *ev, const UserFunction *f) {
+    if (tape_depth(f->tape) > FUNCTION_DEEPEST)
+        diag_error(ev->diags, f->span, "functions are nested more than %d deep", FUNCTION_DEEPEST);
+    else if (tape_work(f->tape) > FUNCTION_MOST_WORK)
+        diag_error(ev->diags, f->span, "one call of this function takes more than %g steps", FUNCTION_MOST_WORK);
+    else
+        return true;
+    return false;
+}
+
 Value eval_function(Eval *ev, const Node *node) {
     const NodeList *body = &node->as.function.body;
     if (body->count == 0) {
@@ -392,6 +408,7 @@ Value eval_function(Eval *ev, const Node *node) {
     f->parameters = node->as.function.count
                         ? arena_copy(ev->build.arena, node->as.function.parameters, count * sizeof(Name))
                         : default_parameters(ev);
+    if (!eval_has_memory(ev, 0, node->span)) return value_error();
     TapeRef inputs[FUNCTION_INPUTS], results[5];
     Compiler c = {.ev = ev,
                   .tape = tape_builder_create(ev->build.arena, (int)count),
@@ -403,7 +420,7 @@ Value eval_function(Eval *ev, const Node *node) {
     for (size_t i = 0; i < outputs->count; i++) results[i] = compile(&c, outputs->items[i]);
     if (c.failed) return value_error();
     f->tape = tape_finish(c.tape, results, (int)outputs->count);
-    return (Value){.kind = VALUE_FUNCTION, .as.function = f};
+    return check_size(ev, f) ? (Value){.kind = VALUE_FUNCTION, .as.function = f} : value_error();
 }
 
 Value call_function(Eval *ev, const UserFunction *function, const NodeList *arguments, Span span) {

@@ -237,7 +237,7 @@ bool macro_enter(Eval *ev, const Macro *m, const NodeList *arguments, Span span,
         ev->stopped = true; /* what called itself this often would go on to do so on every level */
         return false;
     }
-    if (!eval_step(ev, span)) return false;
+    if (!eval_has_stack(ev, span) || !eval_step(ev, span)) return false;
     ev->at = span;
     Passed few[FEW_ARGUMENTS];
     Passed *passed =

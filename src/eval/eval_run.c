@@ -6,14 +6,23 @@ enum {
     NESTING_LIMIT = 3000
 }; /* bodies within each other, each of which takes about a kilobyte of the C stack */
 
-bool eval_deeper(Eval *ev, Span span) {
-    if (ev->nesting < NESTING_LIMIT) {
-        ev->nesting++;
-        return true;
-    }
+/* How much of the C stack a body, a call or an expression takes differs too much for counting alone. Of the usual 8 MB, what is
+ * left is for one expression of the deepest kind that the parser lets through. */
+static const uintptr_t STACK_LIMIT = 5u << 20;
+
+bool eval_has_stack(Eval *ev, Span span) {
+    uintptr_t here = (uintptr_t)__builtin_frame_address(0);
+    uintptr_t taken = here < ev->stack ? ev->stack - here : here - ev->stack;
+    if (ev->nesting < NESTING_LIMIT && taken < STACK_LIMIT) return true;
     diag_error(ev->diags, span, "nested too deeply");
     ev->stopped = true;
     return false;
+}
+
+bool eval_deeper(Eval *ev, Span span) {
+    bool fits = eval_has_stack(ev, span);
+    ev->nesting += fits;
+    return fits;
 }
 
 /* ---- statements and their memo ---- */
@@ -218,6 +227,16 @@ static Flow run_if(Eval *ev, const Node *node, Sink *sink) {
     return run_group_end(ev, node, &node->as.branches.branches[count - 1].body, true);
 }
 
+bool eval_has_memory(Eval *ev, size_t more, Span span) {
+    size_t taken = ev->parse->total + ev->build.arena->total + ev->temp.total + ev->passing.total + ev->blocks.total;
+    if (taken + more <= ev->options->limits.memory_bytes) return !ev->stopped;
+    Diagnostic *d = diag_error(ev->diags, span, "reading the scene takes more than %llu bytes of memory",
+                               (unsigned long long)ev->options->limits.memory_bytes);
+    diag_hint(ev->diags, d, "--limit memory=N allows more");
+    ev->stopped = true;
+    return false;
+}
+
 bool eval_step(Eval *ev, Span span) {
     if (++ev->steps > ev->options->limits.steps) {
         diag_error(ev->diags, span,
@@ -227,7 +246,7 @@ bool eval_step(Eval *ev, Span span) {
     } else if (ev->options->interrupted && *ev->options->interrupted) {
         ev->interrupted = ev->stopped = true;
     }
-    return !ev->stopped;
+    return eval_has_memory(ev, 0, span);
 }
 
 /* Called before each pass. A loop whose pass met an error ends: its condition may depend on what failed. */

@@ -168,6 +168,7 @@ struct Eval {
     uint64_t body, body_count; /* the run of a body that is going on, and how many there were */
     bool repeats;              /* what runs now may run again: within a loop or a macro */
     int nesting;               /* C stack: bodies and expressions within each other */
+    uintptr_t stack;           /* where it was when the evaluation began */
 
     Program **programs; /* by file id */
     uint32_t program_count;
@@ -343,6 +344,9 @@ static inline Program *eval_program(Eval *ev, TokenList *tokens) {
     Program *known = id < ev->program_count ? ev->programs[id] : NULL;
     return known ? known : eval_program_new(ev, tokens);
 }
+/* Whether there is room for another level of nesting; otherwise reported, and the program stops. */
+bool eval_has_stack(Eval *ev, Span span);
+/* The same, and the level is entered: `nesting` is to be counted down at its end. */
 bool eval_deeper(Eval *ev, Span span);
 void run_assign(Eval *ev, const Node *node);
 void run_define_macro(Eval *ev, const Node *node);
@@ -359,7 +363,9 @@ void run_break_leaves(Eval *ev, const Body *branch);
 /* Whether #else or #elseif may follow the branch. */
 bool run_branch_goes_on(const Branch *b);
 bool run_case_matches(Eval *ev, const SwitchCase *c, double subject);
-/* Before each pass of a loop and each call of a macro: false when the limit of steps is reached (reported) or the session is
+/* Whether `more` bytes can be taken; otherwise reported, and the program stops. */
+bool eval_has_memory(Eval *ev, size_t more, Span span);
+/* Before each pass of a loop and each call of a macro: false when the limit of steps or of memory is reached (reported) or the session is
  * interrupted. The program then stops. */
 bool eval_step(Eval *ev, Span span);
 Flow run_loop_guard(Eval *ev, uint64_t *passes, size_t errors, Span span);

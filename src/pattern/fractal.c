@@ -119,6 +119,7 @@ double fractal_number(const Pigment *pigment, Vec3 p) {
         z = step(f, z, c);
         nearest = fmin(nearest, norm(z));
         if (escaped(f, z)) return exterior(f, i, z);
+        if (isnan(z.re) && isnan(z.im)) break; /* for good */
     }
     return interior(f, z, nearest);
 }

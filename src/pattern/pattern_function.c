@@ -15,7 +15,7 @@ static void eval_value(const void *data, const double *in, double *out) {
 
 static TapeExternal external(const Pigment *pigment, const char *name, uint64_t kind, int outputs,
                              void (*eval)(const void *, const double *, double *)) {
-    TapeExternal e = {.name = name, .input_count = 3, .output_count = outputs, .eval = eval, .data = pigment};
+    TapeExternal e = {.name = name, .input_count = 3, .output_count = outputs, .eval = eval, .data = pigment, .depth = pigment->depth, .work = pigment->work};
     e.hash = hash_begin(kind);
     hash_add_hash(&e.hash, pigment->hash);
     return e;

@@ -118,9 +118,13 @@ typedef struct ColorMapEntry {
     const Pigment *pigment; /* of a pigment_map (or block pattern with pigments); else NULL and `color` counts */
 } ColorMapEntry;
 
+enum { PIGMENT_DEEPEST = 100 }; /* pigments within maps and functions of each other: whoever evaluates one may call itself that often */
+#define PIGMENT_MOST_WORK 1e8   /* steps of one evaluation */
 struct Pigment {
     Span span;
     Hash128 hash;
+    int depth;                       /* pigments within each other, this one included */
+    double work;                     /* an estimate from above of one evaluation, in steps: pigments and operations of functions */
     PatternKind kind;
     Color color;                     /* PATTERN_SOLID */
     Vec3 direction;                  /* gradient, slope */
@@ -169,6 +173,7 @@ typedef struct Finish {
     bool fresnel;
 } Finish;
 
+enum { TEXTURE_MOST_LAYERS = 1000 };
 typedef struct Texture {
     Span span;
     Hash128 hash;
@@ -297,6 +302,8 @@ ObjectList object_bounded_by(const Object *object);
 const InertNote *object_inert(const Object *object);
 /* The object as a whole struct, to be changed. */
 Object object_copy(const Object *object);
+/* Sets depth and work from the parts of the pigment. */
+void pigment_measure(Pigment *pigment);
 /* How deep an object is whose parts (of its group, what clips and bounds it, its surface, texel, container) are already there. */
 int object_depth_by_parts(const Object *object);
 /* Puts an object into the arena; its `place` becomes a copy of `transform` (NULL: as it is). */

@@ -26,6 +26,7 @@ Pigment pigment_default(void) {
                        .control1 = 1,
                        .wave_count = 10,
                        .transform = transform_identity()};
+    pigment_measure(&pigment);
     pigment_rehash(&pigment);
     return pigment;
 }

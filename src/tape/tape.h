@@ -31,6 +31,8 @@ typedef struct TapeExternal {
     void (*eval)(const void *data, const double *in, double *out);
     const void *data; /* outlives the tape */
     Hash128 hash;     /* of the content */
+    int depth;        /* 0, or how deep its evaluation nests that of others */
+    double work;      /* an evaluation in steps of a tape; 0: as one */
 } TapeExternal;
 
 /* The printed form of an operation, and how many operands it takes (0: structure, not for tape_unary() and its like). */
@@ -48,6 +50,8 @@ bool tape_is_constant(const TapeBuilder *builder, TapeRef ref, double *value);
 TapeRef tape_unary(TapeBuilder *builder, TapeOp op, TapeRef a, Span span);
 TapeRef tape_binary(TapeBuilder *builder, TapeOp op, TapeRef a, TapeRef b, Span span);
 TapeRef tape_ternary(TapeBuilder *builder, TapeOp op, TapeRef a, TapeRef b, TapeRef c, Span span);
+/* Values made so far. */
+size_t tape_builder_size(const TapeBuilder *builder);
 /* Inserts a copy of `callee` with its inputs replaced; outputs[0 .. tape_output_count(callee)). */
 void tape_inline(TapeBuilder *builder, const Tape *callee, const TapeRef *inputs, TapeRef *outputs);
 void tape_call(TapeBuilder *builder, const TapeExternal *external, const TapeRef *inputs, TapeRef *outputs, Span span);
@@ -69,6 +73,10 @@ size_t tape_instruction_count(const Tape *tape);
 /* The text that asked for instruction i. */
 Span tape_instruction_span(const Tape *tape, size_t i);
 Hash128 tape_hash(const Tape *tape);
+/* How deep an evaluation calls itself: loops within each other, the depth of externals added. */
+int tape_depth(const Tape *tape);
+/* Steps of an evaluation, with those of externals and of loops, whose passes are counted where they are constant. */
+double tape_work(const Tape *tape);
 /* Doubles that tape_eval() needs as scratch. */
 size_t tape_scratch_size(const Tape *tape);
 /* The reference arithmetic: IEEE doubles. Domain errors give NaN or infinity, as C's functions do. `out` may be `in`. */

@@ -219,6 +219,8 @@ TapeRef tape_loop(TapeBuilder *builder, bool product, TapeRef from, TapeRef to, 
 
 /* ---- whole tapes ---- */
 
+size_t tape_builder_size(const TapeBuilder *builder) { return builder->nodes.count; }
+
 static void map_refs(const TapeRef *map, const TapeRef *refs, size_t count, TapeRef *out) {
     for (size_t k = 0; k < count; k++) out[k] = map[refs[k]];
 }

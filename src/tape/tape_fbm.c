@@ -41,5 +41,5 @@ TapeRef tape_fbm(TapeBuilder *b, const TapeRef place[3], TapeRef octaves, TapeRe
                  Span span) {
     double count;
     if (!tape_is_constant(b, octaves, &count)) return looped(b, place, octaves, lacunarity, gain, span);
-    return unrolled(b, place, (int)double_clamp(count, 0, MAX_OCTAVES), lacunarity, gain, span);
+    return unrolled(b, place, double_to_int(count, 0, MAX_OCTAVES), lacunarity, gain, span);
 }

@@ -175,6 +175,31 @@ static void plan_slots(Tape *tape, TapeBuilder *builder, const TapeRef *outputs)
     tape->scratch_size = plan.slot_count + extra;
 }
 
+/* ---- what an evaluation costs ---- */
+
+static double passes(const Tape *tape, const TapeNode *node) {
+    const TapeNode *from = &tape->nodes[node->a], *to = &tape->nodes[node->b];
+    if (from->op != TAPE_CONSTANT || to->op != TAPE_CONSTANT) return 1;
+    double count = tape_node_constant(to) - tape_node_constant(from) + 1;
+    return count > 1 && count <= TAPE_LOOP_LIMIT ? count : 1;
+}
+
+static void estimate(Tape *tape) {
+    tape->work = (double)tape->step_count;
+    for (size_t i = 0; i < tape->node_count; i++) {
+        const TapeNode *node = &tape->nodes[i];
+        if (node->op == TAPE_CALL) {
+            const TapeExternal *external = tape->calls[node->c].external;
+            tape->depth = int_max(tape->depth, external->depth);
+            tape->work += external->work;
+        } else if (node->op == TAPE_SUM || node->op == TAPE_PROD) {
+            const Tape *body = tape->loops[node->c].body;
+            tape->depth = int_max(tape->depth, body->depth + 1);
+            tape->work += passes(tape, node) * (body->work + 1);
+        }
+    }
+}
+
 static void hash_node(Hash128 *hash, const Tape *tape, const TapeNode *node) {
     hash_add_u64(hash, (uint64_t)node->op << 32 | node->a);
     hash_add_u64(hash, node->b);
@@ -210,6 +235,7 @@ const Tape *tape_finish(TapeBuilder *builder, const TapeRef *outputs, int output
     tape->calls = builder->calls.items, tape->call_count = builder->calls.count;
     tape->loops = builder->loops.items, tape->loop_count = builder->loops.count;
     tape->hash = content_hash(tape);
+    estimate(tape);
     return tape;
 }
 
@@ -218,4 +244,6 @@ int tape_output_count(const Tape *tape) { return (int)tape->output_count; }
 size_t tape_instruction_count(const Tape *tape) { return tape->node_count; }
 Span tape_instruction_span(const Tape *tape, size_t i) { return tape->spans[i]; }
 Hash128 tape_hash(const Tape *tape) { return tape->hash; }
+int tape_depth(const Tape *tape) { return tape->depth; }
+double tape_work(const Tape *tape) { return tape->work; }
 size_t tape_scratch_size(const Tape *tape) { return tape->scratch_size; }

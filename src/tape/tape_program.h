@@ -38,6 +38,8 @@ struct Tape {
     uint32_t input_count, output_count, constant_count, slot_count;
     size_t node_count, step_count, call_count, loop_count;
     size_t scratch_size; /* slots in all, loops' bodies included */
+    int depth;
+    double work;
     const TapeNode *nodes;
     const Span *spans; /* of nodes */
     const TapeStep *steps;

@@ -1,5 +1,6 @@
 #include "base/source.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -115,6 +116,36 @@ const char *source_line(SourceSet *set, const SourceFile *file, uint32_t line, s
     if (end > begin && own->text[end - 1] == '\r') end--;
     *size = end - begin;
     return own->text + begin;
+}
+
+/* Past blanks and comments. */
+static uint32_t skip_to_token(const SourceFile *file, uint32_t at) {
+    const char *text = file->text;
+    for (uint32_t depth = 0; at < file->size; at++) {
+        bool blank = text[at] == ' ' || text[at] == '\t' || text[at] == '\r' || text[at] == '\n';
+        if (text[at] == '/' && text[at + 1] == '*') {
+            depth++, at++;
+        } else if (depth && text[at] == '*' && text[at + 1] == '/') {
+            depth--, at++;
+        } else if (!depth && text[at] == '/' && text[at + 1] == '/') {
+            while (at < file->size && text[at] != '\n') at++;
+        } else if (!depth && !blank) {
+            break;
+        }
+    }
+    return at;
+}
+
+Span source_blame_after(SourceSet *set, Span span) {
+    if (span.file == 0 || span.file > set->count) return span;
+    const SourceFile *file = set->items[span.file - 1];
+    uint32_t at = skip_to_token(file, span.end), end = at + 1;
+    if (at >= file->size || file->text[at] == '#') return span;
+    while (end < file->size && (isalnum((unsigned char)file->text[end - 1]) || file->text[end - 1] == '_') &&
+           (isalnum((unsigned char)file->text[end]) || file->text[end] == '_'))
+        end++;
+    Span after = {span.file, at, end};
+    return source_locate(set, after).line == source_locate(set, span).line ? span : after;
 }
 
 Span span_join(Span a, Span b) {

@@ -48,6 +48,10 @@ SourcePlace source_locate(SourceSet *set, Span span);
 /* The text of line `line` (from 1) without its end; *size gets its length. */
 const char *source_line(SourceSet *set, const SourceFile *file, uint32_t line, size_t *size);
 
+/* Where POV-Ray blames what it finds wrong once `span` is read: at the token behind it, if that stands on another line than `span`
+ * begins on; else `span`, and so it is where a directive or the end of the text follows. */
+Span source_blame_after(SourceSet *set, Span span);
+
 /* From the start of a to the end of b, when both lie in one file; otherwise a. */
 Span span_join(Span a, Span b);
 

@@ -133,6 +133,13 @@ static void apply_angle(CameraDraft *draft) {
     draft->camera.direction = vec3_scale(vec3_normalize(draft->camera.direction), length);
 }
 
+/* POV-Ray blames the whole camera at its end, if that is on another line. */
+static Span at_close(const Reader *reader, Span span) {
+    SourceSet *sources = reader->context->diags->sources;
+    Span close = reader_close(reader);
+    return source_locate(sources, close).line == source_locate(sources, span).line ? span : close;
+}
+
 /* Keeps the lengths of the three vectors and their handedness. */
 static bool apply_look_at(Reader *reader, CameraDraft *draft) {
     Camera *c = &draft->camera;
@@ -141,7 +148,7 @@ static bool apply_look_at(Reader *reader, CameraDraft *draft) {
     double handedness = vec3_dot(vec3_cross(c->up, c->direction), c->right);
     Vec3 view = vec3_sub(draft->look_at, c->location);
     if (vec3_length_squared(view) < 1e-10) {
-        reader_error(reader, draft->look_at_span, "the camera looks at its own location");
+        reader_error(reader, at_close(reader, draft->look_at_span), "the camera looks at its own location");
         return false;
     }
     view = vec3_normalize(view);
@@ -197,7 +204,7 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
 static bool check_angle(Reader *reader, CameraDraft *draft) {
     if (draft->wide && draft->angle >= 180) draft->angle = 90;
     if (draft->angle < 180) return true;
-    reader_error(reader, draft->angle_span,
+    reader_error(reader, at_close(reader, draft->angle_span),
                  "the angle of this camera must be less than 180 degrees, found %g", draft->angle);
     return false;
 }

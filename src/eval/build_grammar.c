@@ -252,25 +252,13 @@ static bool has_map(const EvalBlock *block) {
     return has_value(block, VALUE_COLOR_MAP);
 }
 
-/* A normal block changes the normal of the texture that it stands in, or the default one: a pattern may be there already. */
-static bool completes_another(const Reader *reader) {
-    const char *outer = reader->block->outer ? reader->block->outer->text : "";
-    if (strcmp(outer, "texture") == 0 || strcmp(outer, "default") == 0) return true;
-    for (const InertNote *note = texture_default(reader->context)->inert; note; note = note->next)
-        if (strcmp(note->word, "normal") == 0) return true;
-    return false;
-}
-
 /* What a block that was read whole must have held. */
-static void check_complete(Reader *reader, const Grammar *grammar, const char *pattern, bool typed) {
+static void check_complete(Reader *reader, const Grammar *grammar, const char *pattern) {
     const EvalBlock *block = reader->block;
     const char *name = grammar->block;
     bool normal = strcmp(name, "normal") == 0;
     if (block->count == 0 && find_operands(grammar, "["))
         reader_error(reader, block->word_span, "'%s' without entries", block->word->text);
-    if (normal && !typed && !has_value(block, VALUE_NORMAL) && !has_value(block, VALUE_FUNCTION) &&
-        !has_value(block, VALUE_OBJECT) && !completes_another(reader))
-        reader_error(reader, block->word_span, "a normal needs a pattern or a bump_map");
     if (pattern && strcmp(pattern, "average") == 0 && (normal || strcmp(name, "density") == 0) &&
         !has_map(block))
         reader_error(reader, block->word_span, "the pattern 'average' needs a map of what it averages");
@@ -282,7 +270,6 @@ bool grammar_read(Reader *reader, const char *block) {
     read_lead(reader, grammar);
     const BlockItem *item;
     const char *found = NULL; /* the pattern's word */
-    bool typed = false;
     while (!reader->failed && (item = reader_peek(reader))) {
         reader->next++;
         Word word;
@@ -300,7 +287,6 @@ bool grammar_read(Reader *reader, const char *block) {
             else if (pattern_takes(reader, found, &word))
                 check_word(reader, grammar, &word, operands);
             if (pattern) found = word.text;
-            typed |= pattern || strcmp(word.text, "bump_map") == 0;
         } else if (item->value.kind == VALUE_ERROR) {
             reader->failed = true;
         } else if (!accepts_value(grammar, item->value.kind)) {
@@ -308,7 +294,7 @@ bool grammar_read(Reader *reader, const char *block) {
                          value_kind_text(item->value.kind), reader->block->word->text);
         }
     }
-    if (!reader->failed) check_complete(reader, grammar, found, typed);
+    if (!reader->failed) check_complete(reader, grammar, found);
     return !reader->failed;
 }
 

@@ -59,13 +59,14 @@ bool build_triangle(BuildContext *context, const EvalBlock *block, Value *out) {
     TriangleDraft draft = {.common = object_begin(block, OBJECT_TRIANGLES)};
     Vec3 *vertices = arena_new_array(context->arena, Vec3, 3),
          *normals = arena_new_array(context->arena, Vec3, 3);
+    Span last;
     for (int i = 0; i < 3; i++)
-        if (!reader_vector(&reader, "a corner", &vertices[i], NULL) ||
-            (smooth && !reader_vector(&reader, "a normal", &normals[i], NULL)))
+        if (!reader_vector(&reader, "a corner", &vertices[i], &last) ||
+            (smooth && !reader_vector(&reader, "a normal", &normals[i], &last)))
             return false;
     MeshData *mesh = one_triangle(context->arena, vertices, smooth ? normals : NULL);
     if (is_degenerate(vertices)) {
-        diag_warning(context->diags, block->word_span, "this triangle has no area: it is left out");
+        diag_warning(context->diags, reader_after(&reader, last), "this triangle has no area: it is left out");
         mesh->triangle_count = 0;
     }
     draft.common.object.as.mesh = mesh;
@@ -161,12 +162,12 @@ static const WordRule mesh_rules[] = {
     {"inside_vector", WORD_VECTOR, offsetof(MeshDraft, inside_vector), NULL, false}};
 
 bool build_mesh(BuildContext *context, const EvalBlock *block, Value *out) {
-    if (block->count == 0) {
-        diag_error(context->diags, block->word_span, "'mesh' without triangles");
-        return false;
-    }
     MeshDraft draft = {.common = object_begin(block, OBJECT_TRIANGLES)};
     Reader reader = reader_begin(context, block);
+    if (block->count == 0) {
+        reader_error(&reader, reader_close(&reader), "'mesh' without triangles");
+        return false;
+    }
     const BlockItem *first = reader_peek(&reader);
     bool copy = object_is_copy(block) && first->value.as.object->kind == OBJECT_TRIANGLES &&
                 !first->value.as.object->as.mesh->single;
@@ -176,7 +177,7 @@ bool build_mesh(BuildContext *context, const EvalBlock *block, Value *out) {
     reader.value_target = &draft;
     if (!object_read(&reader, &draft.common)) return false;
     if (draft.parts.count == 0) {
-        reader_error(&reader, block->word_span, "'mesh' without triangles");
+        reader_error(&reader, reader_close(&reader), "'mesh' without triangles");
         return false;
     }
     if (!reader_mesh_fits(&reader, block->word_span, 3 * (double)draft.parts.count)) return false;

@@ -261,6 +261,17 @@ static size_t objects_in(const EvalBlock *block) {
     return count;
 }
 
+/* Behind the last object of the block, or its closing brace where it holds none. */
+static Span after_objects(const Reader *reader) {
+    const EvalBlock *block = reader->block;
+    for (size_t i = block->count; i-- > 0;) {
+        const BlockItem *item = &block->items[i];
+        if (item->kind == ITEM_VALUE && (item->value.kind == VALUE_OBJECT || item->value.kind == VALUE_LIGHT))
+            return reader_after(reader, item->span);
+    }
+    return reader_close(reader);
+}
+
 bool build_csg(BuildContext *context, const EvalBlock *block, Value *out) {
     CsgDraft draft = {.common = object_begin(block, csg_kind(block->word->text))};
     Reader reader = reader_begin(context, block);
@@ -273,7 +284,7 @@ bool build_csg(BuildContext *context, const EvalBlock *block, Value *out) {
     draft.children.items = arena_new_array(context->arena, const Object *, draft.children.capacity);
     if (!object_read(&reader, &draft.common)) return false;
     if (draft.children.count + draft.lights.count < 2 && !group)
-        diag_warning(context->diags, block->word_span, "'%s' should hold at least 2 objects, found %zu",
+        diag_warning(context->diags, after_objects(&reader), "'%s' should hold at least 2 objects, found %zu",
                      block->word->text, draft.children.count + draft.lights.count);
     ObjectGroup *made = arena_new(context->arena, ObjectGroup);
     *made = (ObjectGroup){.items = draft.children.items,

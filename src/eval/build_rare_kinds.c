@@ -128,6 +128,14 @@ static bool bezier_fits(RareDraft *draft, size_t count) {
     return false;
 }
 
+/* Rings end with the point that they begin with; the next point begins another. */
+static bool polygon_closes(const Vec3 *points, size_t count) {
+    size_t begin = 0;
+    for (size_t i = 1; i < count; i++)
+        if (i > begin && vec3_length_squared(vec3_sub(points[i], points[begin])) == 0) begin = i + 1;
+    return begin >= count;
+}
+
 bool build_polygon(BuildContext *context, const EvalBlock *block, Value *out) {
     BEGIN(.solid.kind = SOLID_POLYGON);
     size_t count;
@@ -135,6 +143,9 @@ bool build_polygon(BuildContext *context, const EvalBlock *block, Value *out) {
     Vec3 *points = arena_new_array(context->arena, Vec3, count);
     for (size_t i = 0; i < count; i++)
         if (!rare_vector(&draft, "a point", &points[i])) return false;
+    if (!polygon_closes(points, count))
+        diag_warning(context->diags, reader_after(&reader, draft.row.items[draft.next - 1].span),
+                     "this polygon does not end where it begins: it is closed");
     draft.solid.as.polygon.points = points;
     draft.solid.as.polygon.count = count;
     return rare_end(&draft, out);
@@ -217,7 +228,7 @@ bool build_patch(BuildContext *context, const EvalBlock *block, Value *out) {
 bool build_blob(BuildContext *context, const EvalBlock *block, Value *out) {
     BEGIN(.solid.kind = SOLID_BLOB, .takes_parts = true, .threshold = 1);
     if (draft.parts.count == 0) {
-        reader_error(&reader, block->word_span, "'blob' without parts");
+        reader_error(&reader, reader_close(&reader), "'blob' without parts");
         return false;
     }
     draft.solid.as.blob.threshold = draft.threshold;

@@ -26,6 +26,16 @@ Diagnostic *reader_error(Reader *reader, Span span, const char *format, ...) {
     return diagnostic;
 }
 
+Span reader_after(const Reader *reader, Span span) {
+    return source_blame_after(reader->context->diags->sources, span);
+}
+
+Span reader_close(const Reader *reader) {
+    Span span = reader->block->span;
+    if (span.end > span.begin) span.begin = span.end - 1;
+    return span;
+}
+
 void reader_mismatch(Reader *reader, Span span, const char *what, const char *wanted, ValueKind found) {
     if (found == VALUE_ERROR)
         reader->failed = true; /* reported where it arose */

@@ -116,6 +116,10 @@ bool reader_mesh_fits(Reader *reader, Span span, double vertices);
 Diagnostic *reader_error(Reader *reader, Span span, const char *format, ...) VTS_PRINTF(3, 4);
 /* "'mapping' takes a float, found a vector" */
 void reader_mismatch(Reader *reader, Span span, const char *what, const char *wanted, ValueKind found);
+/* source_blame_after() of a span of the block. */
+Span reader_after(const Reader *reader, Span span);
+/* The closing brace of the block: for what is found wrong when all of it is read. */
+Span reader_close(const Reader *reader);
 /* The same for a word that nobody knows, with the nearest of the tables' words as a hint. */
 void reader_unknown_word(Reader *reader, const Word *word);
 /* A name that nothing was declared as, with the nearest declared one as a hint. */

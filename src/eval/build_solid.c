@@ -67,13 +67,11 @@ static bool read_cone_ends(Reader *reader, Object *object) {
     if (!reader_float(reader, cone ? "the cap radius" : "the radius", &value, &first)) return false;
     *cap_radius = cone ? fabs(value) : radius(reader, "the radius", value, first);
     if (!cone) *base_radius = *cap_radius;
-    Vec3 axis = vec3_sub(object->as.cone.cap, object->as.cone.base);
-    if (vec3_length_squared(axis) == 0) {
-        reader_error(reader, second, "this %s is degenerate: its base and cap points are the same",
-                     reader->block->word->text);
-        return false;
-    }
-    return true;
+    if (vec3_length_squared(vec3_sub(object->as.cone.cap, object->as.cone.base)) > 0) return true;
+    Diagnostic *d = reader_error(reader, reader_after(reader, first), "this %s is degenerate: its base and cap points are the same",
+                                 reader->block->word->text);
+    diag_note(reader->context->diags, d, second, "the same point again");
+    return false;
 }
 
 /* cylinder and cone */

@@ -25,7 +25,7 @@ static void read_rotate(Reader *reader, const Word *word, void *target) {
 /* POV-Ray's rule: a factor of zero means "leave this axis alone". */
 static double nonzero_factor(Reader *reader, const Word *word, char axis, double factor) {
     if (factor != 0) return factor;
-    diag_warning(reader->context->diags, word->arguments[0].span, "scale by 0 along %c is changed to 1",
+    diag_warning(reader->context->diags, reader_after(reader, word->arguments[0].span), "scale by 0 along %c is changed to 1",
                  axis);
     return 1;
 }
@@ -66,7 +66,8 @@ static void fill_zero_columns(Reader *reader, const Word *word, double m[12]) {
     for (int axis = 0; axis < 3; axis++) {
         if (m[axis] != 0 || m[3 + axis] != 0 || m[6 + axis] != 0) continue;
         m[4 * axis] = 1;
-        diag_warning(reader->context->diags, word->whole,
+        Span last = {word->whole.file, word->whole.end - 1, word->whole.end}; /* as POV-Ray: with the last number */
+        diag_warning(reader->context->diags, last,
                      "this matrix presses space flat along %c: 1 is taken there", "xyz"[axis]);
     }
 }

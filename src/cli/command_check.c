@@ -6,7 +6,8 @@ static VtsStatus check(VtsSession *session, const void *context) { return vts_ch
 static int check_frames(Settings *settings, const char *scene) {
     int first, last, status = VTS_OK;
     settings_frames(settings, &first, &last);
-    for (int frame = first; frame <= last && status == VTS_OK; frame++) {
+    for (int frame = first; frame <= last && status == VTS_OK;
+         frame += settings->animation.step) {
         Console console;
         console_init(&console, settings);
         settings_enter_frame(settings, frame);

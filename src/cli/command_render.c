@@ -41,7 +41,8 @@ int command_render(Settings *settings) {
     if (settings->report && !report_file_possible(settings, settings->report)) return VTS_ERROR_FILE;
     int first, last, status = VTS_OK;
     settings_frames(settings, &first, &last);
-    for (int frame = first; frame <= last && status == VTS_OK; frame++) {
+    for (int frame = first; frame <= last && status == VTS_OK;
+         frame += settings->animation.step) {
         settings_enter_frame(settings, frame);
         status = render_frame(settings, settings->scenes.items[0]);
     }

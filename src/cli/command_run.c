@@ -19,7 +19,8 @@ int command_run(Settings *settings) {
     Program program = {settings->scenes.items[0], settings};
     int first, last, status = VTS_OK;
     settings_frames(settings, &first, &last);
-    for (int frame = first; frame <= last && status == VTS_OK; frame++) {
+    for (int frame = first; frame <= last && status == VTS_OK;
+         frame += settings->animation.step) {
         Console console;
         console_init(&console, settings);
         settings_enter_frame(settings, frame);

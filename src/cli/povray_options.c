@@ -65,9 +65,16 @@ static const char *apply_end_row(Settings *s, const char *value) { return part(v
 static const char *apply_start_column(Settings *s, const char *value) { return part(value, &s->columns[0]); }
 static const char *apply_end_column(Settings *s, const char *value) { return part(value, &s->columns[1]); }
 
+/* As POV-Ray reads it: a fraction is cut off, and no frame comes before 0. */
 static const char *frame_number(Settings *s, const char *value, int *out) {
+    double number;
     s->animation.on = true;
-    return option_int(value, 0, 1000000000, out) ? NULL : "the number of a frame";
+    if (!option_double(value, &number) || number > 1e9) return "the number of a frame";
+    *out = number > 0 ? (int)number : 0;
+    return NULL;
+}
+static const char *apply_frame_step(Settings *s, const char *value) {
+    return option_int(value, 1, 1000000000, &s->animation.step) ? NULL : "a number of frames from 1";
 }
 static const char *apply_first_frame(Settings *s, const char *value) {
     return frame_number(s, value, &s->animation.first_frame);
@@ -125,6 +132,7 @@ static const PovrayOption OPTIONS[] = {
     {"EC", "End_Column", apply_end_column},
     {"KFI", "Initial_Frame", apply_first_frame},
     {"KFF", "Final_Frame", apply_last_frame},
+    {NULL, "Frame_Step", apply_frame_step},
     {"KI", "Initial_Clock", apply_first_clock},
     {"KF", "Final_Clock", apply_last_clock},
     {"KC", NULL, cyclic_on},

@@ -19,7 +19,7 @@ void settings_init(Settings *settings, const char *program) {
     *settings = (Settings){.program = program,
                            .options = vts_options_default(),
                            .suffix = ".png",
-                           .animation = {.first_frame = 1, .last_frame = 1, .last_clock = 1}};
+                           .animation = {.first_frame = 1, .last_frame = 1, .step = 1, .last_clock = 1}};
 }
 
 void settings_free(Settings *settings) {

@@ -20,6 +20,7 @@ typedef struct TextList {
 typedef struct Animation {
     bool on;
     int first_frame, last_frame; /* that the clocks belong to */
+    int step;                    /* from one frame that is done to the next */
     double subset_first,
         subset_last; /* that are done: numbers of frames or, below 1, shares of them all; 0: all */
     double first_clock, last_clock;

@@ -1,12 +1,10 @@
 /* What the language asks of objects: min_extent(), max_extent(), trace(), inside(). */
 #include "eval/eval_state.h"
 
-static const Object *object_argument(Eval *ev, const Node *node) {
-    Value v = eval_node(ev, node->as.list.items[0]);
-    if (v.kind == VALUE_OBJECT) return v.as.object;
-    if (v.kind != VALUE_ERROR)
-        diag_error(ev->diags, node->as.list.items[0]->span, "expected an object, found %s",
-                   value_kind_text(v.kind));
+static const Object *object_of(Eval *ev, const Value *v, Span span) {
+    if (v->kind == VALUE_OBJECT) return v->as.object;
+    if (v->kind != VALUE_ERROR)
+        diag_error(ev->diags, span, "expected an object, found %s", value_kind_text(v->kind));
     return NULL;
 }
 
@@ -43,7 +41,8 @@ Value eval_geometry(Eval *ev, const Node *node) {
     bool tracing = node->op == KW_trace;
     const EvalGeometry *g = ev->options->geometry;
     if (!builtin_argument_count(ev, node, tracing ? 3 : 2, tracing ? 4 : 2)) return value_error();
-    const Object *object = object_argument(ev, node);
+    Value v = eval_node(ev, node->as.list.items[0]);
+    const Object *object = object_of(ev, &v, node->as.list.items[0]->span);
     if (!object) return value_error();
     if (!g || !(tracing ? g->trace != NULL : g->inside != NULL)) {
         diag_error(ev->diags, node->span, "%s() is not available here", keyword_text((Keyword)node->op));
@@ -54,9 +53,17 @@ Value eval_geometry(Eval *ev, const Node *node) {
     return point_argument(ev, node, 1, &p) ? value_float(g->inside(g->context, object, p)) : value_error();
 }
 
+/* A light is everywhere: POV-Ray's largest box. */
+static Value endless(Eval *ev, const Node *node) {
+    double far = node->op == KW_min_extent ? -1e10 : 1e10;
+    return value_vector(ev, (double[]){far, far, far}, 3);
+}
+
 Value eval_extent(Eval *ev, const Node *node) {
     if (!builtin_argument_count(ev, node, 1, 1)) return value_error();
-    const Object *object = object_argument(ev, node);
+    Value v = eval_node(ev, node->as.list.items[0]);
+    if (v.kind == VALUE_LIGHT) return endless(ev, node);
+    const Object *object = object_of(ev, &v, node->as.list.items[0]->span);
     const EvalGeometry *g = ev->options->geometry;
     if (!object) return value_error();
     if (!g || !g->extent) {

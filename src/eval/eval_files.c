@@ -195,6 +195,10 @@ void run_read(Eval *ev, const Node *node) {
         diag_error(ev->diags, node->as.list.items[0]->span, "this file is open for writing");
         return;
     }
+    if (f->ended) { /* POV-Ray closes it there, and has forgotten its handle */
+        diag_error(ev->diags, node->as.list.items[0]->span, "this file has been read to its end");
+        return;
+    }
     for (size_t i = 1; i < node->as.list.count; i++) {
         const Node *target = node->as.list.items[i];
         Value v;

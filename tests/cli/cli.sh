@@ -130,6 +130,9 @@ case_animation() {
   want_only film.pov f09.ppm f10.ppm
   run run film.pov +KFI1 +KFF10 +SF0.2 +EF0.35; want_status 0
   [ "$(grep '^>' err | tr '\n' ' ')" = "> 2 0.11 > 3 0.22 " ] || fail "shares: $(cat err)"
+  run run film.pov +KFI-1.5 +KFF5.5 Frame_Step=2; want_status 0
+  [ "$(grep '^>' err | tr '\n' ' ')" = "> 0 0.00 > 2 0.40 > 4 0.80 " ] || fail "every second frame: $(cat err)"
+  refused run film.pov +KFF4 Frame_Step=0
   refused run film.pov +KFI5 +KFF2
   refused run film.pov +KFF3 +EF4
 }

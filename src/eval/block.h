@@ -72,7 +72,7 @@ typedef struct BuildContext {
     DiagList *diags;
     double image_aspect; /* width / height */
     bool is_program;     /* run for what it prints: an empty scene is no matter */
-    uint64_t most_vertices; /* the limit of one mesh */
+    uint64_t most_vertices; /* the limit of one mesh; 0: none */
     const Texture *default_texture;
     int noise_generator; /* of global_settings: 1, 2, 3; 0: not given */
     bool old_noise;      /* #version is below 3.5: generator 1 unless one is given */

@@ -488,9 +488,10 @@ bool reader_run(Reader *reader) {
 }
 
 bool reader_mesh_fits(Reader *reader, Span span, double vertices) {
-    if (vertices <= (double)reader->context->most_vertices) return true;
+    uint64_t most = reader->context->most_vertices;
+    if (most == 0 || vertices <= (double)most) return true;
     Diagnostic *d = reader_error(reader, span, "'%s' would have more than %llu vertices", reader->block->word->text,
-                                 (unsigned long long)reader->context->most_vertices);
+                                 (unsigned long long)most);
     if (d) diag_hint(reader->context->diags, d, "--limit mesh=N allows more");
     return false;
 }

@@ -397,10 +397,10 @@ static void test_colours_behind_words(void **state) {
     const Fog *fog = block_text_value(t, "fog { fog_type 1 distance 25000 rgb <0.25, 0.5, 1> }").as.fog;
     assert_near(fog->distance, 25000);
     assert_near(fog->color.green, 0.5);
-    const Light *light = block_text_value(t, "light_source { y, parallel rgb 0.5 point_at 0 }").as.light;
+    const Light *light = block_text_value(t, "light_source { y, rgb 0.5 parallel point_at 0 }").as.light;
     assert_int_equal(light->kind, LIGHT_PARALLEL);
     assert_near(light->color.blue, 0.5);
-    light = block_text_value(t, "light_source { y, shadowless rgb 0.25 }").as.light;
+    light = block_text_value(t, "light_source { y, rgb 0.25 shadowless }").as.light;
     assert_true(light->shadowless);
     assert_near(light->color.blue, 0.25);
 }

@@ -343,6 +343,16 @@ VtsStatus session_draw(VtsSession *session, bool exact, RenderStats *stats) {
     return VTS_OK;
 }
 
+/* A scene is a user's work: no picture takes its place, nor that of a file that it includes. */
+VtsStatus session_spare_sources(VtsSession *session, const char *output_path) {
+    if (!source_holds(&session->sources, output_path)) return VTS_OK;
+    StrBuf why = {0};
+    strbuf_addf(&why, "'%s' is a text that the scene is made of", output_path);
+    VtsStatus status = session_file_error(session, &why);
+    strbuf_free(&why);
+    return status;
+}
+
 /* The picture as users see it, or the reference. */
 static VtsStatus render(VtsSession *session, const char *scene_path, const char *output_path, bool exact) {
     const VtsOptions *o = &session->options;
@@ -350,6 +360,7 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
     bool writable = image_can_write(output_path, &error);
     VtsStatus status = writable ? session_evaluate(session, scene_path, (EvalMode){0}) : session_file_error(session, &error);
     strbuf_free(&error);
+    if (status == VTS_OK) status = session_spare_sources(session, output_path);
     if (status != VTS_OK) return status;
     double parsed = stopwatch_wall();
     if ((status = session_compile(session, exact, 0)) != VTS_OK) return status;

@@ -47,6 +47,8 @@ VtsStatus session_compile(VtsSession *session, bool exact, int texel_resolution)
 /* Draws session->compiled into session->picture. */
 VtsStatus session_draw(VtsSession *session, bool exact, RenderStats *stats);
 VtsStatus session_save_picture(VtsSession *session, const char *scene_path, const char *output_path);
+/* VTS_ERROR_FILE, reported, when the output is a file that the scene was read from. */
+VtsStatus session_spare_sources(VtsSession *session, const char *output_path);
 /* Tells that there is no picture, and why. */
 VtsStatus session_file_error(VtsSession *session, const StrBuf *why);
 /* Passes on what was found since the last time. */

@@ -209,6 +209,8 @@ VtsStatus session_texel(VtsSession *session, const char *scene_path, const char 
     if (status == VTS_OK)
         status =
             session_evaluate(session, scene_path, (EvalMode){.is_program = true, .writes_in_memory = true});
+    if (status == VTS_OK && save_path) status = session_spare_sources(session, save_path);
+    if (status == VTS_OK && picture_path) status = session_spare_sources(session, picture_path);
     if (status != VTS_OK) return status;
     const TexelDef *def = find_texel(session, name);
     if (!def || !is_single(session, def, name)) return VTS_ERROR_USAGE;

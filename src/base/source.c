@@ -65,13 +65,23 @@ SourceStatus source_load(SourceSet *set, const char *path, const char *name, con
     return SOURCE_OK;
 }
 
+static bool is_file(const SourceFile *file, const struct stat *info) {
+    return file->inode == (uint64_t)info->st_ino && file->device == (uint64_t)info->st_dev;
+}
+
 void source_forget(SourceSet *set, const char *path) {
     struct stat info;
     if (stat(path, &info) != 0) return;
-    for (size_t i = 0; i < set->count; i++) {
-        SourceFile *file = set->items[i];
-        if (file->inode == (uint64_t)info.st_ino && file->device == (uint64_t)info.st_dev) file->stale = true;
-    }
+    for (size_t i = 0; i < set->count; i++)
+        if (is_file(set->items[i], &info)) set->items[i]->stale = true;
+}
+
+bool source_holds(const SourceSet *set, const char *path) {
+    struct stat info;
+    if (stat(path, &info) != 0) return false;
+    for (size_t i = 0; i < set->count; i++)
+        if (is_file(set->items[i], &info)) return true;
+    return false;
 }
 
 const SourceFile *source_add_text(SourceSet *set, const char *name, const char *text, size_t size) {

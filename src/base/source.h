@@ -41,6 +41,8 @@ void source_set_init(SourceSet *set, Arena *arena);
 SourceStatus source_load(SourceSet *set, const char *path, const char *name, const SourceFile **out);
 /* To be called when a file is written: what the set holds of it, under whatever path, is not returned again. */
 void source_forget(SourceSet *set, const char *path);
+/* Whether the file at `path`, which may be a link, is one that the set was read from. */
+bool source_holds(const SourceSet *set, const char *path);
 /* Takes text that is already in memory (copied). */
 const SourceFile *source_add_text(SourceSet *set, const char *name, const char *text, size_t size);
 

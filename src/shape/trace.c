@@ -258,6 +258,7 @@ static void take_crossing(SolidSink *base, double t, const SolidTag *tag) {
 
 static bool visit_leaf(Search *search, const Core *core, const Ray *ray, bool flipped,
                        const Filter *filters) {
+    if (!core->data) return false;
     LeafSink sink = {
         .base = {search->t_min, search->t, take_crossing}, .filters = filters, .budget = &search->budget};
     core->ops->cross(core->data, ray, &sink.base);

@@ -473,6 +473,21 @@ S
   [ ! -e big.png ] || fail "an interrupted reference left a picture"
 }
 
+# No picture replaces the scene, what it includes, or what a link leads to.
+case_sources() {
+  scene
+  cp scene.vts scene.png
+  echo '#include "part.ppm"' >whole.vts
+  cp scene.vts part.ppm
+  ln -s scene.vts link.png
+  run render scene.png -s 8x6; want_status 3
+  run render whole.vts -s 8x6 -o part.ppm; want_status 3
+  run render scene.vts -s 8x6 -o link.png; want_status 3
+  run reference scene.vts -s 8x6 -o link.png; want_status 3
+  local f
+  for f in scene.png part.ppm link.png; do cmp -s scene.vts $f || fail "$f was overwritten"; done
+}
+
 # A part is the same pixels as in the whole.
 case_region() {
   scene

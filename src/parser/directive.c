@@ -294,7 +294,7 @@ static Node *macro_directive(Parser *p, TokenList *list, uint32_t index, uint32_
     if (!parser_expect(p, ')', "',' or ')'")) return NULL;
     Group g;
     group_begin(list, index, raw_position(p), &g);
-    if (list->items[g.end].kind == TOKEN_END) {
+    if (list->items[g.end].kind != TOKEN_DIRECTIVE) { /* the text ends, or nothing matches */
         if (p->slow) group_report_endless(p->diags, list, n->span);
         return parser_give_up(p);
     }

@@ -32,9 +32,8 @@ void group_report_endless(DiagList *diags, const TokenList *list, Span head) {
         return;
     }
     const Token *t = list->items;
-    while (t < end && t->span.begin != head.begin) t++;
-    if (t == end) return;
-    const char *word = t->as.name->text;
+    while (t < end && (t->kind != TOKEN_DIRECTIVE || t->span.begin != head.begin)) t++;
+    const char *word = t < end ? t->as.name->text : "macro"; /* whose head may have been read from elsewhere */
     Diagnostic *d = diag_error(diags, end->span, "the file ends, but #end is missing for a #%s", word);
     diag_note(diags, d, head, "this #%s has no #end", word);
 }

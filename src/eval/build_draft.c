@@ -99,6 +99,10 @@ static const char *what_happens(const BuildContext *context, const char *word) {
         {"panoramic", "is drawn as a perspective camera"},
         {"omnimax", "is drawn as a perspective camera"},
         {"tiling wang", "is drawn as 'tiling plain'"},
+        {"reflection", "is not modelled yet: nothing mirrors"},
+        {"filter or transmit", "is not modelled yet: what has it is opaque"},
+        {"intersection", "is not modelled yet: it is left out"},
+        {"difference", "is not modelled yet: it is left out"},
         {"wind_field", "is not modelled yet: nothing moves"},
     };
     for (size_t i = 0; i < VTS_ARRAY_COUNT(effects); i++)
@@ -110,12 +114,16 @@ static const char *what_happens(const BuildContext *context, const char *word) {
                                        : "is not modelled yet: it has no effect";
 }
 
+static void warn_word(SceneDraft *draft, BuildContext *context, const char *word, Span span) {
+    if (warn_first(draft, context, word))
+        diag_warning(context->diags, span, "'%s' %s", word, what_happens(context, word));
+}
+
 /* The newest note is the first of its list: the text's order is from the end. */
 static void warn_inert(SceneDraft *draft, BuildContext *context, const InertNote *notes) {
     if (!notes) return;
     warn_inert(draft, context, notes->next);
-    if (warn_first(draft, context, notes->word))
-        diag_warning(context->diags, notes->span, "'%s' %s", notes->word, what_happens(context, notes->word));
+    warn_word(draft, context, notes->word, notes->span);
 }
 
 static void walk_pigment(SceneDraft *draft, BuildContext *context, const Pigment *pigment) {
@@ -127,6 +135,10 @@ static void walk_pigment(SceneDraft *draft, BuildContext *context, const Pigment
 
 static void walk_texture(SceneDraft *draft, BuildContext *context, const Texture *texture) {
     for (; visit(draft, context, texture); texture = texture->under) {
+        const Color *mirror = &texture->finish->reflection_max, *color = &texture->pigment->color;
+        if (mirror->red + mirror->green + mirror->blue > 0) warn_word(draft, context, "reflection", texture->span);
+        if (texture->pigment->kind == PATTERN_SOLID && color->filter + color->transmit > 0 && !texture->under)
+            warn_word(draft, context, "filter or transmit", texture->span);
         warn_inert(draft, context, texture->inert);
         walk_pigment(draft, context, texture->pigment);
     }
@@ -154,6 +166,8 @@ static void walk_surface(SceneDraft *draft, BuildContext *context, const Surface
 
 static void walk_object(SceneDraft *draft, BuildContext *context, const Object *object) {
     if (!visit(draft, context, object)) return;
+    if (object->kind == OBJECT_INTERSECTION || object->kind == OBJECT_DIFFERENCE)
+        warn_word(draft, context, object_word(object), object->span);
     warn_inert(draft, context, object_inert(object));
     walk_texture(draft, context, object->texture);
     if (object_has_group(object) &&

@@ -41,20 +41,8 @@ typedef struct Builder {
     double tolerance;
 } Builder;
 
-/* Once for each place in the text. */
-static void warn_once(Builder *b, Span span, const char *what) {
-    diag_warning(b->diags, span, "%s not drawn in this version: this is opaque and does not mirror", what);
-}
-
-static void warn_undrawn(Builder *b, const Texture *texture) {
-    Color mirror = texture->finish->reflection_max, color;
-    if (mirror.red + mirror.green + mirror.blue > 0) warn_once(b, texture->span, "'reflection' is");
-    if (pigment_is_uniform(texture->pigment, &color) && color.filter + color.transmit > 0) warn_once(b, texture->span, "'filter' and 'transmit' are");
-}
-
 static const Look *make_look(Builder *b, const Texture *texture) {
     Look *look = arena_new(b->arena, Look);
-    warn_undrawn(b, texture);
     *look = look_from_texture(texture, &b->scene->settings);
     return look;
 }
@@ -131,8 +119,7 @@ static void add_object(Builder *b, const Object *object, const Transform *parent
     case OBJECT_DIFFERENCE:
     case OBJECT_SOLID:
     case OBJECT_UNMODELLED:
-        diag_warning(b->diags, object->span, "'%s' is not drawn in this version: it has no effect here", object_word(object));
-        return;
+        return; /* named in a warning when the scene was read */
     }
 }
 

@@ -35,8 +35,8 @@ static char *read_whole(const char *path) {
     return text.data;
 }
 
-static const char *const include_dirs[] = {"/usr/share/povray-3.7/include", "/usr/share/povray/include"};
-/* The programs stdlib_*.vts are about our own include files. */
+/* The .pov programs of others are read with POV-Ray's include files where those are installed; ours need nothing but our own. */
+static const char *const include_dirs[] = {"/usr/share/povray-3.7/include", "/usr/share/povray/include", VTS_STDLIB_DIR};
 static const char *const stdlib_dirs[] = {VTS_STDLIB_DIR};
 
 static void check_diagnostics(Run *run, const char *text, SourceSet *sources, const DiagList *diags) {
@@ -95,10 +95,11 @@ static void run_program(Run *run, const char *path, const char *text, bool show,
     diag_init(&diags, &session, &sources);
     interner_init(&names, &session);
     EvalGeometry geometry = hooks_geometry(&session, NULL);
-    bool ours = strstr(path, "/stdlib_") != NULL;
+    const char *suffix = strrchr(path, '.');
+    bool ours = suffix && strcmp(suffix, ".vts") == 0;
     EvalOptions o = {.geometry = &geometry,
                      .include_dirs = ours ? stdlib_dirs : include_dirs,
-                     .include_dir_count = ours ? 1 : 2,
+                     .include_dir_count = ours ? VTS_ARRAY_COUNT(stdlib_dirs) : VTS_ARRAY_COUNT(include_dirs),
                      .image_width = 4,
                      .image_height = 4,
                      .limits = eval_limits_default(),

@@ -1,0 +1,284 @@
+#include "texel/texel_sky.h"
+
+#include "texel/voxel_layer.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Second-order fits are smooth, and so is the sky's light: a few thousand places are enough. */
+enum { MOST_CELLS = 8192, DIRECTIONS = 32, MOST_STEPS = 96 };
+enum { VIEW_NUMBERS = 10 }; /* mean, first, second: xx yy zz xy xz yz */
+/* Numbers of a view are within ±3 (7.5 times a mean of products below 0.4). */
+static const float VIEW_UNIT = 1.0f / 8192;
+
+/* Voxels grow by this per length of the way: somewhat narrower than the thirtieth of the sphere that a direction stands for. */
+static const float CONE_GROWTH = 0.2f;
+static const float FIRST_VOXELS = 2.5f, STEP_VOXELS = 1.2f, LAYER_SHARE = 0.3f;
+static const float DARK = 1.0f / 256;
+
+struct TexelSky {
+    int size[3];
+    float per_side[3];
+    bool repeated[3];
+    int16_t (*views)[VIEW_NUMBERS];
+    MemoryBudget *memory;
+    size_t bytes;
+};
+
+/* ---- building ---- */
+
+typedef struct SkyBuild {
+    const VoxelLayer *const *layers;
+    size_t count;
+    const TexelSkyOptions *options;
+    TexelSky *sky;
+    float extent[3], finest; /* side of the finest voxels, geometric mean */
+    float longest_finest;    /* along the longest side, as opacity.h wants it */
+    int level;               /* whose voxels are the cells */
+    Vec3f direction[DIRECTIONS];
+} SkyBuild;
+
+/* The corners of an icosahedron and those of a dodecahedron: means over each are exact for polynomials up to the fifth degree, so
+ * that products of second-order functions come out right. Turned, so that none lies in a plane of the grid. */
+static void spread_directions(Vec3f out[DIRECTIONS]) {
+    const double golden = (1 + sqrt(5.0)) / 2;
+    const double rings[3][3] = {{0, 1, golden}, {1, 1, 1}, {0, 1 / golden, golden}};
+    int count = 0;
+    Vec3 turned[3];
+    turned[0] = vec3_normalize(vec3(0.81, 0.37, -0.45));
+    vec3_frame(turned[0], &turned[1], &turned[2]);
+    for (int ring = 0; ring < 3; ring++)
+        for (int signs = 0; signs < 8; signs++)
+            for (int turn = 0; turn < 3; turn++) {
+                double v[3];
+                bool again =
+                    ring == 1 ? turn > 0 : (signs & 1) != 0; /* −0 is 0, and <1, 1, 1> turned is itself */
+                if (again) continue;
+                for (int k = 0; k < 3; k++)
+                    v[(k + turn) % 3] = signs >> k & 1 ? -rings[ring][k] : rings[ring][k];
+                Vec3 d = vec3_madd(vec3_madd(vec3_scale(turned[0], v[0]), turned[1], v[1]), turned[2], v[2]);
+                out[count++] = vec3f_from(vec3_normalize(d));
+            }
+}
+
+/* p moved into the extent along repeated axes; false where it is outside along another. */
+static bool bring_inside(const SkyBuild *b, float p[3]) {
+    for (int k = 0; k < 3; k++) {
+        if (b->sky->repeated[k])
+            p[k] -= floorf(p[k] / b->extent[k]) * b->extent[k];
+        else if (!(p[k] >= 0 && p[k] <= b->extent[k]))
+            return false;
+    }
+    return true;
+}
+
+static float depth_of_step(const SkyBuild *b, float lod, Vec3f at, Vec3f step) {
+    float depth = 0, h = b->longest_finest * exp2f(lod);
+    for (size_t i = 0; i < b->count; i++) {
+        VoxelSample v;
+        if (!voxel_layer_sample_lod(b->layers[i], lod, at, &v)) continue;
+        depth += b->options->opacity == OPACITY_MEAN ? opacity_depth_mean(&v, b->longest_finest, h, step)
+                                                     : opacity_depth(b->options->opacity, &v, h, step);
+    }
+    return depth;
+}
+
+/* Along a widening cone to the outside; a layer without end is dark in its own plane. */
+static float march_out(const SkyBuild *b, const float from[3], Vec3f d) {
+    const float along[3] = {d.x, d.y, d.z};
+    float depth = 0, t = FIRST_VOXELS * b->finest, top = (float)(b->layers[0]->levels - 1),
+          longest = INFINITY;
+    for (int k = 0; k < 3; k++)
+        if (!b->sky->repeated[k] && along[k] != 0)
+            longest = float_min(longest, LAYER_SHARE * b->extent[k] / fabsf(along[k]));
+    for (int i = 0; i < MOST_STEPS; i++) {
+        float voxel = float_max(b->finest, CONE_GROWTH * t), step = float_min(STEP_VOXELS * voxel, longest),
+              p[3];
+        for (int k = 0; k < 3; k++) p[k] = from[k] + (t + step / 2) * along[k];
+        if (!bring_inside(b, p)) break;
+        float lod = float_min(log2f(voxel / b->finest), top);
+        depth += depth_of_step(b, lod, vec3f(p[0], p[1], p[2]), vec3f_scale(d, step));
+        if (depth > -logf(DARK)) return 0;
+        t += step;
+    }
+    return expf(-depth);
+}
+
+/* Area of all layers in a voxel, but for a factor that is the level's. */
+static float matter_of_voxel(const SkyBuild *b, int level, const int at[3]) {
+    float sum = 0;
+    for (size_t i = 0; i < b->count; i++) {
+        const VoxelLevel *l = &b->layers[i]->level[level];
+        int32_t index =
+            l->index[voxel_level_brick_at(l, at[0] / BRICK_SIDE, at[1] / BRICK_SIDE, at[2] / BRICK_SIDE)];
+        if (index < 0) continue;
+        const VoxelBrick *brick = &l->bricks[index];
+        int z = at[2] & (BRICK_SIDE - 1),
+            bit = BRICK_SIDE * (at[1] & (BRICK_SIDE - 1)) + (at[0] & (BRICK_SIDE - 1));
+        uint64_t slice = brick->slice[z], below = ((uint64_t)1 << bit) - 1;
+        if (slice >> bit & 1)
+            sum += voxel_code_density(l->codes[brick->first[z] + count_bits(slice & below)].rest);
+    }
+    return sum;
+}
+
+/* The child of a voxel that a share u of the matter in it falls to; u becomes the share within the child. */
+static void pick_child(const SkyBuild *b, int level, int at[3], float *u) {
+    int first[3], halves[3], best[3] = {0, 0, 0};
+    float shares[8], sum = 0;
+    for (int k = 0; k < 3; k++) {
+        halves[k] = voxel_layer_halves(b->layers[0], level - 1, k) ? 2 : 1;
+        first[k] = at[k] * halves[k];
+    }
+    int count = halves[0] * halves[1] * halves[2];
+    for (int i = 0; i < count; i++) {
+        const int child[3] = {first[0] + i % halves[0], first[1] + i / halves[0] % halves[1],
+                              first[2] + i / halves[0] / halves[1]};
+        sum += shares[i] = matter_of_voxel(b, level - 1, child);
+    }
+    float rest = *u * sum;
+    for (int i = 0; i < count; i++) {
+        if (!(shares[i] > 0)) continue;
+        best[0] = first[0] + i % halves[0], best[1] = first[1] + i / halves[0] % halves[1],
+        best[2] = first[2] + i / halves[0] / halves[1];
+        *u = float_clamp(rest / shares[i], 0, 1);
+        if (rest < shares[i]) break;
+        rest -= shares[i];
+    }
+    for (int k = 0; k < 3; k++) at[k] = sum > 0 ? best[k] : first[k];
+}
+
+/* A place in a cell: in matter, if there is any, as often as there is matter. On the matter itself, since what is a voxel beside a leaf
+ * is in that leaf's shade as the leaf is not. */
+static void pick_place(const SkyBuild *b, const int cell[3], int number, float out[3]) {
+    int at[3] = {cell[0], cell[1], cell[2]}, level = b->level;
+    float u = (float)(number * 0.6180339887 - floor(number * 0.6180339887));
+    bool any = matter_of_voxel(b, level, at) > 0;
+    for (; any && level > 0; level--) pick_child(b, level, at, &u);
+    for (int k = 0; k < 3; k++) out[k] = ((float)at[k] + 0.5f) * b->layers[0]->level[level].sides[k];
+}
+
+static void store_view(const SkyBuild *b, size_t cell, const float v[DIRECTIONS]) {
+    float sums[VIEW_NUMBERS] = {0};
+    for (int i = 0; i < DIRECTIONS; i++) {
+        Vec3f d = b->direction[i];
+        float s = v[i] / DIRECTIONS;
+        const float products[VIEW_NUMBERS] = {1,
+                                              3 * d.x,
+                                              3 * d.y,
+                                              3 * d.z,
+                                              7.5f * (d.x * d.x - 1.0f / 3),
+                                              7.5f * (d.y * d.y - 1.0f / 3),
+                                              7.5f * (d.z * d.z - 1.0f / 3),
+                                              7.5f * d.x * d.y,
+                                              7.5f * d.x * d.z,
+                                              7.5f * d.y * d.z};
+        for (int k = 0; k < VIEW_NUMBERS; k++) sums[k] += s * products[k];
+    }
+    for (int k = 0; k < VIEW_NUMBERS; k++)
+        b->sky->views[cell][k] = (int16_t)lrintf(float_clamp(sums[k], -3.9f, 3.9f) / VIEW_UNIT);
+}
+
+/* A row of cells along x. */
+static void build_row(void *context, size_t row, int worker) {
+    (void)worker;
+    const SkyBuild *b = context;
+    const TexelSky *sky = b->sky;
+    const int y = (int)row % sky->size[1], z = (int)row / sky->size[1];
+    for (int x = 0; x < sky->size[0]; x++) {
+        const int at[3] = {x, y, z};
+        float v[DIRECTIONS], place[3];
+        for (int i = 0; i < DIRECTIONS; i++) {
+            pick_place(b, at, i, place);
+            v[i] = march_out(b, place, b->direction[i]);
+        }
+        store_view(b, row * (size_t)sky->size[0] + (size_t)x, v);
+    }
+}
+
+static int choose_level(const VoxelLayer *layer) {
+    int level = int_min(1, layer->levels - 1);
+    for (; level + 1 < layer->levels; level++) {
+        const int *size = layer->level[level].size;
+        if ((size_t)size[0] * (size_t)size[1] * (size_t)size[2] <= MOST_CELLS) break;
+    }
+    return level;
+}
+
+static TexelSky *create(const VoxelLayer *layer, int level, const TexelSkyOptions *options) {
+    const VoxelLevel *l = &layer->level[level];
+    size_t cells = (size_t)l->size[0] * (size_t)l->size[1] * (size_t)l->size[2],
+           bytes = sizeof(TexelSky) + cells * sizeof(int16_t[VIEW_NUMBERS]);
+    if (!memory_budget_take(options->memory, bytes)) return NULL;
+    TexelSky *sky = calloc(1, sizeof *sky);
+    if (sky) sky->views = calloc(cells, sizeof *sky->views);
+    if (!sky || !sky->views) {
+        memory_budget_give_back(options->memory, bytes);
+        free(sky);
+        return NULL;
+    }
+    sky->memory = options->memory;
+    sky->bytes = bytes;
+    for (int k = 0; k < 3; k++) {
+        sky->size[k] = l->size[k];
+        sky->per_side[k] = l->per_side[k];
+        sky->repeated[k] = options->repeated >> k & 1;
+    }
+    return sky;
+}
+
+TexelSky *texel_sky_build(const VoxelLayer *const *layers, size_t count, const TexelSkyOptions *options) {
+    if (count == 0) return NULL;
+    const VoxelLevel *finest = &layers[0]->level[0];
+    SkyBuild b = {.layers = layers, .count = count, .options = options, .level = choose_level(layers[0])};
+    b.sky = create(layers[0], b.level, options);
+    if (!b.sky) return NULL;
+    for (int k = 0; k < 3; k++) b.extent[k] = finest->sides[k] * (float)finest->size[k];
+    b.finest = cbrtf(finest->sides[0] * finest->sides[1] * finest->sides[2]);
+    b.longest_finest = 1 / finest->density_unit;
+    spread_directions(b.direction);
+    if (pool_run(options->pool, (size_t)b.sky->size[1] * (size_t)b.sky->size[2], build_row, &b)) return b.sky;
+    texel_sky_destroy(b.sky);
+    return NULL;
+}
+
+void texel_sky_destroy(TexelSky *sky) {
+    if (!sky) return;
+    memory_budget_give_back(sky->memory, sky->bytes);
+    free(sky->views);
+    free(sky);
+}
+
+size_t texel_sky_bytes(const TexelSky *sky) { return sky->bytes; }
+
+/* ---- reading ---- */
+
+/* The two cells along an axis and the weight of the second. */
+static float pair_of_cells(const TexelSky *sky, int axis, float p, int out[2]) {
+    int size = sky->size[axis];
+    float x = p * sky->per_side[axis] - 0.5f;
+    if (!(fabsf(x) < 1e9f)) x = 0;
+    if (!sky->repeated[axis]) x = float_clamp(x, 0, (float)(size - 1));
+    float lower = floorf(x);
+    int at = (int)lower;
+    for (int i = 0; i < 2; i++)
+        out[i] = sky->repeated[axis] ? (at + i) & (size - 1) : int_min(at + i, size - 1);
+    return x - lower;
+}
+
+SkyView texel_sky_at(const TexelSky *sky, Vec3f p) {
+    int x[2], y[2], z[2];
+    float tx = pair_of_cells(sky, 0, p.x, x), ty = pair_of_cells(sky, 1, p.y, y),
+          tz = pair_of_cells(sky, 2, p.z, z);
+    float n[VIEW_NUMBERS] = {0};
+    for (int i = 0; i < 8; i++) {
+        int a = i & 1, b = i >> 1 & 1, c = i >> 2;
+        const int16_t *view =
+            sky->views[((size_t)z[c] * (size_t)sky->size[1] + (size_t)y[b]) * (size_t)sky->size[0] +
+                       (size_t)x[a]];
+        float w = (a ? tx : 1 - tx) * (b ? ty : 1 - ty) * (c ? tz : 1 - tz) * VIEW_UNIT;
+        for (int k = 0; k < VIEW_NUMBERS; k++) n[k] += w * (float)view[k];
+    }
+    return (SkyView){
+        .mean = n[0], .first = {n[1], n[2], n[3]}, .second = {n[4], n[5], n[6], n[7], n[8], n[9]}};
+}

@@ -1,5 +1,7 @@
 #include "render/exact_skin.h"
 
+#include "render/skin_fold.h"
+
 #include <embree3/rtcore.h>
 #include <stdlib.h>
 
@@ -57,9 +59,14 @@ static SkinPoint guess_from(const Walk *w, const Node *from, double t) {
                        from->point.w + vec3_dot(from->place.grad_layer, way)};
 }
 
+static double turning(const Node *n) { return vec3_dot(n->place.grad_a, vec3_cross(n->place.grad_b, n->place.grad_layer)); }
+
+/* Where a fold lies between two nodes they are on sheets that are turned opposite ways. */
+static bool same_sheet(const Node *a, const Node *b) { return turning(a) * turning(b) > 0; }
+
 /* The node at t, going there from a known one by as many steps as Newton's method needs. */
 static bool reach(const Walk *w, const SkinCell *cell, const Node *from, double t, int depth, Node *out) {
-    if (find_node(w, cell, t, guess_from(w, from, t), out)) return true;
+    if (find_node(w, cell, t, guess_from(w, from, t), out) && (cell->side != CELL_FOLDED || same_sheet(from, out))) return true;
     Node half;
     return depth > 0 && reach(w, cell, from, (from->t + t) / 2, depth - 1, &half) && reach(w, cell, &half, t, depth - 1, out);
 }
@@ -208,17 +215,17 @@ static bool walk_piece(Walk *w, const SkinCell *cell, const Node *middle, double
 
 static bool walk_cell(Walk *w, int32_t number) {
     const SkinCell *cell = &w->skin->cells[number];
-    SkinCuts cuts;
-    if (!skin_cell_cut(cell, w->ray, w->t_min, w->t, &cuts)) return false;
-    double size = vec3_length(vec3_sub(cell->bounds.max, cell->bounds.min)), from = cuts.from;
-    for (int i = 0; i < cuts.count; from = cuts.t[i++]) {
-        double to = cuts.t[i], t = (from + to) / 2;
-        SkinPoint point = {.cell = number};
-        if (!(to > from) || !skin_cell_holds(cell, vec3_madd(w->ray->origin, w->ray->direction, t), 1e-9 * size, &point)) continue;
-        Node middle = {t, point, skin_texture_place(cell, &point)};
-        if (walk_piece(w, cell, &middle, from, to)) return w->found = true;
+    SkinPiece pieces[MOST_PIECES];
+    int count = skin_cell_pieces(cell, number, w->ray, w->t_min, w->t, pieces);
+    bool found = false;
+    for (int i = 0; i < count && !(found && w->shadow); i++) {
+        const SkinPiece *p = &pieces[i];
+        if (p->t0 >= w->t) continue;
+        Node middle = {(p->t0 + p->t1) / 2, p->middle, skin_texture_place(cell, &p->middle)};
+        found |= walk_piece(w, cell, &middle, p->t0, double_min(p->t1, w->t));
     }
-    return false;
+    w->found |= found;
+    return found;
 }
 
 /* ---- Embree over the cells ---- */

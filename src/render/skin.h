@@ -24,12 +24,16 @@ typedef struct Bilinear {
     double c[4];
 } Bilinear;
 
+/* Which way the mapping of a cell is turned: det J > 0 or < 0 all over it (but for zeros on its edges), of both signs, or 0 throughout. */
+typedef enum CellSide { CELL_UPRIGHT, CELL_MIRRORED, CELL_FOLDED, CELL_FLAT } CellSide;
+
 typedef struct SkinCell {
     BilinearVec foot, height;
     Bilinear u, v, w_foot, w_tip;
     SurfaceNeighbour neighbour[4];
     Box3 bounds;
     bool triangle;
+    uint8_t side; /* CellSide */
 } SkinCell;
 
 /* One layer of matter of a built texel. */
@@ -78,6 +82,7 @@ typedef struct CompiledSkin {
     double top;          /* height of the layer in w': more than w_tip when copies are scaled up */
     PlacedTexel *texels;
     size_t texel_count;
+    bool overlaps;       /* sheets lie over one another: a cell is folded, or neighbours are turned opposite ways */
     CellTree *tree;   /* NULL where `exact` is not */
     ExactSkin *exact; /* NULL but for the reference */
     Box3 bounds;
@@ -99,14 +104,6 @@ Box3 skin_cell_bounds(const SkinCell *cell);
 bool skin_cell_invert(const SkinCell *cell, Vec3 world, double tolerance, SkinPoint *point);
 /* Whether the world point lies in the cell (with a hair's margin), and where; `point->cell` is left alone. */
 bool skin_cell_holds(const SkinCell *cell, Vec3 world, double tolerance, SkinPoint *point);
-/* The ray cut where it meets the cell's walls: the piece from `from` to t[0], then those up to t[1] … t[count − 1], ascending. Each lies
- * inside or outside as a whole. False when the ray passes by. */
-enum { MOST_SKIN_CUTS = 17 };
-typedef struct SkinCuts {
-    double from, t[MOST_SKIN_CUTS];
-    int count;
-} SkinCuts;
-bool skin_cell_cut(const SkinCell *cell, const Ray *ray, double t_min, double t_max, SkinCuts *cuts);
 /* Goes on from *point (a guess, possibly outside its cell) to the cell that holds `world`. Returns SKIN_INSIDE, or how the
  * point is outside: beyond the top, below the foot, past a border, or lost (the mapping is folded there). */
 typedef enum SkinSide { SKIN_INSIDE, SKIN_ABOVE, SKIN_BELOW, SKIN_BORDER, SKIN_LOST } SkinSide;

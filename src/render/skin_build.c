@@ -5,6 +5,7 @@
 #include "base/stopwatch.h"
 #include "pattern/pattern.h"
 #include "render/exact_skin.h"
+#include "render/skin_fold.h"
 #include "tape/noise.h"
 #include "texel/texel_content.h"
 
@@ -226,19 +227,40 @@ static void repeats(const SkinMapping *mapping, const SurfaceMesh *mesh, double 
     *v = fmax(1, round(along_v / mapping->tile_size));
 }
 
-/* Whether the box over the cell turns inside out somewhere: det J at its corners has both signs. */
-static bool cell_folds(const SkinCell *cell) {
-    int positive = 0, negative = 0;
-    for (int i = 0; i < 8; i++) {
-        Mat3 j;
-        double a = i & 1, b = (i >> 1) & 1, w = (i >> 2) & 1;
-        if (cell->triangle && a + b > 1) continue;
-        skin_cell_position(cell, a, b, w, &j);
-        double det = mat3_determinant(&j);
-        positive += det > 0;
-        negative += det < 0;
+/* Folded boxes as they are found: how many, the first of them, and up to which share of its height none folds. */
+typedef struct Folds {
+    size_t count, first;
+    double unfolded;
+} Folds;
+
+static void note_fold(Folds *folds, const SkinCell *cell, size_t number) {
+    if (cell->side != CELL_FOLDED) return;
+    if (!folds->count++) folds->first = number;
+    folds->unfolded = skin_cell_unfolded_height(cell, folds->unfolded);
+}
+
+static void report_folds(const Folds *folds, const Skin *skin, const SurfaceMesh *mesh, const SkinCell *cells, DiagList *diags) {
+    if (!folds->count) return;
+    const SkinCell *cell = &cells[folds->first];
+    const uint32_t *v = mesh->cells[folds->first].vertex;
+    Vec3 at = skin_cell_position(cell, cell->triangle ? 1.0 / 3 : 0.5, cell->triangle ? 1.0 / 3 : 0.5, 0, NULL);
+    diag_warning(diags, skin->span,
+                 "the skin folds over %zu of %zu boxes, where its height vectors cross, first over <%.4g, %.4g, %.4g> (vertices %u, %u, %u%s); "
+                 "with its height times %.3g nothing would fold",
+                 folds->count, mesh->cell_count, at.x, at.y, at.z, v[0], v[1], v[2], cell->triangle ? "" : ", …", folds->unfolded);
+}
+
+/* Whether sheets lie over one another somewhere: in a cell, or where a wall stands between cells that are turned opposite ways. */
+static bool sheets_overlap(const CompiledSkin *skin) {
+    for (size_t i = 0; i < skin->cell_count; i++) {
+        const SkinCell *cell = &skin->cells[i];
+        if (cell->side == CELL_FOLDED) return true;
+        for (int e = 0; e < (cell->triangle ? 3 : 4) && cell->side != CELL_FLAT; e++) {
+            int32_t next = cell->neighbour[e].cell;
+            if (next >= 0 && skin->cells[next].side != CELL_FLAT && skin->cells[next].side != cell->side) return true;
+        }
     }
-    return positive && negative;
+    return false;
 }
 
 static void make_cells(const Skin *skin, const SurfaceMesh *mesh, Arena *arena, CompiledSkin *out, DiagList *diags) {
@@ -249,7 +271,7 @@ static void make_cells(const Skin *skin, const SurfaceMesh *mesh, Arena *arena, 
     out->cells = arena_new_array(arena, SkinCell, mesh->cell_count);
     out->cell_count = mesh->cell_count;
     out->bounds = box3_empty();
-    size_t folded = 0;
+    Folds folds = {.unfolded = 1};
     for (size_t i = 0; i < mesh->cell_count; i++) {
         const SurfaceCell *in = &mesh->cells[i];
         SkinCell *cell = &out->cells[i];
@@ -273,11 +295,11 @@ static void make_cells(const Skin *skin, const SurfaceMesh *mesh, Arena *arena, 
         cell->w_tip = fit_scalar(w_tip, cell->triangle);
         memcpy(cell->neighbour, mesh->neighbours[i], sizeof cell->neighbour);
         cell->bounds = skin_cell_bounds(cell);
-        folded += cell_folds(cell);
+        cell->side = (uint8_t)skin_cell_side(cell, 1);
+        note_fold(&folds, cell, i);
     }
-    if (folded)
-        diag_warning(diags, skin->span, "the skin folds over %zu of %zu boxes: its height vectors cross; shorten 'height' or smooth the surface",
-                     folded, mesh->cell_count);
+    report_folds(&folds, skin, mesh, out->cells, diags);
+    out->overlaps = sheets_overlap(out);
 }
 
 /* ---- resolution: what the view can see ---- */

@@ -1,6 +1,8 @@
 /* World ↔ skin space: evaluating and inverting the mapping of a cell, going from cell to cell, entering the layer. */
 #include "render/skin.h"
 
+#include "render/skin_fold.h"
+
 #include <embree3/rtcore.h>
 #include <stdlib.h>
 
@@ -116,68 +118,6 @@ SkinSide skin_locate(const CompiledSkin *skin, Vec3 world, double tolerance, Ski
 
 /* ---- entering the layer ---- */
 
-static void add_crossing(SkinCuts *c, double t, double t_min, double t_max) {
-    if (!(t > t_min && t < t_max) || c->count == MOST_SKIN_CUTS - 1) return; /* room for the end */
-    int i = c->count++;
-    for (; i > 0 && c->t[i - 1] > t; i--) c->t[i] = c->t[i - 1];
-    c->t[i] = t;
-}
-
-/* Where the ray meets the bilinear patch q0 + q1·s + q2·r + q3·s·r (s, r in [0, 1] with a margin): the quadratic of
- * Reshetov 2019 in s, from the coplanarity of the ray and the patch's ruling at s. */
-static void cross_patch(SkinCuts *out, const Ray *ray, Vec3 q0, Vec3 q1, Vec3 q2, Vec3 q3, double t_min, double t_max) {
-    const double margin = 1e-7;
-    /* Ruling at s: base q0 + s·q1 (relative to the origin), direction q2 + s·q3. Coplanar with d: (base × ruling) · d = 0. */
-    Vec3 base = vec3_sub(q0, ray->origin), d = ray->direction;
-    double c0 = vec3_dot(vec3_cross(base, q2), d);
-    double c2 = vec3_dot(vec3_cross(q1, q3), d);
-    double c1 = vec3_dot(vec3_add(vec3_cross(base, q3), vec3_cross(q1, q2)), d);
-    double roots[2];
-    int count = 0;
-    double scale = fabs(c0) + fabs(c1) + fabs(c2);
-    if (fabs(c2) <= 1e-14 * scale) {
-        if (c1 != 0) roots[count++] = -c0 / c1;
-    } else {
-        double disc = c1 * c1 - 4 * c0 * c2;
-        if (disc < 0) return;
-        double half = -0.5 * (c1 + copysign(sqrt(disc), c1));
-        roots[count++] = half / c2;
-        if (half != 0) roots[count++] = c0 / half;
-    }
-    for (int i = 0; i < count; i++) {
-        double s = roots[i];
-        if (!(s >= -margin && s <= 1 + margin)) continue;
-        Vec3 on = vec3_madd(base, q1, s), along = vec3_madd(q2, q3, s);
-        /* on + r·along = t·d: least squares by the normal of both. */
-        Vec3 n = vec3_cross(along, d);
-        double nn = vec3_length_squared(n);
-        if (nn == 0) continue;
-        double r = -vec3_dot(vec3_cross(on, d), n) / nn;
-        if (!(r >= -margin && r <= 1 + margin)) continue;
-        double t = vec3_dot(vec3_madd(on, along, r), d) / vec3_length_squared(d);
-        add_crossing(out, t, t_min, t_max);
-    }
-}
-
-static void cross_triangle(SkinCuts *out, const Ray *ray, Vec3 p, Vec3 e1, Vec3 e2, double t_min, double t_max) {
-    const double margin = 1e-7;
-    Vec3 h = vec3_cross(ray->direction, e2);
-    double det = vec3_dot(e1, h);
-    if (det == 0) return;
-    Vec3 s = vec3_sub(ray->origin, p), q = vec3_cross(s, e1);
-    double a = vec3_dot(s, h) / det, b = vec3_dot(ray->direction, q) / det;
-    if (a < -margin || b < -margin || a + b > 1 + margin) return;
-    add_crossing(out, vec3_dot(e2, q) / det, t_min, t_max);
-}
-
-/* Side wall over the edge from (a0, b0) to (a1, b1). */
-static void cross_wall(SkinCuts *out, const Ray *ray, const SkinCell *cell, double a0, double b0, double a1, double b1,
-                       double t_min, double t_max) {
-    Vec3 p0 = bilinear_vec(&cell->foot, a0, b0), p1 = bilinear_vec(&cell->foot, a1, b1);
-    Vec3 h0 = bilinear_vec(&cell->height, a0, b0), h1 = bilinear_vec(&cell->height, a1, b1);
-    cross_patch(out, ray, p0, vec3_sub(p1, p0), h0, vec3_sub(h1, h0), t_min, t_max);
-}
-
 Box3 skin_cell_bounds(const SkinCell *cell) {
     Box3 box = box3_empty();
     for (int i = 0; i < 4; i++) {
@@ -198,44 +138,17 @@ bool skin_cell_holds(const SkinCell *cell, Vec3 world, double tolerance, SkinPoi
     return beyond <= 1e-7 && p->w >= -1e-7 && p->w <= 1 + 1e-7;
 }
 
-bool skin_cell_cut(const SkinCell *cell, const Ray *ray, double t_min, double t_max, SkinCuts *c) {
-    double lo = t_min, hi = t_max;
-    c->count = 0;
-    if (!box3_clip_ray(cell->bounds, ray, &lo, &hi)) return false;
-    for (int k = 0; k < 2; k++) { /* foot and top */
-        Vec3 q[4];
-        for (int i = 0; i < 4; i++) q[i] = k ? vec3_add(cell->foot.c[i], cell->height.c[i]) : cell->foot.c[i];
-        if (cell->triangle) cross_triangle(c, ray, q[0], q[1], q[2], lo, hi);
-        else cross_patch(c, ray, q[0], q[1], q[2], q[3], lo, hi);
-    }
-    cross_wall(c, ray, cell, 0, 0, 1, 0, lo, hi);
-    cross_wall(c, ray, cell, 0, 0, 0, 1, lo, hi);
-    if (cell->triangle) cross_wall(c, ray, cell, 1, 0, 0, 1, lo, hi);
-    else {
-        cross_wall(c, ray, cell, 1, 0, 1, 1, lo, hi);
-        cross_wall(c, ray, cell, 0, 1, 1, 1, lo, hi);
-    }
-    c->from = lo;
-    c->t[c->count++] = hi;
-    return true;
-}
-
-/* The first t of the ray within this cell: the first piece between walls whose middle lies inside. */
+/* The first t of the ray within this cell. */
 static bool enter_cell(const SkinCell *cell, const Ray *ray, double t_min, double t_max, SkinPoint *point, double *t) {
-    SkinCuts cuts;
-    if (!skin_cell_cut(cell, ray, t_min, t_max, &cuts)) return false;
-    double size = vec3_length(vec3_sub(cell->bounds.max, cell->bounds.min)), tolerance = 1e-9 * size;
-    double from = cuts.from;
-    for (int i = 0; i < cuts.count; i++) {
-        double to = cuts.t[i];
-        Vec3 middle = vec3_madd(ray->origin, ray->direction, (from + to) / 2);
-        if (to > from && skin_cell_holds(cell, middle, tolerance, point)) {
-            *t = from;
-            return true;
-        }
-        from = to;
+    SkinPiece pieces[MOST_PIECES];
+    int count = skin_cell_pieces(cell, point->cell, ray, t_min, t_max, pieces);
+    *t = t_max;
+    for (int i = 0; i < count; i++) {
+        if (pieces[i].t0 >= *t) continue;
+        *t = pieces[i].t0;
+        *point = pieces[i].middle;
     }
-    return false;
+    return count > 0;
 }
 
 /* Embree's hierarchy over the cells, each a user primitive. */

@@ -245,9 +245,9 @@ static void report_folds(const Folds *folds, const Skin *skin, const SurfaceMesh
     const uint32_t *v = mesh->cells[folds->first].vertex;
     Vec3 at = skin_cell_position(cell, cell->triangle ? 1.0 / 3 : 0.5, cell->triangle ? 1.0 / 3 : 0.5, 0, NULL);
     diag_warning(diags, skin->span,
-                 "the skin folds over %zu of %zu boxes, where its height vectors cross, first over <%.4g, %.4g, %.4g> (vertices %u, %u, %u%s); "
+                 "the skin folds over %zu of %zu boxes, where its height vectors cross, first over <%.4g, %.4g, %.4g> (vertices %u, %u, %u); "
                  "with its height times %.3g nothing would fold",
-                 folds->count, mesh->cell_count, at.x, at.y, at.z, v[0], v[1], v[2], cell->triangle ? "" : ", …", folds->unfolded);
+                 folds->count, mesh->cell_count, at.x, at.y, at.z, v[0], v[1], v[2], folds->unfolded);
 }
 
 /* Whether sheets lie over one another somewhere: in a cell, or where a wall stands between cells that are turned opposite ways. */

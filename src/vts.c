@@ -5,6 +5,7 @@
 #include "hooks.h"
 #include "render/reference.h"
 #include "render/report.h"
+#include "scene/knobs.h"
 
 #include <errno.h>
 #include <setjmp.h>
@@ -142,20 +143,6 @@ void session_print_diagnostics(VtsSession *session) {
 
 /* ---- settings from outside ---- */
 
-typedef struct Knob {
-    const char *name;
-    const char *const *values; /* NULL: a number */
-} Knob;
-static const char *const opacity_values[] = {"mean", "exponential", "correlated", NULL};
-static const char *const quadrature_values[] = {"ring8", "ring16", "grid16", NULL};
-static const Knob knobs[] = {{"opacity_model", opacity_values}, {"quadrature", quadrature_values}, {"shadow_aperture", NULL}, {"samples", NULL}};
-
-static const Knob *find_knob(const char *name) {
-    for (size_t i = 0; i < VTS_ARRAY_COUNT(knobs); i++)
-        if (strcmp(knobs[i].name, name) == 0) return &knobs[i];
-    return NULL;
-}
-
 static bool parse_number(const char *text, double *out) {
     char *end;
     errno = 0;
@@ -163,34 +150,13 @@ static bool parse_number(const char *text, double *out) {
     return end != text && *end == '\0' && errno == 0 && isfinite(*out);
 }
 
-static VtsStatus bad_setting(VtsSession *session, const VtsPair *pair, const char *why) {
-    diag_error(&session->diags, (Span){0}, "--set %s=%s: %s", pair->name, pair->value, why);
-    return VTS_ERROR_USAGE;
-}
-
 /* --set KNOB=VALUE over the scene's global_settings. */
 static VtsStatus apply_setting(VtsSession *session, const VtsPair *pair, GlobalSettings *settings) {
-    const Knob *knob = find_knob(pair->name);
-    double number;
-    if (!knob) return bad_setting(session, pair, "no such knob in this version; there are opacity_model, quadrature, shadow_aperture, samples");
-    if (!knob->values) {
-        if (!parse_number(pair->value, &number)) return bad_setting(session, pair, "not a number");
-        if (strcmp(knob->name, "samples") == 0) {
-            if (number < 1 || number > 256 || number != floor(number)) return bad_setting(session, pair, "must be a whole number, 1 to 256");
-            settings->samples = (int)number;
-        } else {
-            if (!(number >= 1 && number <= 1000)) return bad_setting(session, pair, "must be 1 to 1000");
-            settings->shadow_aperture = number;
-        }
-        return VTS_OK;
-    }
-    for (const char *const *v = knob->values; *v; v++)
-        if (strcmp(*v, pair->value) == 0) {
-            if (knob->values == opacity_values) settings->opacity_model = *v;
-            else settings->quadrature = *v;
-            return VTS_OK;
-        }
-    return bad_setting(session, pair, knob->values == opacity_values ? "must be mean, exponential or correlated" : "must be ring8, ring16 or grid16");
+    StrBuf why = {0};
+    bool valid = knob_set(pair->name, pair->value, settings, &why);
+    if (!valid) diag_error(&session->diags, (Span){0}, "--set %s=%s: %s", pair->name, pair->value, why.data);
+    strbuf_free(&why);
+    return valid ? VTS_OK : VTS_ERROR_USAGE;
 }
 
 static VtsStatus apply_settings(VtsSession *session) {
@@ -293,8 +259,6 @@ VtsStatus session_compile(VtsSession *session, bool exact, int texel_resolution)
     return result == COMPILE_OK ? VTS_OK : result == COMPILE_INTERRUPTED ? VTS_INTERRUPTED : VTS_ERROR_SCENE;
 }
 
-static const char *or_default(const char *text, const char *standard) { return text ? text : standard; }
-
 /* What the picture says of itself. No time stamp: equal pictures are equal files. */
 static void describe(VtsSession *session, const char *scene_path) {
     const VtsOptions *o = &session->options;
@@ -306,8 +270,12 @@ static void describe(VtsSession *session, const char *scene_path) {
     image_set_text(picture, "vts:version", VTS_VERSION);
     image_set_number(picture, "vts:clock", o->clock);
     image_set_number(picture, "vts:exposure", o->exposure);
-    image_set_text(picture, "vts:opacity_model", or_default(s->opacity_model, "correlated"));
-    image_set_text(picture, "vts:quadrature", or_default(s->quadrature, "ring8"));
+    for (size_t i = 0; i < NAMED_KNOB_COUNT; i++) {
+        StrBuf name = {0};
+        strbuf_addf(&name, "vts:%s", named_knobs[i].name);
+        image_set_text(picture, name.data, named_knob_get(&named_knobs[i], s));
+        strbuf_free(&name);
+    }
     image_set_number(picture, "vts:shadow_aperture", s->shadow_aperture);
     image_set_number(picture, "vts:samples", s->samples);
 }

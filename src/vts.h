@@ -131,6 +131,11 @@ typedef struct VtsDifference {
 VTS_API VtsStatus vts_compare(const char *reference_path, const char *test_path, const char *map_path, VtsDifference *out,
                               char *error, size_t error_size);
 
+/* Whether VtsOptions.settings may hold this pair: VTS_OK, or VTS_ERROR_USAGE with a line of text in `error` (if not NULL). */
+VTS_API VtsStatus vts_setting_check(const char *knob, const char *value, char *error, size_t error_size);
+/* The values of a knob that has names for them, the default first, ended by NULL; NULL for any other knob. */
+VTS_API const char *const *vts_setting_values(const char *knob);
+
 /* All diagnostics so far as text; "" when none. Valid until the next call with this session. */
 VTS_API const char *vts_diagnostics(const VtsSession *session);
 /* The report of the last vts_render() or vts_reference() as JSON (--report), or vts_texel()'s table; "" before. Valid until the next call. */

@@ -54,6 +54,9 @@ VtsStatus session_file_error(VtsSession *session, const StrBuf *why);
 /* Passes on what was found since the last time. */
 void session_print_diagnostics(VtsSession *session);
 
+/* vts_knobs.c: sets what --set KNOB=VALUE means; false with a line in `why` when it means nothing. */
+bool knob_set(const char *name, const char *value, GlobalSettings *settings, StrBuf *why);
+
 /* vts_texel.c: vts_texel() without its guard. */
 VtsStatus session_texel(VtsSession *session, const char *scene_path, const char *name, const char *save_path,
                         const char *picture_path);

@@ -1,5 +1,6 @@
 /* global_settings { … }: POV-Ray's words, and the knobs of accuracy. */
 #include "eval/build_parts.h"
+#include "scene/knobs.h"
 
 #include <string.h>
 
@@ -9,17 +10,6 @@ typedef struct SettingsDraft {
 } SettingsDraft;
 
 /* A knob with named values: `detail auto` (two words) or `detail "auto"`. */
-static const struct Knob {
-    const char *word;
-    size_t offset;
-    const char *values[5];
-} knobs[] = {
-    {"opacity_model", offsetof(GlobalSettings, opacity_model), {"mean", "exponential", "correlated"}},
-    {"ray_path", offsetof(GlobalSettings, ray_path), {"straight", "box", "exact"}},
-    {"quadrature", offsetof(GlobalSettings, quadrature), {"grid16", "ring8", "ring16", "lune"}},
-    {"detail", offsetof(GlobalSettings, detail), {"auto", "exact", "voxels", "slab"}},
-};
-
 static bool knob_value(Reader *reader, const Word *word, const char **value, Span *span) {
     const BlockItem *item = reader_peek(reader);
     Word next;
@@ -38,21 +28,18 @@ static bool knob_value(Reader *reader, const Word *word, const char **value, Spa
 }
 
 static void read_knob(Reader *reader, const Word *word, void *target) {
-    const struct Knob *knob = knobs;
-    while (strcmp(knob->word, word->text) != 0) knob++;
+    const NamedKnob *knob = named_knob_find(word->text);
     const char *value;
     Span span;
     if (!knob_value(reader, word, &value, &span)) return;
-    size_t count = 0;
-    for (; count < VTS_ARRAY_COUNT(knob->values) && knob->values[count]; count++)
-        if (strcmp(knob->values[count], value) == 0) {
-            const char *kept = knob->values[count];
-            memcpy((char *)target + offsetof(SettingsDraft, settings) + knob->offset, &kept, sizeof kept);
-            return;
-        }
+    const char *known = named_knob_value(knob, value);
+    if (known) {
+        named_knob_set(knob, &((SettingsDraft *)target)->settings, known);
+        return;
+    }
     Diagnostic *d = reader_error(reader, span, "'%s' is no '%s'", value, word->text);
     StrBuf list = {0};
-    for (size_t i = 0; i < count; i++) strbuf_addf(&list, "%s%s", i ? ", " : "", knob->values[i]);
+    for (const char *const *v = knob->values; *v; v++) strbuf_addf(&list, "%s%s", v == knob->values ? "" : ", ", *v);
     diag_hint(reader->context->diags, d, "it is one of %s", list.data);
     strbuf_free(&list);
 }

@@ -56,6 +56,7 @@ static void find_placed_texels(const Object *object, const Transform *parent, co
 static Quadrature quadrature_of(const char *name) {
     if (name && strcmp(name, "grid16") == 0) return QUADRATURE_GRID16;
     if (name && strcmp(name, "ring16") == 0) return QUADRATURE_RING16;
+    if (name && strcmp(name, "lune") == 0) return QUADRATURE_LUNE;
     return QUADRATURE_RING8;
 }
 
@@ -65,15 +66,21 @@ static OpacityModel opacity_of(const char *name) {
     return OPACITY_CORRELATED;
 }
 
+static RayPath path_of(const char *name) {
+    if (name && strcmp(name, "straight") == 0) return RAY_PATH_STRAIGHT;
+    if (name && strcmp(name, "exact") == 0) return RAY_PATH_EXACT;
+    return RAY_PATH_BOX;
+}
+
 static const double DEFAULT_MAX_ERROR = 1.0 / 255;
 
 /* What the error that a user accepts buys. At 1/255: voxels half as wide as the cone (with linear interpolation between their
  * centres that is the cone's own blur, and finer levels hold more air to skip), steps of one and a half of them, two for
  * shadows, and 4 × 4 cones where explicit edges cross a pixel. The error of steps falls with their length, that of edges with
  * the number of cones. */
-static void choose_detail(double max_error, OpacityModel opacity, CompiledScene *out) {
+static void choose_detail(double max_error, OpacityModel opacity, RayPath path, CompiledScene *out) {
     double e = max_error / DEFAULT_MAX_ERROR, root = pow(e, 0.25);
-    out->march = (MarchSettings){.opacity = opacity,
+    out->march = (MarchSettings){.opacity = opacity, .path = path,
                                  .voxel_width = (float)double_clamp(0.5 * pow(e, 0.15), 0.5, 0.75),
                                  .step = (float)double_clamp(1.6 * root, 0.75, 2.5)};
     out->shadow_march = out->march;
@@ -84,12 +91,8 @@ static void choose_detail(double max_error, OpacityModel opacity, CompiledScene 
 
 /* Settings that parse and have no effect yet are said to. */
 static void warn_idle_settings(const GlobalSettings *s, DiagList *diags) {
-    const char *idle = NULL;
-    if (s->ray_path) idle = "ray_path";
-    if (s->detail && strcmp(s->detail, "auto") != 0) idle = "detail";
-    if (idle) diag_warning(diags, (Span){0}, "global_settings: '%s' has no effect in this version", idle);
-    if (s->quadrature && strcmp(s->quadrature, "lune") == 0)
-        diag_warning(diags, (Span){0}, "global_settings: the quadrature 'lune' is not there in this version, ring8 takes its place");
+    if (s->detail && strcmp(s->detail, "auto") != 0)
+        diag_warning(diags, (Span){0}, "global_settings: 'detail' has no effect in this version");
 }
 
 CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, Arena *arena, DiagList *diags, CompiledScene *out) {
@@ -100,7 +103,8 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     out->quadrature = quadrature_of(scene->settings.quadrature);
     out->shadow_aperture = scene->settings.shadow_aperture;
     OpacityModel opacity = opacity_of(scene->settings.opacity_model);
-    choose_detail(scene->settings.max_error > 0 ? scene->settings.max_error : DEFAULT_MAX_ERROR, opacity, out);
+    choose_detail(scene->settings.max_error > 0 ? scene->settings.max_error : DEFAULT_MAX_ERROR, opacity,
+                  path_of(scene->settings.ray_path), out);
     warn_idle_settings(&scene->settings, diags);
     out->hierarchy = hierarchy_build(scene, arena, diags);
     if (!out->hierarchy) return COMPILE_FAILED;

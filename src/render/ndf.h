@@ -12,6 +12,7 @@ typedef enum Quadrature {
     QUADRATURE_RING8,  /* two rings of 3 and 5 points, turned towards the light: the default */
     QUADRATURE_RING16, /* two rings of 8 */
     QUADRATURE_GRID16, /* Neyret 1998: a 4 × 4 grid over the rectangle that bounds the apparent ellipse */
+    QUADRATURE_LUNE,   /* 3 × 5 Gauss points over the part that the light reaches, for each side that scatters */
 } Quadrature;
 
 /* The local lighting model: a two-sided sheet that scatters light from the front and lets some through from behind. */

@@ -33,6 +33,7 @@ static void begin(SkinMarch *m, const Cone *cone, double t_min, double t_max, co
     m->fitted = false;
     m->span.t1 = -VTS_INFINITY;
     m->span.leaves = true;
+    m->chord.cell = -1;
 }
 
 /* ---- spans ---- */
@@ -115,9 +116,36 @@ static void lay_quadratic(MarchSpan *span, Vec3 x0, Vec3 xm, Vec3 x1, double len
     span->c2 = vec3_scale(bend, 2 / (length * length));
 }
 
+/* From the current point to where the ray leaves its cell or the layer. */
+static MarchChord find_chord(const SkinMarch *m) {
+    const SkinCell *cell = &m->skin->cells[m->point.cell];
+    Vec3 d = m->cone->direction;
+    MarchChord chord = {.cell = m->point.cell, .t0 = m->t, .t1 = m->t, .c0 = coordinates(&m->place)};
+    chord.c1 = vec3(vec3_dot(m->place.grad_u, d), vec3_dot(m->place.grad_v, d), vec3_dot(m->place.grad_w, d));
+    double size = vec3_length(vec3_sub(cell->bounds.max, cell->bounds.min));
+    Ray ray = {m->cone->origin, d};
+    SkinCuts cuts;
+    if (!skin_cell_cut(cell, &ray, m->t + 1e-6 * size, VTS_INFINITY, &cuts)) return chord;
+    chord.t1 = cuts.t[0];
+    SkinPoint end = guess(&m->point, &m->place, d, chord.t1 - m->t);
+    if (!skin_cell_invert(cell, cone_point(m->cone, chord.t1), 1e-7 * size, &end)) return chord;
+    TexturePlace place = skin_texture_place(cell, &end);
+    chord.c1 = vec3_scale(vec3_sub(coordinates(&place), chord.c0), 1 / (chord.t1 - chord.t0));
+    return chord;
+}
+
+/* The part of the chord from t0 on, instead of the quadratic. */
+static void lay_chord(SkinMarch *m, double t0) {
+    m->span.c0 = vec3_madd(m->chord.c0, m->chord.c1, t0 - m->chord.t0);
+    m->span.c1 = m->chord.c1;
+    m->span.c2 = vec3(0, 0, 0);
+}
+
 /* Tries a span of this length from the current point. False: take a shorter one. */
 static bool try_span(SkinMarch *m, double length, bool shortest) {
     MarchSpan *span = &m->span;
+    bool straight = m->settings->path == RAY_PATH_STRAIGHT;
+    if (straight && (m->chord.cell != m->point.cell || m->t >= m->chord.t1)) m->chord = find_chord(m);
     Vec3 d = m->cone->direction;
     double t0 = m->t, t1 = t0 + length, tm = t0 + length / 2;
     /* Of the residual before the last Newton step, which squares it: what is left is far below the footprint. */
@@ -142,13 +170,14 @@ static bool try_span(SkinMarch *m, double length, bool shortest) {
         middle = m->point;
     }
     double bend = vec3_length(vec3_scale(vec3_sub(vec3_add(x0, x1), vec3_scale(xm, 2)), 0.25));
-    if (!shortest && bend > SPAN_BEND_VOXELS * (double)m->span.voxel_world * vec3_length(vec3_sub(x1, x0)) / length) return false;
+    if (!shortest && !straight && bend > SPAN_BEND_VOXELS * (double)m->span.voxel_world * vec3_length(vec3_sub(x1, x0)) / length) return false;
     /* A span that dips out of the layer and in again, or whose exit is found late, does no harm: beyond the texel's box
      * nothing is met. */
     double part = 1;
     if (side == SKIN_ABOVE || side == SKIN_BELOW) part = crossing(m->point.w, middle.w, end.w, side == SKIN_ABOVE ? 1 : 0);
     if (side == SKIN_BORDER) part = border(m, &m->point, t0, t1, tolerance);
     lay_quadratic(span, x0, xm, x1, length);
+    if (straight) lay_chord(m, t0);
     span->t0 = t0;
     span->t1 = t0 + part * length;
     span->place = place_m;
@@ -184,7 +213,7 @@ static bool next_span(SkinMarch *m) {
     m->fitted = true;
     Vec3 d = m->cone->direction;
     double rate = fmax(fabs(vec3_dot(m->place.grad_u, d)), fabs(vec3_dot(m->place.grad_v, d)));
-    double length = SPAN_STEPS * m->span.step;
+    double length = (m->settings->path == RAY_PATH_EXACT ? 1 : SPAN_STEPS) * m->span.step;
     if (rate > 0) length = double_min(length, SPAN_TILES / rate);
     /* To just past the wall of the cell: the mapping has a kink there, which no quadratic follows. */
     length = double_min(length, 1.01 * to_wall(&m->skin->cells[m->point.cell], &m->point, vec3_dot(m->place.grad_a, d), vec3_dot(m->place.grad_b, d)));

@@ -17,8 +17,16 @@ static inline void trace_counters_add(TraceCounters *sum, const TraceCounters *c
     sum->voxels_visited += c->voxels_visited;
 }
 
+/* How the way through texture space is followed (Neyret 1998, footnote 7). */
+typedef enum RayPath {
+    RAY_PATH_BOX,      /* quadratics, as long as they are true to a voxel: the default */
+    RAY_PATH_STRAIGHT, /* one chord through each box, as N98 has it */
+    RAY_PATH_EXACT,    /* a quadratic for each step */
+} RayPath;
+
 typedef struct MarchSettings {
     OpacityModel opacity;
+    RayPath path;
     float voxel_width;    /* side of the voxels to use, in footprints of the cone: 1 = voxels as wide as the cone */
     float step;           /* length of a step in voxels */
 } MarchSettings;
@@ -82,6 +90,13 @@ typedef struct MarchSpan {
     bool leaves;       /* the layer ends at t1 */
 } MarchSpan;
 
+/* RAY_PATH_STRAIGHT: texture coordinates within one cell are c0 + c1·(t − t0). */
+typedef struct MarchChord {
+    int32_t cell; /* −1: none */
+    double t0, t1;
+    Vec3 c0, c1;
+} MarchChord;
+
 typedef struct SkinMarch {
     const CompiledSkin *skin;
     const Cone *cone;
@@ -93,6 +108,7 @@ typedef struct SkinMarch {
     SkinPoint point;
     TexturePlace place;
     MarchSpan span;       /* holds for t in [span.t0, span.t1] */
+    MarchChord chord;
     int entries, steps_left;
     bool fitted;          /* span.step is of this cone */
     uint32_t number;      /* of the cone, counted up by each begin */

@@ -102,6 +102,78 @@ static void chords_of_a_ball_are_whole(void **state) {
     }
 }
 
+/* ---- paths ---- */
+
+static double path_coordinate_error(const SkinMarch *m, double t, Vec3 world) {
+    double s = t - m->span.t0;
+    Vec3 got = vec3_madd(vec3_madd(m->span.c0, m->span.c1, s), m->span.c2, s * s);
+    SkinPoint p = skin_march_guess(m, t);
+    bool seam = false;
+    if (skin_locate(m->skin, world, 1e-12, &p, &seam) != SKIN_INSIDE) return 0;
+    TexturePlace place = skin_texture_place(&m->skin->cells[p.cell], &p);
+    Vec3 off = vec3_sub(got, vec3(place.u, place.v, place.w));
+    off.x -= round(off.x); /* u runs around the ball */
+    return vec3_length(off);
+}
+
+static int compare_numbers(const void *a, const void *b) {
+    const double *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+enum { MOST_PLACES = 200000 };
+
+/* How far the march's texture coordinates are from those of the mapping: the 95th percentile over its steps. (Where a step crosses the
+ * edge of two facets both are off, as the mapping has a kink there.) */
+static double path_error(SkinScene *s, const BallMesh *ball, RayPath path, uint64_t *steps) {
+    RandomStream r = {77};
+    MarchSettings settings = s->compiled.march;
+    TraceCounters counters = {0};
+    SkinSegment segment;
+    double *errors = malloc(MOST_PLACES * sizeof *errors);
+    size_t count = 0;
+    assert_non_null(errors);
+    settings.path = path;
+    for (int i = 0; i < 400; i++) {
+        Vec3 on = ball->vertices[(size_t)between(&r, 0, (double)ball->vertex_count)], d = spread_direction(&r);
+        if (fabs(on.y) > .8) continue; /* coordinates are crowded at the poles */
+        Cone cone = {vec3_madd(vec3_scale(on, between(&r, 1, 1.5)), d, -4), d, .01, 0};
+        skin_march_begin(&s->march, &cone, 0, VTS_INFINITY, &settings, &counters, false);
+        while (skin_march_next(&s->march, &segment) && count < MOST_PLACES) {
+            double t = (segment.t0 + segment.t1) / 2;
+            errors[count++] = path_coordinate_error(&s->march, t, cone_point(&cone, t));
+        }
+    }
+    *steps = counters.steps;
+    qsort(errors, count, sizeof *errors, compare_numbers);
+    double result = errors[count * 95 / 100];
+    printf("%zu places, median %.1e, 99 %%: %.1e, worst %.1e\n", count, errors[count / 2], errors[count * 99 / 100], errors[count - 1]);
+    free(errors);
+    return result;
+}
+
+/* Large cells under a high layer, whose height vectors spread: straight ways bend in texture space. */
+static void paths_bend_with_the_layer(void **state) {
+    (void)state;
+    static BallMesh ball;
+    SkinScene s;
+    ball_make(&ball, 1);
+    skin_scene_begin(&s);
+    skin_scene_fill(&s, 64, 6000, .1, TEXEL_CYCLIC_X | TEXEL_CYCLIC_Z, 3);
+    skin_scene_ball(&s, &ball, vec3(0, 0, 0), 1, .5);
+    s.skin.mapping.repeat_u = 8, s.skin.mapping.repeat_v = 4;
+    assert_int_equal(skin_scene_compile(&s), COMPILE_OK);
+    uint64_t steps[3];
+    double straight = path_error(&s, &ball, RAY_PATH_STRAIGHT, &steps[0]), box = path_error(&s, &ball, RAY_PATH_BOX, &steps[1]);
+    double exact = path_error(&s, &ball, RAY_PATH_EXACT, &steps[2]);
+    printf("texture coordinates off by, in tiles: straight %.1e, box %.1e, exact %.1e (%llu, %llu, %llu steps)\n", straight, box, exact,
+           (unsigned long long)steps[0], (unsigned long long)steps[1], (unsigned long long)steps[2]);
+    assert_true(box < straight / 10);
+    assert_true(exact < box / 3);
+    assert_true(box < 1.0 / 64); /* a voxel */
+    skin_scene_end(&s);
+}
+
 /* ---- transmittance ---- */
 
 /* What parallel light sees of the texel's triangles, repeated over the plane: the share of the tile that stays free, along a
@@ -192,6 +264,7 @@ static void a_slab_is_as_transparent_as_its_leaves(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(chords_of_a_ball_are_whole),
+        cmocka_unit_test(paths_bend_with_the_layer),
         cmocka_unit_test(a_slab_is_as_transparent_as_its_leaves),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

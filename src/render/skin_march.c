@@ -1,5 +1,7 @@
 #include "render/skin_march.h"
 
+#include "render/skin_cross.h"
+
 /* A cone that takes more steps than this is lost in a mapping that no voxel fits; it ends there. */
 enum { MOST_STEPS = 1 << 14 };
 enum { MOST_ENTRIES = 64, MOST_HALVINGS = 7, SPAN_STEPS = 48, BORDER_BISECTIONS = 7 };
@@ -124,11 +126,11 @@ static MarchChord find_chord(const SkinMarch *m) {
     chord.c1 = vec3(vec3_dot(m->place.grad_u, d), vec3_dot(m->place.grad_v, d), vec3_dot(m->place.grad_w, d));
     double size = vec3_length(vec3_sub(cell->bounds.max, cell->bounds.min));
     Ray ray = {m->cone->origin, d};
-    SkinCuts cuts;
-    if (!skin_cell_cut(cell, &ray, m->t + 1e-6 * size, VTS_INFINITY, &cuts)) return chord;
-    chord.t1 = cuts.t[0];
-    SkinPoint end = guess(&m->point, &m->place, d, chord.t1 - m->t);
-    if (!skin_cell_invert(cell, cone_point(m->cone, chord.t1), 1e-7 * size, &end)) return chord;
+    SkinCrossing crossings[MOST_CROSSINGS];
+    if (!skin_cell_cross(cell, &ray, m->t + 1e-6 * size, VTS_INFINITY, crossings)) return chord;
+    const SkinCrossing *out = &crossings[0];
+    SkinPoint end = {chord.cell, out->a, out->b, out->w};
+    chord.t1 = out->t;
     TexturePlace place = skin_texture_place(cell, &end);
     chord.c1 = vec3_scale(vec3_sub(coordinates(&place), chord.c0), 1 / (chord.t1 - chord.t0));
     return chord;

@@ -84,7 +84,7 @@ static void choose_detail(double max_error, OpacityModel opacity, RayPath path, 
                                  .voxel_width = (float)double_clamp(0.5 * pow(e, 0.15), 0.5, 0.75),
                                  .step = (float)double_clamp(1.6 * root, 0.75, 2.5)};
     out->shadow_march = out->march;
-    out->shadow_march.voxel_width *= 2; /* shadows are parts of pixels (Neyret 1998 sec. IV-B: "a rougher level") */
+    out->shadow_march.voxel_width *= 1.4f; /* shadows are parts of pixels (Neyret 1998 sec. IV-B: "a rougher level") */
     out->shadow_march.step = (float)double_clamp(2 * root, 1, 2.5);
     out->split = (int)double_clamp(round(4 * pow(e, -0.35)), 2, 12);
 }

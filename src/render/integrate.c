@@ -8,7 +8,6 @@
 struct ShadeRecord {
     float weight;     /* transmittance before × opacity of the segment */
     double t;
-    double clearance; /* from here to where shadows of other matter begin */
     double tolerance; /* of finding the place in the skin again */
     uint32_t skin;
     SkinPoint point;  /* where shadows start: a guess */
@@ -17,8 +16,6 @@ struct ShadeRecord {
 
 /* A segment that lets less than this through ends the march: a step of 8-bit pictures at most. */
 static const float OPAQUE_BELOW = 1.0f / 256;
-/* The same for light on its way to what is seen, which makes but a part of a pixel. */
-static const float DARK_BELOW = 1.0f / 64;
 /* Light that shadows could take away is tested where it makes more than this of a pixel. */
 static const float SHADOW_WORTH = 1.0f / 512;
 enum { MOST_SHADOW_POINTS = 2 };
@@ -27,47 +24,13 @@ void tracer_init(Tracer *tracer, const CompiledScene *compiled, Arena *arena) {
     size_t skins = compiled->skin_count + 1; /* never zero */
     *tracer = (Tracer){.compiled = compiled,
                        .marches = arena_new_array(arena, SkinMarch, skins),
-                       .shadow_marches = arena_new_array(arena, SkinMarch, skins),
                        .segments = arena_new_array(arena, SkinSegment, skins),
                        .has_segment = arena_new_array(arena, bool, skins),
                        .records = arena_new_array(arena, ShadeRecord, MOST_SHADE_RECORDS),
                        .direct = arena_new_array(arena, Vec3f, MOST_SHADE_RECORDS * (compiled->scene->light_count + 1)),
                        .light_rays = arena_new_array(arena, LightRay, compiled->scene->light_count)};
-    for (size_t i = 0; i < compiled->skin_count; i++) {
-        skin_march_init(&tracer->marches[i], &compiled->skins[i], arena);
-        skin_march_init(&tracer->shadow_marches[i], &compiled->skins[i], arena);
-    }
-}
-
-/* ---- shadows ---- */
-
-/* The share of light that comes through all skins along the cone; starts at `point` of skin `own` (own < 0: anywhere). */
-static float skin_transmittance(Tracer *tr, const Cone *cone, double t_max, int own, const SkinPoint *point, double offset) {
-    const CompiledScene *scene = tr->compiled;
-    float transmittance = 1;
-    for (size_t i = 0; i < scene->skin_count && transmittance > DARK_BELOW; i++) {
-        SkinMarch *march = &tr->shadow_marches[i];
-        if ((int)i == own) {
-            skin_march_begin_at(march, cone, point, offset, t_max, &scene->shadow_march, &tr->counters, false);
-        } else {
-            skin_march_begin(march, cone, 0, t_max, &scene->shadow_march, &tr->counters, false);
-        }
-        SkinSegment segment;
-        while (transmittance > DARK_BELOW && skin_march_next(march, &segment)) transmittance *= segment.transmittance;
-    }
-    return transmittance > DARK_BELOW ? transmittance : 0;
-}
-
-/* `width` is that of the eye's cone at the point; `start` the distance from it at which shadows begin. */
-static float visibility(Tracer *tr, const Light *light, const LightRay *ray, Vec3 point, double width, double spread, int own,
-                        const SkinPoint *at, double offset, double start) {
-    if (light->shadowless) return 1;
-    tr->counters.shadow_rays++;
-    Ray explicit_ray = {point, ray->direction};
-    if (hierarchy_occluded(tr->compiled->hierarchy, &explicit_ray, start, ray->distance)) return 0;
-    double aperture = tr->compiled->shadow_aperture;
-    Cone cone = {point, ray->direction, width * aperture, spread * aperture};
-    return skin_transmittance(tr, &cone, ray->distance, own, at, offset);
+    for (size_t i = 0; i < compiled->skin_count; i++) skin_march_init(&tracer->marches[i], &compiled->skins[i], arena);
+    skin_light_init(&tracer->light, compiled, &tracer->counters, arena);
 }
 
 /* ---- matter of skins ---- */
@@ -119,8 +82,7 @@ static size_t gather(Tracer *tr, const Cone *cone, double t_max, float *transmit
         double t = (segment->t0 + segment->t1) / 2;
         Vec3 point = cone_point(cone, t);
         for (size_t l = 0; l < lights; l++) rays[l] = light_ray(&scene->scene->lights[l], point);
-        *record = (ShadeRecord){.weight = *transmittance * (1 - segment->transmittance), .t = t, .clearance = (double)segment->clearance,
-                                .tolerance = 0.02 * (double)segment->voxel_world, .skin = (uint32_t)nearest,
+        *record = (ShadeRecord){.weight = *transmittance * (1 - segment->transmittance), .t = t,  .tolerance = 0.02 * (double)segment->voxel_world, .skin = (uint32_t)nearest,
                                 .point = skin_march_guess(&tr->marches[nearest], t)};
         record->ambient = shade_segment(tr, cone, segment, rays, &tr->direct[count * (lights + 1)]);
         *transmittance *= segment->transmittance;
@@ -134,14 +96,22 @@ static size_t gather(Tracer *tr, const Cone *cone, double t_max, float *transmit
 static float luminance(Vec3f c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
 static float record_visibility(Tracer *tr, const Light *light, const Cone *cone, const ShadeRecord *r) {
+    if (light->shadowless) return 1;
+    const CompiledScene *scene = tr->compiled;
     Vec3 point = cone_point(cone, r->t);
     LightRay ray = light_ray(light, point);
+    tr->counters.shadow_rays++;
+    Ray explicit_ray = {point, ray.direction};
+    if (hierarchy_occluded(scene->hierarchy, &explicit_ray, r->tolerance, ray.distance)) return 0;
+    double aperture = scene->shadow_aperture;
+    Cone shadow = {point, ray.direction, cone_diameter(cone, r->t) * aperture, cone->spread * aperture};
     SkinPoint place = r->point;
     bool seam = false;
-    SkinSide side = skin_locate(&tr->compiled->skins[r->skin], point, r->tolerance, &place, &seam);
+    SkinSide side = skin_locate(&scene->skins[r->skin], point, r->tolerance, &place, &seam);
+    if (side == SKIN_LOST || side == SKIN_BORDER) return skin_light_through(&tr->light, &shadow, ray.distance, -1);
     place.w = double_clamp(place.w, 0, 1);
-    int own = side == SKIN_LOST || side == SKIN_BORDER ? -1 : (int)r->skin;
-    return visibility(tr, light, &ray, point, cone_diameter(cone, r->t), cone->spread, own, &place, r->clearance, r->clearance);
+    float visible = skin_light_on_matter(&tr->light, &shadow, ray.distance, r->skin, &place, r->tolerance);
+    return visible > 0 ? visible * skin_light_through(&tr->light, &shadow, ray.distance, (int)r->skin) : 0;
 }
 
 /* Light of one source over the records with shadows. Visibility is found at a few records, at equal shares of the light
@@ -222,7 +192,7 @@ static float surface_visibility(Tracer *tr, const Light *light, const LightRay *
     if (free_samples == 0) return 0;
     double aperture = tr->compiled->shadow_aperture;
     Cone shadow_cone = {vec3_madd(point, hit->flat, bias), ray->direction, width * aperture, cone->spread * aperture};
-    return (float)(free_samples / SHADOW_SAMPLES) * skin_transmittance(tr, &shadow_cone, ray->distance, -1, NULL, 0);
+    return (float)(free_samples / SHADOW_SAMPLES) * skin_light_through(&tr->light, &shadow_cone, ray->distance, -1);
 }
 
 /* `reaching` of its light comes to the eye. */

@@ -5,6 +5,7 @@
 #include "render/compile.h"
 #include "render/film.h"
 #include "render/lighting.h"
+#include "render/skin_light.h"
 
 enum { MOST_SHADE_RECORDS = 1024 };
 
@@ -14,7 +15,7 @@ typedef struct ShadeRecord ShadeRecord;
 typedef struct Tracer {
     const CompiledScene *compiled;
     SkinMarch *marches;        /* one for each skin */
-    SkinMarch *shadow_marches; /* likewise */
+    SkinLight light;
     SkinSegment *segments;     /* likewise: the next of each */
     bool *has_segment;
     ShadeRecord *records;

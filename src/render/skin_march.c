@@ -265,13 +265,33 @@ void skin_march_begin(SkinMarch *m, const Cone *cone, double t_min, double t_max
     begin(m, cone, t_min, t_max, settings, counters, shade);
 }
 
-void skin_march_begin_at(SkinMarch *m, const Cone *cone, const SkinPoint *point, double t_min, double t_max,
-                         const MarchSettings *settings, TraceCounters *counters, bool shade) {
-    begin(m, cone, 0, t_max, settings, counters, shade);
-    m->point = *point;
+/* The point `back` before `point` along the cone, or where the layer begins when that is nearer: *back is then shortened. */
+static SkinPoint step_back(const SkinMarch *m, const SkinPoint *point, double tolerance, double *back) {
+    for (int i = 0; i < 2 && *back > 0; i++) {
+        SkinPoint p = guess(point, &m->place, m->cone->direction, -*back);
+        bool seam = false;
+        SkinSide side = skin_locate(m->skin, cone_point(m->cone, -*back), tolerance, &p, &seam);
+        if (side == SKIN_INSIDE && !seam) return p;
+        if (side == SKIN_LOST || side == SKIN_BORDER || seam || i > 0) break;
+        double limit = side == SKIN_ABOVE ? 1 : 0;
+        *back *= double_clamp(0.999 * (point->w - limit) / (point->w - p.w), 0, 1);
+    }
+    *back = 0;
+    return *point;
+}
+
+double skin_march_begin_around(SkinMarch *m, const Cone *cone, const SkinPoint *point, double reach, double tolerance, double t_max,
+                               const MarchSettings *settings, TraceCounters *counters) {
+    begin(m, cone, 0, t_max, settings, counters, false);
     m->place = skin_texture_place(&m->skin->cells[point->cell], point);
+    fit_span(m, &m->place, 0, &m->span);
+    double back = reach * (double)m->span.voxel_world, wanted = back;
+    m->point = step_back(m, point, tolerance, &back);
+    if (back > 0) m->place = skin_texture_place(&m->skin->cells[m->point.cell], &m->point);
+    m->t = -back;
     m->inside = true;
-    if (next_span(m)) m->t = double_max(m->t, t_min);
+    m->fitted = true;
+    return wanted;
 }
 
 /* ---- copies ---- */
@@ -433,7 +453,7 @@ static Sym3f to_world(const Sym3f *s, const TexelCopy *copy, const TexturePlace 
 typedef struct StepSample {
     double t0, t1;
     Vec3 middle, difference; /* texture coordinates */
-    float depth;
+    float depth, area;
 } StepSample;
 
 static void sample_copy(SkinMarch *m, size_t i, const CopyOnWay *on_way, StepSample *step, SkinSegment *out) {
@@ -460,6 +480,7 @@ static void sample_copy(SkinMarch *m, size_t i, const CopyOnWay *on_way, StepSam
                                                          : opacity_depth(m->settings->opacity, &v, h, along);
         if (!(tau > 0)) continue;
         step->depth += tau;
+        step->area += opacity_area(&v, along);
         if (!m->shade || out->hit_count == MOST_MATTER_HITS) continue;
         MatterHit *hit = &out->hits[out->hit_count++];
         *hit = (MatterHit){.matter = &texel->matter[k], .look = placed->look ? placed->look : &texel->matter[k].look,
@@ -484,11 +505,10 @@ static void sample(SkinMarch *m, double t0, double t1, SkinSegment *out) {
     for (int i = 0; i < out->hit_count; i++) out->hits[i].share /= step.depth;
     out->t0 = t0;
     out->t1 = t1;
+    out->depth = step.depth;
+    out->area = step.area;
     out->transmittance = step.depth > 0 ? expf(-step.depth) : 1;
     out->voxel_world = span->voxel_world;
-    /* Blur spreads a blade over the voxels used, and it must not shadow itself; but where many blades share a voxel they do
-     * shadow each other, so that the distance stays within a few of the finest voxels, which resolve single blades. */
-    out->clearance = float_min(2 * span->voxel_world, 3 * span->finest_world);
 }
 
 bool skin_march_next(SkinMarch *m, SkinSegment *segment) {

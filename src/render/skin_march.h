@@ -45,8 +45,9 @@ typedef struct MatterHit {
 typedef struct SkinSegment {
     double t0, t1;
     float transmittance;  /* of the whole segment, < 1 */
+    float depth;          /* −ln of it */
+    float area;           /* of matter as seen along the cone, for each unit of area across it; some of it hides behind other */
     float voxel_world;    /* side of the voxels used, in scene units, along the cone */
-    float clearance;      /* length over which matter here belongs to what is seen, not to what shadows it */
     MatterHit hits[MOST_MATTER_HITS];
     int hit_count;
 } SkinSegment;
@@ -121,9 +122,10 @@ void skin_march_init(SkinMarch *march, const CompiledSkin *skin, Arena *arena);
 /* Start outside or anywhere: looks for the first entry in [t_min, t_max]. */
 void skin_march_begin(SkinMarch *march, const Cone *cone, double t_min, double t_max,
                       const MarchSettings *settings, TraceCounters *counters, bool shade);
-/* Start at a known point of the skin, which is the cone's place at t = 0; matter before t_min is passed over. */
-void skin_march_begin_at(SkinMarch *march, const Cone *cone, const SkinPoint *point, double t_min,
-                         double t_max, const MarchSettings *settings, TraceCounters *counters, bool shade);
+/* Starts `reach` voxels before a known point of the skin, which is the cone's place at t = 0, or where the layer begins
+ * if that is nearer; `tolerance` is that of finding places in the skin. Returns that length in scene units: the first t is its negative. */
+double skin_march_begin_around(SkinMarch *march, const Cone *cone, const SkinPoint *point, double reach, double tolerance, double t_max,
+                               const MarchSettings *settings, TraceCounters *counters);
 /* A guess of the place in the skin at t of the current segment, for skin_locate(): where shadows start. */
 SkinPoint skin_march_guess(const SkinMarch *march, double t);
 /* The next segment that holds matter, in order of t; false when there is none before t_max. */

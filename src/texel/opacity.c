@@ -29,6 +29,8 @@ static float crossing_depth(const VoxelSample *v, float h, Vec3f step) {
     return -n * logf(float_max(through, LEAST_TRANSMITTANCE));
 }
 
+float opacity_area(const VoxelSample *v, Vec3f step) { return v->density * projected(v, step); }
+
 float opacity_depth(OpacityModel model, const VoxelSample *v, float h, Vec3f step) {
     if (!(v->density > 0)) return 0;
     switch (model) {

@@ -28,6 +28,10 @@ float opacity_transmittance(OpacityModel model, const VoxelSample *v, float h, V
 /* The same as optical depth, −ln T: what matter that stands in one place adds up to. >= 0. */
 float opacity_depth(OpacityModel model, const VoxelSample *v, float h, Vec3f step);
 
+/* The area of matter that the step passes, seen along it and for each unit of area across it, were nothing hidden by other: τ of
+ * OPACITY_EXPONENTIAL. >= 0. */
+float opacity_area(const VoxelSample *v, Vec3f step);
+
 /* OPACITY_MEAN at a level coarser than the finest, whose voxels have side `finest`: a voxel's opacity there is the mean
  * of those below it, crossed once (Neyret 1998 sec. IV-C), so that matter becomes the thinner the farther away it is.
  * opacity_transmittance() takes finest = h. */

@@ -1,0 +1,28 @@
+/* How much of a light comes through skins: to a place anywhere, and to the matter of a skin itself. */
+#ifndef VTS_RENDER_SKIN_LIGHT_H
+#define VTS_RENDER_SKIN_LIGHT_H
+
+#include "render/compile.h"
+
+/* What one worker needs. */
+typedef struct SkinLight {
+    const CompiledScene *compiled;
+    SkinMarch *marches; /* one for each skin */
+    TraceCounters *counters;
+} SkinLight;
+
+void skin_light_init(SkinLight *light, const CompiledScene *compiled, TraceCounters *counters, Arena *arena);
+
+/* The share of light that passes all skins but `but` (-1: none) along the cone from t = 0 to t_max. In [0, 1]. */
+float skin_light_through(SkinLight *light, const Cone *cone, double t_max, int but);
+
+/* The share of light that comes to matter of skin `own` at the start of the cone, which lies at `at` in it; what other skins
+ * take away is left out. `tolerance` (scene units) is that of finding places in the skin. In [0, 1]. */
+float skin_light_on_matter(SkinLight *light, const Cone *cone, double t_max, uint32_t own, const SkinPoint *at, double tolerance);
+
+/* What skin_light_on_matter() makes of the surroundings of a place, a beam's way with the place in its middle: the optical
+ * depth of that way, the area of matter along it (for each unit of area across the beam), and how much of that area the beam meets before the
+ * place. The share of the light at the beginning of that way that the matter gets. */
+float skin_light_share(float depth, float area, float before);
+
+#endif

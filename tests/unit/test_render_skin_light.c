@@ -1,0 +1,72 @@
+/* Light on matter of skins: the balance of what a beam loses and what the matter on its way receives. */
+#include "render/skin_light.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+static const float areas[] = {0.003f, 0.02f, 0.2f, 0.7f, 1, 2.5f, 8};
+
+static void matter_at_random_sees_what_comes_through(void **state) {
+    (void)state;
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(areas); i++)
+        for (int k = 0; k <= 4; k++) {
+            float before = areas[i] * (float)k / 4;
+            assert_float_equal(skin_light_share(areas[i], areas[i], before), expf(-before), 0.004);
+        }
+}
+
+/* Mean of the share over all matter on the way × its area = what the beam loses, unless that is more than its area can take. */
+static void no_light_is_lost(void **state) {
+    (void)state;
+    enum { PARTS = 2000 };
+    static const float ratios[] = {0.1f, 0.5f, 0.9f, 1, 1.1f};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(areas); i++)
+        for (size_t r = 0; r < VTS_ARRAY_COUNT(ratios); r++) {
+            float area = areas[i], depth = area * ratios[r];
+            double received = 0;
+            bool whole = false; /* some matter is lit in full: more cannot be */
+            for (int k = 0; k < PARTS; k++) {
+                float share = skin_light_share(depth, area, area * ((float)k + 0.5f) / (float)PARTS);
+                assert_true(share >= 0 && share <= 1);
+                whole |= share == 1;
+                received += (double)share;
+            }
+            received *= (double)area / PARTS;
+            double lost = 1 - exp(-(double)depth);
+            if (whole) assert_true(received <= lost * 1.005);
+            else assert_true(fabs(received - lost) <= 0.006 * lost);
+        }
+}
+
+static void a_sheet_is_lit_all_over(void **state) {
+    (void)state;
+    static const float sheets[] = {0.1f, 0.5f, 0.9f, 0.99f}; /* areas of one sheet, which hides as much as that */
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(sheets); i++)
+        for (int k = 0; k <= 4; k++)
+            assert_float_equal(skin_light_share(-logf(1 - sheets[i]), sheets[i], sheets[i] * (float)k / 4), 1, 1e-4);
+    assert_float_equal(skin_light_share(50, 1, 0.5f), 1, 1e-4);
+}
+
+static void nothing_bad_comes_of_odd_numbers(void **state) {
+    (void)state;
+    static const float odd[] = {0, 1e-30f, 1e-6f, 1, 1e6f, INFINITY};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(odd); i++)
+        for (size_t k = 0; k < VTS_ARRAY_COUNT(odd); k++) {
+            float share = skin_light_share(odd[i], odd[k], odd[k] / 2);
+            assert_true(share >= 0 && share <= 1);
+        }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(matter_at_random_sees_what_comes_through),
+        cmocka_unit_test(no_light_is_lost),
+        cmocka_unit_test(a_sheet_is_lit_all_over),
+        cmocka_unit_test(nothing_bad_comes_of_odd_numbers),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -118,22 +118,21 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
         if (ok) out->skin_count++; /* also when interrupted: to be destroyed */
         if (options->interrupted && *options->interrupted) return COMPILE_INTERRUPTED;
     }
+    if (options->exact && out->skin_count) out->exact = exact_skins_build(out->skins, out->skin_count, hierarchy_device(out->hierarchy));
+    if (options->exact && out->skin_count && !out->exact) memory_budget_fail(options->memory);
     out->build_seconds = stopwatch_wall() - start;
     return diags->error_count > errors ? COMPILE_FAILED : COMPILE_OK;
 }
 
 void compiled_scene_destroy(CompiledScene *compiled) {
-    for (size_t i = 0; i < compiled->skin_count; i++) {
-        cell_tree_destroy(compiled->skins[i].tree);
-        exact_skin_destroy(compiled->skins[i].exact);
-    }
-    for (size_t i = 0; i < compiled->texel_count; i++) {
+    exact_skins_destroy(compiled->exact);
+    for (size_t i = 0; i < compiled->skin_count; i++) cell_tree_destroy(compiled->skins[i].tree);
+    for (size_t i = 0; i < compiled->texel_count; i++)
         for (size_t k = 0; k < compiled->texels[i]->matter_count; k++) voxel_layer_destroy(compiled->texels[i]->matter[k].voxels);
-        exact_texel_destroy(compiled->texels[i]->exact);
-    }
     hierarchy_destroy(compiled->hierarchy);
     arena_destroy(&compiled->scratch);
     compiled->skin_count = compiled->texel_count = 0;
+    compiled->exact = NULL;
     compiled->hierarchy = NULL;
 }
 

@@ -36,6 +36,7 @@ typedef struct CompiledScene {
     Hierarchy *hierarchy; /* explicit objects */
     CompiledSkin *skins;
     size_t skin_count;
+    ExactSkins *exact;    /* the skins' geometry, for the reference; else NULL */
     BuiltTexel **texels;  /* every texel built, for the report */
     size_t texel_count;
     MarchSettings march, shadow_march;
@@ -67,6 +68,6 @@ bool texel_mesh_layer(const BuiltTexel *texel, const TexelLayer *layer, double t
 /* The next matter of a texel. `voxels` NULL: exact. */
 void texel_add_matter(BuiltTexel *texel, const TexelLayer *layer, VoxelLayer *voxels, const CompiledScene *compiled);
 /* All matter of a texel as its source triangles, for the reference. exact_build.c */
-bool exact_build_texel(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags);
+bool exact_build_texel(BuiltTexel *texel, CompiledScene *compiled, DiagList *diags);
 
 #endif

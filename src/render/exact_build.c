@@ -14,7 +14,7 @@ static void add_layer(BuiltTexel *texel, const TexelLayer *layer, const TexelMes
     texel_add_matter(texel, layer, NULL, compiled);
 }
 
-bool exact_build_texel(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
+bool exact_build_texel(BuiltTexel *texel, CompiledScene *compiled, DiagList *diags) {
     const TexelDef *def = texel->def;
     double start = stopwatch_wall();
     if (def->file) {
@@ -29,7 +29,7 @@ bool exact_build_texel(BuiltTexel *texel, const CompileOptions *options, Compile
         add_layer(texel, &def->layers[i], &mesh, compiled, diags);
         arena_reset_to(&compiled->scratch, mark);
     }
-    if (!exact_texel_commit(texel->exact, hierarchy_device(compiled->hierarchy))) memory_budget_fail(options->memory);
+    exact_texel_commit(texel->exact, compiled->arena, &compiled->scratch);
     texel->build_seconds = stopwatch_wall() - start;
     return true;
 }

@@ -1,22 +1,36 @@
 #include "render/exact_skin.h"
 
+#include "render/skin_cross.h"
 #include "render/skin_fold.h"
 
 #include <embree3/rtcore.h>
 #include <stdlib.h>
 
-struct ExactSkin {
+/* A cell as the hierarchy knows it. */
+typedef struct ExactCell {
+    const CompiledSkin *skin;
+    const SkinCell *cell;
+    double size;         /* diagonal of its box */
+    TexturePlace middle; /* of an affine cell */
+    Vec3 middle_world;
+    bool affine; /* rays are straight in its texture space */
+} ExactCell;
+
+struct ExactSkins {
     RTCScene scene;
+    ExactCell *cells;
+    size_t cell_count;
+    Box3 bounds;
+    Vec3 origin; /* Embree's floats count from here */
 };
 
-/* Largest distance of a chord from its curve, in tiles and heights of the texel. */
-static const double CHORD_ERROR = 1e-4;
-/* Chords overlap by this share of their length, so that rounding leaves no gap between two. */
-static const double OVERLAP = 1e-4;
-/* From a hit, matter within this distance is the same triangle seen again: in texel space, several chord errors. */
-static const double CLEARANCE = 3e-4;
+/* Largest distance of a cubic from the curve, in tiles and heights of the texel, and of a cubic from its chord: the farther, the fewer cubics, but
+ * the more triangles to look at. */
+static const double CURVE_ERROR = 1e-5, MOST_BOW = 0.02;
+/* From a hit, matter within this distance is the same triangle seen again: in texel space, several errors. */
+static const double CLEARANCE = 5e-5;
 /* A ray that needs more is lost in absurd coordinates; it ends there. */
-enum { MOST_CHORDS = 1 << 16, MOST_TILES = 1 << 18, DEEPEST_CHORD = 14, DEEPEST_REACH = 10, POLISHINGS = 3 };
+enum { MOST_CUBICS = 1 << 16, MOST_TILES = 1 << 18, DEEPEST_CUT = 14, DEEPEST_REACH = 10, POLISHINGS = 3 };
 static const double LARGEST_COORDINATE = 1e9;
 
 /* A place on the ray within a cell. */
@@ -28,11 +42,12 @@ typedef struct Node {
 
 typedef struct Walk {
     struct RTCIntersectContext context; /* first: Embree hands back its address */
-    const CompiledSkin *skin;
+    const ExactSkins *exact;
     const Ray *ray;
     double t_min, t; /* nearest hit so far, or the end */
+    double embree_start; /* Embree's t counts from here */
     bool shadow, found;
-    int chords_left, tiles_left;
+    int cubics_left, tiles_left;
     TraceCounters *counters;
     /* of the nearest hit */
     Node at;
@@ -43,13 +58,12 @@ typedef struct Walk {
 
 /* ---- the curve ---- */
 
-static bool find_node(const Walk *w, const SkinCell *cell, double t, SkinPoint guess, Node *out) {
+static bool find_node(const Walk *w, const ExactCell *c, double t, SkinPoint guess, Node *out) {
     Vec3 world = vec3_madd(w->ray->origin, w->ray->direction, t);
-    double size = vec3_length(vec3_sub(cell->bounds.max, cell->bounds.min));
-    if (!skin_cell_invert(cell, world, 1e-6 * size, &guess)) return false; /* whose last step squares the residual */
+    if (!skin_cell_invert(c->cell, world, 1e-6 * c->size, &guess)) return false; /* whose last step squares the residual */
     const double slack = 0.5 + 1e-3;
     if (!(fabs(guess.a - 0.5) < slack && fabs(guess.b - 0.5) < slack && fabs(guess.w - 0.5) < slack)) return false;
-    *out = (Node){t, guess, skin_texture_place(cell, &guess)};
+    *out = (Node){t, guess, skin_texture_place(c->cell, &guess)};
     return true;
 }
 
@@ -65,10 +79,10 @@ static double turning(const Node *n) { return vec3_dot(n->place.grad_a, vec3_cro
 static bool same_sheet(const Node *a, const Node *b) { return turning(a) * turning(b) > 0; }
 
 /* The node at t, going there from a known one by as many steps as Newton's method needs. */
-static bool reach(const Walk *w, const SkinCell *cell, const Node *from, double t, int depth, Node *out) {
-    if (find_node(w, cell, t, guess_from(w, from, t), out) && (cell->side != CELL_FOLDED || same_sheet(from, out))) return true;
+static bool reach(const Walk *w, const ExactCell *c, const Node *from, double t, int depth, Node *out) {
+    if (find_node(w, c, t, guess_from(w, from, t), out) && (c->cell->side != CELL_FOLDED || same_sheet(from, out))) return true;
     Node half;
-    return depth > 0 && reach(w, cell, from, (from->t + t) / 2, depth - 1, &half) && reach(w, cell, &half, t, depth - 1, out);
+    return depth > 0 && reach(w, c, from, (from->t + t) / 2, depth - 1, &half) && reach(w, c, &half, t, depth - 1, out);
 }
 
 static Vec3 coordinates(const Node *n) { return vec3(n->place.u, n->place.v, n->place.w); }
@@ -78,29 +92,39 @@ static Vec3 coordinate_rate(const Walk *w, const Node *n) {
     return vec3(vec3_dot(n->place.grad_u, d), vec3_dot(n->place.grad_v, d), vec3_dot(n->place.grad_w, d));
 }
 
-static double largest_part(Vec3 v) { return fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z))); }
+static double largest_part(Vec3 v) { return double_max(fabs(v.x), double_max(fabs(v.y), fabs(v.z))); }
 
-/* A curve leaves its chord by a quarter of what its tangents at the ends miss the other end by (a parabola just so). */
-static double bend(const Walk *w, const Node *a, const Node *b) {
-    Vec3 chord = vec3_sub(coordinates(b), coordinates(a));
-    double length = b->t - a->t;
-    Vec3 miss_a = vec3_sub(vec3_scale(coordinate_rate(w, a), length), chord);
-    Vec3 miss_b = vec3_sub(vec3_scale(coordinate_rate(w, b), length), chord);
-    return fmax(largest_part(miss_a), largest_part(miss_b)) / 4;
+static Curve straight(const Node *a, const Node *b) {
+    return (Curve){.from = coordinates(a), .chord = vec3_sub(coordinates(b), coordinates(a))};
 }
 
-/* ---- chords against copies ---- */
+static Curve cubic_between(const Walk *w, const Node *a, const Node *b) {
+    Curve c = straight(a, b);
+    double length = b->t - a->t;
+    c.bow_from = vec3_sub(vec3_scale(coordinate_rate(w, a), length), c.chord);
+    c.bow_to = vec3_sub(vec3_scale(coordinate_rate(w, b), length), c.chord);
+    return c;
+}
 
-typedef struct Chord {
-    const SkinCell *cell;
-    const Node *a, *b;
-    Vec3 x, d;     /* texture coordinates x + s·d */
-    double s0, s1; /* s1 comes down to the nearest hit */
+/* Whether the cubic is as good as the curve. For a parabola the bows are opposite, their sum tells the third derivative; the error comes
+ * from the fourth, taken to be as much smaller than the third as that is than the second: (6·sum)·(3·sum/bow)/384, and as much again for
+ * safety. */
+static bool good_enough(const Curve *c) {
+    double bow = double_max(largest_part(c->bow_from), largest_part(c->bow_to)), sum = largest_part(vec3_add(c->bow_from, c->bow_to));
+    return bow <= 4 * MOST_BOW && sum * sum <= 10 * CURVE_ERROR * bow;
+}
+
+/* ---- cubics against copies ---- */
+
+typedef struct Shot {
+    Walk *walk;
+    const PlacedTexel *placed;
     bool found;
+    double s; /* of the nearest hit so far, or the end */
     TexelCopy copy;
     ExactTexelHit hit;
-    const PlacedTexel *placed;
-} Chord;
+    const PlacedTexel *hit_placed;
+} Shot;
 
 static Vec3 point_in_copy(const TexelCopy *copy, Vec3 x) {
     Vec3f e = copy->texel->extent;
@@ -114,63 +138,78 @@ static Vec3 way_in_copy(const TexelCopy *copy, Vec3 d) {
                 (copy->zu * d.x + copy->zv * d.y) * (double)e.z);
 }
 
-/* Tries one copy between s0 and s1. */
-static void shoot_copy(Chord *c, const PlacedTexel *placed, const TexelCopy *copy, double s0, double s1, bool any) {
+static Curve curve_in_copy(const TexelCopy *copy, const Curve *c) {
+    return (Curve){point_in_copy(copy, c->from), way_in_copy(copy, c->chord), way_in_copy(copy, c->bow_from), way_in_copy(copy, c->bow_to)};
+}
+
+/* Tries one copy between s0 and s1 of the curve, which is the piece of the shot's that begins at `from` and is `length` long. */
+static void shoot_copy(Shot *shot, const TexelCopy *copy, const Curve *curve, double from, double length, double s0, double s1, unsigned repeat) {
     ExactTexelHit hit;
-    Vec3 from = point_in_copy(copy, c->x), along = way_in_copy(copy, c->d);
-    if (!exact_texel_shoot(copy->texel->exact, from, along, s0, s1, any ? NULL : &hit)) return;
-    c->found = true;
-    if (any || hit.s >= c->s1) return;
-    c->s1 = hit.s;
-    c->hit = hit;
-    c->copy = *copy;
-    c->placed = placed;
+    bool any = shot->walk->shadow;
+    Curve inside = curve_in_copy(copy, curve);
+    if (!exact_texel_shoot(copy->texel->exact, &inside, s0, s1, repeat, any ? NULL : &hit)) return;
+    shot->found = true;
+    if (any) return;
+    shot->s = hit.s = from + length * hit.s;
+    shot->hit = hit;
+    shot->copy = *copy;
+    shot->hit_placed = shot->placed;
 }
 
-/* The number of the tile along one axis that the path enters or is in at s; *end gets the s at which it leaves it. */
-static int64_t tile_at(double x, double d, double s, double *end) {
-    double tile = floor(x + s * d);
-    *end = d > 0 ? (tile + 1 - x) / d : d < 0 ? (tile - x) / d : VTS_INFINITY;
-    if (*end <= s) { /* on the border, on the way out */
-        tile += d > 0 ? 1 : -1;
-        *end += 1 / fabs(d);
-    }
-    return (int64_t)tile;
-}
-
-static void shoot_tile(Chord *c, const PlacedTexel *placed, int64_t iu, int64_t iv, double s0, double s1, bool any) {
+/* Tries all copies around the tiles that the curve may be in. */
+static void shoot_tiles(Shot *shot, const Curve *curve, double from, double length, double s0) {
+    const double hair = 1e-7;
+    const PlacedTexel *placed = shot->placed;
+    unsigned repeat = placed->cyclic ? TEXEL_CYCLIC_Y : 0;
+    Box3 hull = curve_hull(curve);
+    int64_t u0 = (int64_t)floor(hull.min.x + hair), u1 = (int64_t)floor(hull.max.x - hair), v0 = (int64_t)floor(hull.min.y + hair),
+            v1 = (int64_t)floor(hull.max.y - hair);
     int side = 2 * placed->reach + 1;
-    TexelCopy copy;
-    for (int k = 0; k < side * side && !(any && c->found); k++)
-        if (texel_copy_near(placed, iu, iv, k, &copy)) shoot_copy(c, placed, &copy, s0, s1, any);
+    for (int64_t iu = u0; iu <= u1 || iu == u0; iu++)
+        for (int64_t iv = v0; iv <= v1 || iv == v0; iv++)
+            for (int k = 0; k < side * side; k++) {
+                TexelCopy copy;
+                if (!texel_copy_near(placed, iu, iv, k, &copy)) continue;
+                unsigned axes = copy.texel->def->cyclic & repeat;
+                shoot_copy(shot, &copy, curve, from, length, s0, double_min(1, (shot->s - from) / length), axes);
+                if (shot->walk->shadow && shot->found) return;
+            }
 }
 
-static void shoot_texel(Walk *w, Chord *c, const PlacedTexel *placed) {
-    if (placed->alike) { /* one endless copy */
-        TexelCopy copy;
-        if (texel_copy_near(placed, (int64_t)floor(c->x.x), (int64_t)floor(c->x.y), 0, &copy)) shoot_copy(c, placed, &copy, c->s0, c->s1, w->shadow);
+/* The same of a curve of any length: in halves, until they are no longer than a tile. */
+static void shoot_along(Shot *shot, const Curve *curve, double from, double length, double s0) {
+    if (shot->walk->tiles_left-- <= 0 || s0 > 1 || from > shot->s || (shot->walk->shadow && shot->found)) return;
+    if (fabs(curve->chord.x) <= 1.01 && fabs(curve->chord.y) <= 1.01) {
+        shoot_tiles(shot, curve, from, length, s0);
         return;
     }
-    for (double s = c->s0; s < c->s1 && !(w->shadow && c->found) && w->tiles_left-- > 0;) {
-        double end_u, end_v;
-        int64_t iu = tile_at(c->x.x, c->d.x, s, &end_u), iv = tile_at(c->x.y, c->d.y, s, &end_v);
-        double end = double_min(double_min(end_u, end_v), c->s1);
-        shoot_tile(c, placed, iu, iv, s, end, w->shadow);
-        if (!(end > s)) return;
-        s = end;
-    }
+    Curve half = curve_part(curve, 0, 0.5);
+    shoot_along(shot, &half, from, length / 2, 2 * s0);
+    half = curve_part(curve, 0.5, 1);
+    shoot_along(shot, &half, from + length / 2, length / 2, double_max(0, 2 * s0 - 1));
 }
 
-/* Moves the chord's hit along the ray until it lies in the plane of its triangle, as the curved mapping has it. */
-static void polish(const Walk *w, const Chord *c, Node *at) {
-    double length = c->b->t - c->a->t, t = c->a->t + c->s1 * length, most = 0.05 * length;
-    *at = *(c->s1 < 0.5 ? c->a : c->b);
+static void shoot_texel(Shot *shot, const Curve *curve, double s0) {
+    if (!shot->placed->alike) {
+        shoot_along(shot, curve, 0, 1, s0);
+        return;
+    }
+    TexelCopy copy; /* one, endless */
+    if (texel_copy_near(shot->placed, (int64_t)floor(curve->from.x), (int64_t)floor(curve->from.y), 0, &copy))
+        shoot_copy(shot, &copy, curve, 0, 1, s0, shot->s, copy.texel->def->cyclic);
+}
+
+/* Moves the cubic's hit along the ray until it lies in the plane of its triangle, as the curved mapping has it. */
+static void polish(const Walk *w, const ExactCell *c, const Shot *shot, const Node *a, const Node *b, Node *at) {
+    double length = b->t - a->t, t = a->t + shot->s * length, most = 0.05 * length;
+    *at = *(shot->s < 0.5 ? a : b);
     for (int i = 0; i < POLISHINGS; i++) {
         Node next;
-        if (!find_node(w, c->cell, t, guess_from(w, at, t), &next)) return;
+        if (!find_node(w, c, t, guess_from(w, at, t), &next)) return;
         *at = next;
-        double miss = vec3_dot(c->hit.normal, vec3_sub(point_in_copy(&c->copy, coordinates(at)), c->hit.corner));
-        double rate = vec3_dot(c->hit.normal, way_in_copy(&c->copy, coordinate_rate(w, at)));
+        double miss = vec3_dot(shot->hit.normal, vec3_sub(point_in_copy(&shot->copy, coordinates(at)), shot->hit.corner));
+        if (fabs(miss) <= 1e-3 * CURVE_ERROR) return;
+        double rate = vec3_dot(shot->hit.normal, way_in_copy(&shot->copy, coordinate_rate(w, at)));
         double step = -miss / rate;
         if (!(fabs(step) <= most)) return; /* the triangle is seen edge-on */
         t += step;
@@ -178,54 +217,127 @@ static void polish(const Walk *w, const Chord *c, Node *at) {
     }
 }
 
-static bool shoot_chord(Walk *w, const SkinCell *cell, const Node *a, const Node *b) {
-    Chord c = {.cell = cell, .a = a, .b = b, .x = coordinates(a), .d = vec3_sub(coordinates(b), coordinates(a)),
-               .s0 = a->t > w->t_min ? -OVERLAP : 0, .s1 = 1 + OVERLAP};
-    if (!(largest_part(c.x) < LARGEST_COORDINATE && largest_part(c.d) < LARGEST_COORDINATE)) return false;
+static bool shoot_curve(Walk *w, const ExactCell *c, const Node *a, const Node *b, const Curve *curve) {
+    Shot shot = {.walk = w, .s = double_min(1, (w->t - a->t) / (b->t - a->t))};
+    double s0 = double_max(0, (w->t_min - a->t) / (b->t - a->t));
+    if (!(largest_part(curve->from) < LARGEST_COORDINATE && largest_part(curve->chord) < LARGEST_COORDINATE)) return false;
     w->counters->steps++;
-    w->chords_left--;
-    for (size_t i = 0; i < w->skin->texel_count && !(w->shadow && c.found); i++)
-        if (w->skin->texels[i].family_size) shoot_texel(w, &c, &w->skin->texels[i]);
-    if (!c.found || w->shadow) return c.found;
+    w->cubics_left--;
+    for (size_t i = 0; i < c->skin->texel_count && !(w->shadow && shot.found); i++) {
+        shot.placed = &c->skin->texels[i];
+        if (shot.placed->family_size) shoot_texel(&shot, curve, s0);
+    }
+    if (!shot.found || w->shadow) return shot.found;
     Node at;
-    polish(w, &c, &at);
+    polish(w, c, &shot, a, b, &at);
     if (at.t >= w->t || at.t <= w->t_min) return false;
     w->t = at.t;
     w->at = at;
-    w->copy = c.copy;
-    w->hit = c.hit;
-    w->placed = c.placed;
+    w->copy = shot.copy;
+    w->hit = shot.hit;
+    w->placed = shot.hit_placed;
     return true;
 }
 
-static bool walk_curve(Walk *w, const SkinCell *cell, const Node *a, const Node *b, int depth) {
+static bool walk_curve(Walk *w, const ExactCell *c, const Node *a, const Node *b, int depth) {
+    if (w->cubics_left <= 0 || !(b->t > a->t)) return false;
     Node middle;
-    double t = (a->t + b->t) / 2;
-    if (w->chords_left <= 0) return false;
-    if (depth == 0 || bend(w, a, b) <= CHORD_ERROR || !reach(w, cell, a, t, DEEPEST_REACH, &middle)) return shoot_chord(w, cell, a, b);
-    return walk_curve(w, cell, a, &middle, depth - 1) || walk_curve(w, cell, &middle, b, depth - 1);
+    Curve curve = cubic_between(w, a, b);
+    if (good_enough(&curve)) return shoot_curve(w, c, a, b, &curve);
+    if (depth == 0 || !reach(w, c, a, (a->t + b->t) / 2, DEEPEST_REACH, &middle)) { /* singular: its rates tell nothing */
+        curve = straight(a, b);
+        return shoot_curve(w, c, a, b, &curve);
+    }
+    return walk_curve(w, c, a, &middle, depth - 1) || walk_curve(w, c, &middle, b, depth - 1);
 }
+
+/* ---- cells ---- */
 
 /* The piece of the ray from t0 to t1 that lies in the cell, `middle` half way. */
-static bool walk_piece(Walk *w, const SkinCell *cell, const Node *middle, double t0, double t1) {
+static bool walk_piece(Walk *w, const ExactCell *c, const Node *middle, double t0, double t1) {
     Node a, b;
-    bool has_a = reach(w, cell, middle, t0, DEEPEST_REACH, &a), has_b = reach(w, cell, middle, t1, DEEPEST_REACH, &b);
-    return (has_a && walk_curve(w, cell, &a, middle, DEEPEST_CHORD)) || (has_b && walk_curve(w, cell, middle, &b, DEEPEST_CHORD));
+    bool has_a = reach(w, c, middle, t0, DEEPEST_REACH, &a), has_b = reach(w, c, middle, t1, DEEPEST_REACH, &b);
+    return (has_a && walk_curve(w, c, &a, middle, DEEPEST_CUT)) || (has_b && walk_curve(w, c, middle, &b, DEEPEST_CUT));
 }
 
-static bool walk_cell(Walk *w, int32_t number) {
-    const SkinCell *cell = &w->skin->cells[number];
+/* A folded cell, or a ray along an edge: each piece for itself, and all of them, since sheets overlap. */
+static bool walk_pieces(Walk *w, const ExactCell *c) {
     SkinPiece pieces[MOST_PIECES];
-    int count = skin_cell_pieces(cell, number, w->ray, w->t_min, w->t, pieces);
+    int count = skin_cell_pieces(c->cell, 0, w->ray, w->t_min, w->t, pieces);
     bool found = false;
     for (int i = 0; i < count && !(found && w->shadow); i++) {
         const SkinPiece *p = &pieces[i];
         if (p->t0 >= w->t) continue;
-        Node middle = {(p->t0 + p->t1) / 2, p->middle, skin_texture_place(cell, &p->middle)};
-        found |= walk_piece(w, cell, &middle, p->t0, double_min(p->t1, w->t));
+        Node middle = {(p->t0 + p->t1) / 2, p->middle, skin_texture_place(c->cell, &p->middle)};
+        found |= walk_piece(w, c, &middle, p->t0, double_min(p->t1, w->t));
     }
-    w->found |= found;
     return found;
+}
+
+static Node node_at(const ExactCell *c, const SkinCrossing *x) {
+    SkinPoint point = {0, x->a, x->b, x->w};
+    return (Node){x->t, point, skin_texture_place(c->cell, &point)};
+}
+
+/* A line that passes the walls twice is inside in between. */
+static bool walk_between(Walk *w, const ExactCell *c, const SkinCrossing *in, const SkinCrossing *out) {
+    if (!(out->t > w->t_min && in->t < w->t)) return false;
+    Node a = node_at(c, in), b = node_at(c, out), end;
+    if (a.t < w->t_min && reach(w, c, &a, w->t_min, DEEPEST_REACH, &end)) a = end;
+    if (b.t > w->t && reach(w, c, &a, w->t, DEEPEST_REACH, &end)) b = end;
+    return walk_curve(w, c, &a, &b, DEEPEST_CUT);
+}
+
+/* Narrows [*t0, *t1] to where x + t·d >= 0. */
+static void keep_positive(double x, double d, double *t0, double *t1) {
+    if (d > 0) *t0 = double_max(*t0, -x / d);
+    else if (d < 0) *t1 = double_min(*t1, -x / d);
+    else if (x < 0) *t1 = -VTS_INFINITY;
+}
+
+/* A node of an affine cell, without inverting. */
+static Node affine_node(const Walk *w, const ExactCell *c, double t) {
+    Node n = {t, {0, 0, 0, 0}, c->middle};
+    Vec3 way = vec3_sub(vec3_madd(w->ray->origin, w->ray->direction, t), c->middle_world);
+    n.place.u += vec3_dot(c->middle.grad_u, way);
+    n.place.v += vec3_dot(c->middle.grad_v, way);
+    n.place.w += vec3_dot(c->middle.grad_w, way);
+    double share = c->cell->triangle ? 1.0 / 3 : 0.5;
+    n.point.a = share + vec3_dot(c->middle.grad_a, way);
+    n.point.b = share + vec3_dot(c->middle.grad_b, way);
+    n.point.w = 0.5 + vec3_dot(c->middle.grad_layer, way);
+    return n;
+}
+
+static bool walk_straight(Walk *w, const ExactCell *c) {
+    Node zero = affine_node(w, c, 0);
+    Vec3 d = w->ray->direction;
+    double a = zero.point.a, b = zero.point.b, h = zero.point.w, t0 = w->t_min, t1 = w->t;
+    double da = vec3_dot(c->middle.grad_a, d), db = vec3_dot(c->middle.grad_b, d), dh = vec3_dot(c->middle.grad_layer, d);
+    keep_positive(a, da, &t0, &t1);
+    keep_positive(b, db, &t0, &t1);
+    keep_positive(h, dh, &t0, &t1);
+    keep_positive(1 - h, -dh, &t0, &t1);
+    if (c->cell->triangle) {
+        keep_positive(1 - a - b, -da - db, &t0, &t1);
+    } else {
+        keep_positive(1 - a, -da, &t0, &t1);
+        keep_positive(1 - b, -db, &t0, &t1);
+    }
+    if (!(t0 < t1)) return false;
+    Node from = affine_node(w, c, t0), to = affine_node(w, c, t1);
+    Curve line = straight(&from, &to);
+    return shoot_curve(w, c, &from, &to, &line);
+}
+
+static bool walk_cell(Walk *w, const ExactCell *c) {
+    SkinCrossing crossings[MOST_CROSSINGS];
+    if (c->affine) return walk_straight(w, c);
+    if (c->cell->side == CELL_FLAT) return false;
+    if (c->cell->side == CELL_FOLDED) return walk_pieces(w, c);
+    int count = skin_cell_cross(c->cell, w->ray, -VTS_INFINITY, VTS_INFINITY, crossings);
+    if (count == 0) return false;
+    return count == 2 ? walk_between(w, c, &crossings[0], &crossings[1]) : walk_pieces(w, c);
 }
 
 /* ---- Embree over the cells ---- */
@@ -234,25 +346,80 @@ static void intersect_exactly(const struct RTCIntersectFunctionNArguments *args)
     if (!args->valid[0]) return;
     Walk *w = (Walk *)(void *)args->context;
     struct RTCRayHit *rayhit = (struct RTCRayHit *)(void *)args->rayhit;
-    if (!walk_cell(w, (int32_t)args->primID)) return;
-    rayhit->ray.tfar = (float)w->t;
+    if (!walk_cell(w, &w->exact->cells[args->primID])) return;
+    w->found = true;
+    rayhit->ray.tfar = (float)(w->t - w->embree_start);
     rayhit->hit.geomID = args->geomID;
     rayhit->hit.primID = args->primID;
 }
 
 static void occlude_exactly(const struct RTCOccludedFunctionNArguments *args) {
-    if (!args->valid[0]) return;
-    if (walk_cell((Walk *)(void *)args->context, (int32_t)args->primID)) ((struct RTCRay *)(void *)args->ray)->tfar = -INFINITY;
+    Walk *w = (Walk *)(void *)args->context;
+    if (!args->valid[0] || !walk_cell(w, &w->exact->cells[args->primID])) return;
+    w->found = true;
+    ((struct RTCRay *)(void *)args->ray)->tfar = -INFINITY;
 }
 
-ExactSkin *exact_skin_build(CompiledSkin *skin, void *embree_device) {
-    ExactSkin *exact = calloc(1, sizeof *exact);
-    if (!exact) return NULL;
+static void bound_exactly(const struct RTCBoundsFunctionArguments *args) {
+    const ExactSkins *exact = args->geometryUserPtr;
+    Box3 all = exact->bounds, box = exact->cells[args->primID].cell->bounds;
+    /* Floats are coarser than doubles: grow by more than they lose on the way across the scene. */
+    Vec3 size = vec3_sub(all.max, all.min), o = exact->origin;
+    double margin = 1e-6 * (size.x + size.y + size.z) + 1e-30;
+    struct RTCBounds *b = args->bounds_o;
+    b->lower_x = (float)(box.min.x - o.x - margin), b->upper_x = (float)(box.max.x - o.x + margin);
+    b->lower_y = (float)(box.min.y - o.y - margin), b->upper_y = (float)(box.max.y - o.y + margin);
+    b->lower_z = (float)(box.min.z - o.z - margin), b->upper_z = (float)(box.max.z - o.z + margin);
+}
+
+static bool vec_is_zero(Vec3 v) { return v.x == 0 && v.y == 0 && v.z == 0; }
+
+/* Whether texture coordinates are an affine function of the scene's in the whole box. */
+static bool cell_is_affine(const SkinCell *c) {
+    const BilinearVec *h = &c->height;
+    const Bilinear *f = &c->w_foot, *t = &c->w_tip;
+    for (int i = 1; i < 4; i++)
+        if (!vec_is_zero(h->c[i]) || f->c[i] != t->c[i]) return false;
+    return vec_is_zero(c->foot.c[3]) && c->u.c[3] == 0 && c->v.c[3] == 0 && f->c[3] == 0;
+}
+
+static ExactCell make_cell(const CompiledSkin *skin, const SkinCell *cell) {
+    double share = cell->triangle ? 1.0 / 3 : 0.5;
+    SkinPoint middle = {0, share, share, 0.5};
+    ExactCell c = {.skin = skin, .cell = cell, .size = vec3_length(vec3_sub(cell->bounds.max, cell->bounds.min))};
+    c.middle = skin_texture_place(cell, &middle);
+    c.middle_world = skin_cell_position(cell, share, share, 0.5, NULL);
+    c.affine = cell_is_affine(cell) && !vec_is_zero(c.middle.grad_layer); /* which is zero where the box has no volume */
+    return c;
+}
+
+static bool collect_cells(ExactSkins *exact, const CompiledSkin *skins, size_t count) {
+    for (size_t i = 0; i < count; i++) exact->cell_count += skins[i].cell_count;
+    exact->cells = malloc((exact->cell_count + 1) * sizeof *exact->cells);
+    if (!exact->cells) return false;
+    size_t n = 0;
+    exact->bounds = box3_empty();
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = 0; k < skins[i].cell_count; k++) {
+            exact->cells[n] = make_cell(&skins[i], &skins[i].cells[k]);
+            exact->bounds = box3_union(exact->bounds, exact->cells[n++].cell->bounds);
+        }
+    exact->origin = vec3_lerp(exact->bounds.min, exact->bounds.max, 0.5);
+    if (!vec3_is_finite(exact->origin)) exact->origin = vec3(0, 0, 0);
+    return true;
+}
+
+ExactSkins *exact_skins_build(const CompiledSkin *skins, size_t count, void *embree_device) {
+    ExactSkins *exact = calloc(1, sizeof *exact);
+    if (!exact || !collect_cells(exact, skins, count)) {
+        free(exact);
+        return NULL;
+    }
     RTCDevice device = embree_device;
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)skin->cell_count);
-    rtcSetGeometryUserData(geometry, skin);
-    rtcSetGeometryBoundsFunction(geometry, skin_bound_cell, NULL);
+    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)exact->cell_count);
+    rtcSetGeometryUserData(geometry, exact);
+    rtcSetGeometryBoundsFunction(geometry, bound_exactly, NULL);
     rtcSetGeometryIntersectFunction(geometry, intersect_exactly);
     rtcSetGeometryOccludedFunction(geometry, occlude_exactly);
     rtcCommitGeometry(geometry);
@@ -264,25 +431,27 @@ ExactSkin *exact_skin_build(CompiledSkin *skin, void *embree_device) {
     return exact;
 }
 
-void exact_skin_destroy(ExactSkin *exact) {
+void exact_skins_destroy(ExactSkins *exact) {
     if (!exact) return;
     rtcReleaseScene(exact->scene);
+    free(exact->cells);
     free(exact);
 }
 
 /* ---- rays ---- */
 
-static Walk begin_walk(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, bool shadow, TraceCounters *counters) {
-    Walk w = {.skin = skin, .ray = ray, .t_min = t_min, .t = t_max, .shadow = shadow, .chords_left = MOST_CHORDS, .tiles_left = MOST_TILES,
-              .counters = counters};
-    rtcInitIntersectContext(&w.context);
-    return w;
-}
-
-static struct RTCRay embree_ray(const Ray *ray, double t_min, double t_max) {
-    return (struct RTCRay){.org_x = (float)ray->origin.x, .org_y = (float)ray->origin.y, .org_z = (float)ray->origin.z,
-                           .dir_x = (float)ray->direction.x, .dir_y = (float)ray->direction.y, .dir_z = (float)ray->direction.z,
-                           .tnear = (float)t_min, .tfar = t_max < 1e30 ? (float)t_max : INFINITY, .mask = 0xFFFFFFFFu};
+/* False when the ray passes by all skins. Embree's ray begins where it comes near them, so that its floats tell cells apart from afar too. */
+static bool begin_walk(Walk *w, const ExactSkins *exact, const Ray *ray, double t_min, double t_max, bool shadow, TraceCounters *counters,
+                       struct RTCRay *embree) {
+    double near = t_min, far = t_max;
+    if (!exact || !box3_clip_ray(exact->bounds, ray, &near, &far)) return false;
+    *w = (Walk){.exact = exact, .ray = ray, .t_min = t_min, .t = t_max, .embree_start = near, .shadow = shadow, .cubics_left = MOST_CUBICS,
+                .tiles_left = MOST_TILES, .counters = counters};
+    rtcInitIntersectContext(&w->context);
+    Vec3 o = vec3_sub(vec3_madd(ray->origin, ray->direction, near), exact->origin), d = ray->direction;
+    *embree = (struct RTCRay){.org_x = (float)o.x, .org_y = (float)o.y, .org_z = (float)o.z, .dir_x = (float)d.x, .dir_y = (float)d.y,
+                              .dir_z = (float)d.z, .tfar = t_max - near < 1e30 ? (float)(t_max - near) : INFINITY, .mask = 0xFFFFFFFFu};
+    return true;
 }
 
 /* Normals transform by the transposed map world → texel. */
@@ -319,18 +488,20 @@ static SkinHit describe(const Walk *w) {
     return out;
 }
 
-bool exact_skin_intersect(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, TraceCounters *counters, SkinHit *hit) {
-    Walk w = begin_walk(skin, ray, t_min, t_max, false, counters);
-    struct RTCRayHit rayhit = {.ray = embree_ray(ray, t_min, t_max), .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
-    rtcIntersect1(skin->exact->scene, &w.context, &rayhit);
+bool exact_skins_intersect(const ExactSkins *exact, const Ray *ray, double t_min, double t_max, TraceCounters *counters, SkinHit *hit) {
+    Walk w;
+    struct RTCRayHit rayhit = {.hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
+    if (!begin_walk(&w, exact, ray, t_min, t_max, false, counters, &rayhit.ray)) return false;
+    rtcIntersect1(exact->scene, &w.context, &rayhit);
     if (!w.found) return false;
     *hit = describe(&w);
     return true;
 }
 
-bool exact_skin_occluded(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, TraceCounters *counters) {
-    Walk w = begin_walk(skin, ray, t_min, t_max, true, counters);
-    struct RTCRay shadow = embree_ray(ray, t_min, t_max);
-    rtcOccluded1(skin->exact->scene, &w.context, &shadow);
+bool exact_skins_occluded(const ExactSkins *exact, const Ray *ray, double t_min, double t_max, TraceCounters *counters) {
+    Walk w;
+    struct RTCRay shadow;
+    if (!begin_walk(&w, exact, ray, t_min, t_max, true, counters, &shadow)) return false;
+    rtcOccluded1(exact->scene, &w.context, &shadow);
     return w.found;
 }

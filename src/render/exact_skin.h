@@ -1,8 +1,8 @@
-/* Rays of no width through a skin, against the geometry that its texels were made of: what voxels are measured by.
+/* Rays of no width through skins, against the geometry that their texels were made of: what voxels are measured by.
  *
- * The ray is cut at the walls of each cell that it meets. Within a cell its way through texture space is a curve, which is cut
- * into chords until they are within a ten-thousandth of a tile of it; each chord is shot against the copies of the texels
- * around it (exact_texel.h), and the hit is then moved onto the curve itself. */
+ * The ray is cut where it passes through the walls of each cell that it meets. Within a cell its way through texture space is
+ * a curve, which is cut into cubics (curve.h) until they are within a hundred-thousandth of a tile of it; each cubic is shot against the
+ * copies of the texels around it (exact_texel.h), and the hit is then moved onto the curve itself. */
 #ifndef VTS_RENDER_EXACT_SKIN_H
 #define VTS_RENDER_EXACT_SKIN_H
 
@@ -19,13 +19,14 @@ typedef struct SkinHit {
     Vec3 place_normal; /* the normal there, unit or zero */
 } SkinHit;
 
-/* For a skin whose texels were compiled as exact. NULL when Embree is out of memory. */
-ExactSkin *exact_skin_build(CompiledSkin *skin, void *embree_device);
-void exact_skin_destroy(ExactSkin *exact);
+/* The cells of all skins, whose texels were compiled as exact, under one hierarchy. The skins must stay. NULL when memory is out. */
+ExactSkins *exact_skins_build(const CompiledSkin *skins, size_t count, void *embree_device);
+/* Also of NULL. */
+void exact_skins_destroy(ExactSkins *exact);
 
-/* The nearest matter with t in (t_min, t_max); unit direction. Chords are counted as steps. */
-bool exact_skin_intersect(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, TraceCounters *counters, SkinHit *hit);
+/* The nearest matter with t in (t_min, t_max); unit direction. Cubics are counted as steps. `exact` NULL: no skins. */
+bool exact_skins_intersect(const ExactSkins *exact, const Ray *ray, double t_min, double t_max, TraceCounters *counters, SkinHit *hit);
 /* Whether there is any. */
-bool exact_skin_occluded(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, TraceCounters *counters);
+bool exact_skins_occluded(const ExactSkins *exact, const Ray *ray, double t_min, double t_max, TraceCounters *counters);
 
 #endif

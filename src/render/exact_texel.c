@@ -1,11 +1,16 @@
 #include "render/exact_texel.h"
 
-#include <embree3/rtcore.h>
+#include "render/curve_tree.h"
 
+typedef struct ExactTriangle {
+    Vec3f corner[3];
+    uint32_t layer;
+} ExactTriangle;
+
+/* Triangles of one layer, as they were added. */
 typedef struct ExactLayer {
-    Vec3f *vertices;
-    uint32_t (*triangles)[3];
-    size_t vertex_count, triangle_count;
+    ExactTriangle *triangles;
+    size_t count;
 } ExactLayer;
 
 struct ExactTexel {
@@ -13,11 +18,12 @@ struct ExactTexel {
     bool cyclic[3];
     ExactLayer *layers;
     size_t layer_count;
-    RTCScene scene;
+    ExactTriangle *triangles; /* of all layers, in the order of the tree */
+    const CurveTree *tree;
 };
 
 /* A triangle is repeated at most so often along an axis; the voxels have the same limit. */
-enum { MOST_WRAPS = 64, MOST_PERIODS = 1 << 12 };
+enum { MOST_WRAPS = 64, MOST_CURVES = 1 << 13 };
 /* Content in the walls of the box counts as inside, whatever rounding says; in extents. */
 static const double WALL = 1e-5;
 
@@ -63,11 +69,9 @@ static size_t wrap_count(const Wraps *w) {
 
 static void add_moved(const ExactTexel *texel, ExactLayer *layer, const Vec3f corner[3], int x, int y, int z) {
     Vec3 move = vec3_mul(vec3(x, y, z), texel->extent);
-    uint32_t *triangle = layer->triangles[layer->triangle_count++];
-    for (int i = 0; i < 3; i++) {
-        triangle[i] = (uint32_t)layer->vertex_count;
-        layer->vertices[layer->vertex_count++] = vec3f_from(vec3_add(vec3_from_f(corner[i]), move));
-    }
+    ExactTriangle *triangle = &layer->triangles[layer->count++];
+    for (int i = 0; i < 3; i++) triangle->corner[i] = vec3f_from(vec3_add(vec3_from_f(corner[i]), move));
+    triangle->layer = (uint32_t)(layer - texel->layers);
 }
 
 static void add_wrapped(const ExactTexel *texel, ExactLayer *layer, const Vec3f corner[3], const Wraps *w) {
@@ -92,119 +96,162 @@ void exact_texel_add_layer(ExactTexel *texel, const TexelMesh *mesh, Arena *aren
     Wraps wraps;
     for (size_t i = 0; i < mesh->triangle_count; i++)
         if (load_corners(mesh, i, corner) && find_wraps(texel, corner, &wraps)) count += wrap_count(&wraps);
-    layer->vertices = arena_new_array(arena, Vec3f, 3 * count + 1); /* Embree reads 16 bytes at the last one */
-    layer->triangles = arena_push_array_(arena, count, sizeof *layer->triangles);
+    layer->triangles = arena_new_array(arena, ExactTriangle, count);
     for (size_t i = 0; i < mesh->triangle_count; i++)
         if (load_corners(mesh, i, corner) && find_wraps(texel, corner, &wraps)) add_wrapped(texel, layer, corner, &wraps);
 }
 
-/* ---- Embree ---- */
-
-static void attach_layer(ExactTexel *texel, RTCDevice device, unsigned number) {
-    const ExactLayer *layer = &texel->layers[number];
-    if (layer->triangle_count == 0) return;
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, layer->vertices, 0, sizeof(Vec3f), layer->vertex_count);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, layer->triangles, 0, 3 * sizeof(uint32_t),
-                               layer->triangle_count);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(texel->scene, geometry, number);
-    rtcReleaseGeometry(geometry);
-}
-
-bool exact_texel_commit(ExactTexel *texel, void *embree_device) {
-    RTCDevice device = embree_device;
-    texel->scene = rtcNewScene(device);
-    if (!texel->scene) return false;
-    rtcSetSceneFlags(texel->scene, RTC_SCENE_FLAG_ROBUST);
-    for (size_t i = 0; i < texel->layer_count; i++) attach_layer(texel, device, (unsigned)i);
-    rtcCommitScene(texel->scene);
-    return rtcGetDeviceError(device) == RTC_ERROR_NONE;
-}
-
-void exact_texel_destroy(ExactTexel *texel) {
-    if (!texel || !texel->scene) return;
-    rtcReleaseScene(texel->scene);
-    texel->scene = NULL;
-}
-
 size_t exact_texel_triangles(const ExactTexel *texel) {
     size_t count = 0;
-    for (size_t i = 0; i < texel->layer_count; i++) count += texel->layers[i].triangle_count;
+    for (size_t i = 0; i < texel->layer_count; i++) count += texel->layers[i].count;
     return count;
 }
 
-static void describe_hit(const ExactTexel *texel, const struct RTCHit *found, Vec3 period, ExactTexelHit *hit) {
-    const ExactLayer *layer = &texel->layers[found->geomID];
-    const uint32_t *v = layer->triangles[found->primID];
-    Vec3 a = vec3_from_f(layer->vertices[v[0]]), b = vec3_from_f(layer->vertices[v[1]]), c = vec3_from_f(layer->vertices[v[2]]);
-    hit->layer = found->geomID;
-    hit->period = period;
-    hit->corner = vec3_add(a, period);
-    hit->normal = vec3_normalize(vec3_cross(vec3_sub(b, a), vec3_sub(c, a)));
+static Box3 triangle_box(const ExactTriangle *t) {
+    Box3 box = box3_empty();
+    for (int i = 0; i < 3; i++) box = box3_add_point(box, vec3_from_f(t->corner[i]));
+    return box;
 }
 
-/* One period's triangles. Embree's floats count from the beginning of the piece. */
-static bool shoot_period(const ExactTexel *texel, Vec3 from, Vec3 along, double s0, double s1, Vec3 period, ExactTexelHit *hit) {
-    Vec3f o = vec3f_from(vec3_sub(vec3_madd(from, along, s0), period)), d = vec3f_from(along);
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    struct RTCRayHit rayhit = {.ray = {.org_x = o.x, .org_y = o.y, .org_z = o.z, .dir_x = d.x, .dir_y = d.y, .dir_z = d.z,
-                                       .tfar = (float)(s1 - s0), .mask = 0xFFFFFFFFu},
-                               .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
-    if (!hit) {
-        rtcOccluded1(texel->scene, &context, &rayhit.ray);
-        return rayhit.ray.tfar < 0;
+void exact_texel_commit(ExactTexel *texel, Arena *arena, Arena *scratch) {
+    size_t count = exact_texel_triangles(texel), n = 0;
+    ArenaMark mark = arena_mark(scratch);
+    Box3 *boxes = arena_new_array(scratch, Box3, count);
+    const ExactTriangle **all = arena_push_array_(scratch, count, sizeof *all);
+    uint32_t *order = arena_new_array(scratch, uint32_t, count);
+    for (size_t l = 0; l < texel->layer_count; l++)
+        for (size_t i = 0; i < texel->layers[l].count; i++, n++) {
+            all[n] = &texel->layers[l].triangles[i];
+            boxes[n] = triangle_box(all[n]);
+        }
+    texel->tree = curve_tree_build(boxes, count, order, arena);
+    texel->triangles = arena_new_array(arena, ExactTriangle, count);
+    for (size_t i = 0; i < count; i++) texel->triangles[i] = *all[order[i]];
+    arena_reset_to(scratch, mark);
+}
+
+/* ---- curves ---- */
+
+typedef struct Shot {
+    const ExactTexel *texel;
+    Curve curve;   /* less the period */
+    double s0, s1; /* s1 comes down to the nearest hit */
+    Vec3 period;
+    ExactTexelHit *hit; /* NULL: any will do */
+    bool found;
+} Shot;
+
+static bool within(double x, double size) { return x >= -WALL * size && x <= (1 + WALL) * size; }
+
+/* Whether the point of the plane lies in the triangle, and in the box. */
+static bool covers(const ExactTexel *texel, Vec3 a, Vec3 e1, Vec3 e2, Vec3 n, Vec3 point) {
+    const double hair = 1e-9; /* neighbours share their edges */
+    Vec3 p = vec3_sub(point, a);
+    double nn = vec3_length_squared(n), u = vec3_dot(vec3_cross(p, e2), n), v = vec3_dot(vec3_cross(e1, p), n);
+    if (!(u >= -hair * nn && v >= -hair * nn && u + v <= (1 + hair) * nn)) return false;
+    return within(point.x, texel->extent.x) && within(point.y, texel->extent.y) && within(point.z, texel->extent.z);
+}
+
+static void try_triangle(Shot *shot, const ExactTriangle *triangle) {
+    Vec3 a = vec3_from_f(triangle->corner[0]), e1 = vec3_sub(vec3_from_f(triangle->corner[1]), a);
+    Vec3 e2 = vec3_sub(vec3_from_f(triangle->corner[2]), a), n = vec3_cross(e1, e2);
+    CurvePlane plane = curve_over_plane(&shot->curve, a, n);
+    if (curve_misses_plane(&plane)) return;
+    double s[3];
+    int count = curve_plane_roots(&plane, s);
+    for (int i = 0; i < count; i++) {
+        if (!(s[i] >= shot->s0 && s[i] <= shot->s1) || !covers(shot->texel, a, e1, e2, n, curve_point(&shot->curve, s[i]))) continue;
+        shot->found = true;
+        if (!shot->hit) return;
+        shot->s1 = s[i];
+        *shot->hit = (ExactTexelHit){s[i], triangle->layer, vec3_add(a, shot->period), shot->period, vec3_normalize(n)};
+        return;
     }
-    rtcIntersect1(texel->scene, &context, &rayhit);
-    if (rayhit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    hit->s = s0 + (double)rayhit.ray.tfar;
-    describe_hit(texel, &rayhit.hit, period, hit);
-    return true;
 }
 
-/* Narrows [*s0, *s1] to the box, along axes that are not cyclic. */
-static bool clip_to_box(const ExactTexel *texel, Vec3 from, Vec3 along, double *s0, double *s1) {
+static bool try_triangles(void *context, uint32_t first, uint32_t count) {
+    Shot *shot = context;
+    for (uint32_t i = 0; i < count; i++) {
+        try_triangle(shot, &shot->texel->triangles[first + i]);
+        if (shot->found && !shot->hit) return true;
+    }
+    return false;
+}
+
+/* Narrows [*s0, *s1] to where the curve may be in the box, but for the axes `free`. */
+static bool clip_to_box(const ExactTexel *texel, const Curve *curve, unsigned free, double *s0, double *s1) {
+    Vec3 spread = curve_spread(curve);
     for (int k = 0; k < 3; k++) {
-        if (texel->cyclic[k]) continue;
-        double p = vec3_get(from, k), d = vec3_get(along, k), size = vec3_get(texel->extent, k), wall = WALL * size;
+        if (free >> k & 1) continue;
+        double p = vec3_get(curve->from, k), d = vec3_get(curve->chord, k), size = vec3_get(texel->extent, k);
+        double margin = WALL * size + vec3_get(spread, k);
         if (d == 0) {
-            if (p < -wall || p > size + wall) return false;
+            if (p < -margin || p > size + margin) return false;
             continue;
         }
-        double a = (-wall - p) / d, b = (size + wall - p) / d;
+        double a = (-margin - p) / d, b = (size + margin - p) / d;
         *s0 = double_max(*s0, double_min(a, b));
         *s1 = double_min(*s1, double_max(a, b));
     }
-    return *s0 < *s1;
+    return *s0 <= *s1;
 }
 
-/* The period along axis k that the path enters or is in at s; *end gets the s at which it leaves it. */
-static double period_at(const ExactTexel *texel, Vec3 from, Vec3 along, int k, double s, double *end) {
-    double size = vec3_get(texel->extent, k), p = vec3_get(from, k), d = vec3_get(along, k);
-    double period = floor((p + s * d) / size);
-    *end = d > 0 ? ((period + 1) * size - p) / d : d < 0 ? (period * size - p) / d : VTS_INFINITY;
-    if (*end <= s) { /* on the wall, on the way out */
-        period += d > 0 ? 1 : -1;
-        *end += size / fabs(d);
+static void shoot_period(Shot *shot, const Curve *curve, Vec3 period) {
+    double s0 = shot->s0, s1 = shot->s1;
+    shot->curve = *curve;
+    shot->curve.from = vec3_sub(curve->from, period);
+    if (!clip_to_box(shot->texel, &shot->curve, 0, &s0, &s1)) return;
+    shot->period = period;
+    curve_tree_walk(shot->texel->tree, &shot->curve, s0, &shot->s1, try_triangles, shot);
+}
+
+/* The periods along one axis that the hull reaches into. */
+static void periods_along(double lo, double hi, double size, bool repeated, int64_t *first, int64_t *last) {
+    *first = *last = 0;
+    if (!repeated) return;
+    *first = (int64_t)floor(lo / size + WALL);
+    *last = (int64_t)floor(hi / size - WALL);
+    if (*last < *first) *last = *first;
+}
+
+/* The periods of a curve no longer than one of them. */
+static void shoot_periods(Shot *shot, const Curve *curve, unsigned repeat) {
+    Box3 hull = curve_hull(curve);
+    int64_t first[3], last[3];
+    for (int k = 0; k < 3; k++)
+        periods_along(vec3_get(hull.min, k), vec3_get(hull.max, k), vec3_get(shot->texel->extent, k), repeat >> k & 1, &first[k], &last[k]);
+    for (int64_t z = first[2]; z <= last[2]; z++)
+        for (int64_t y = first[1]; y <= last[1]; y++)
+            for (int64_t x = first[0]; x <= last[0]; x++) {
+                shoot_period(shot, curve, vec3_mul(vec3((double)x, (double)y, (double)z), shot->texel->extent));
+                if (shot->found && !shot->hit) return;
+            }
+}
+
+static bool longer_than_a_period(const ExactTexel *texel, const Curve *curve, unsigned repeat) {
+    for (int k = 0; k < 3; k++)
+        if (repeat >> k & 1 && fabs(vec3_get(curve->chord, k)) > 1.01 * vec3_get(texel->extent, k)) return true;
+    return false;
+}
+
+static bool shoot_piece(const ExactTexel *texel, const Curve *curve, double s0, double s1, unsigned repeat, int *pieces_left, ExactTexelHit *hit) {
+    if ((*pieces_left)-- <= 0 || !clip_to_box(texel, curve, repeat, &s0, &s1)) return false;
+    if (!longer_than_a_period(texel, curve, repeat)) {
+        Shot shot = {.texel = texel, .s0 = s0, .s1 = s1, .hit = hit};
+        shoot_periods(&shot, curve, repeat);
+        return shot.found;
     }
-    return period * size;
-}
-
-bool exact_texel_shoot(const ExactTexel *texel, Vec3 from, Vec3 along, double s0, double s1, ExactTexelHit *hit) {
-    if (!clip_to_box(texel, from, along, &s0, &s1)) return false;
-    double s = s0;
-    for (int i = 0; i < MOST_PERIODS && s < s1; i++) {
-        double end = s1, at[3] = {0, 0, 0};
-        for (int k = 0; k < 3; k++) {
-            double leaves;
-            if (!texel->cyclic[k]) continue;
-            at[k] = period_at(texel, from, along, k, s, &leaves);
-            end = double_min(end, leaves);
-        }
-        if (shoot_period(texel, from, along, s, end, vec3(at[0], at[1], at[2]), hit)) return true;
-        if (!(end > s)) return false;
-        s = end;
+    for (int half = 0; half < 2; half++) {
+        double from = double_max(0, 2 * s0 - half), to = double_min(1, 2 * s1 - half);
+        Curve part = curve_part(curve, 0.5 * half, 0.5 * half + 0.5);
+        if (!(from <= to) || !shoot_piece(texel, &part, from, to, repeat, pieces_left, hit)) continue;
+        if (hit) hit->s = (hit->s + half) / 2;
+        return true;
     }
     return false;
+}
+
+bool exact_texel_shoot(const ExactTexel *texel, const Curve *curve, double s0, double s1, unsigned repeat, ExactTexelHit *hit) {
+    int pieces_left = MOST_CURVES;
+    return shoot_piece(texel, curve, s0, s1, repeat, &pieces_left, hit);
 }

@@ -47,13 +47,13 @@ static Facet skin_facet(const Sample *s, const SkinHit *hit) {
 static bool nearest_facet(const Sample *s, Facet *facet) {
     SurfaceHit surface;
     SkinHit matter;
-    bool found = hierarchy_intersect(s->compiled->hierarchy, &s->ray, 1e-9, VTS_INFINITY, &surface), in_skin = false;
-    double t = found ? surface.t : VTS_INFINITY;
-    for (size_t i = 0; i < s->compiled->skin_count; i++)
-        if (exact_skin_intersect(&s->compiled->skins[i], &s->ray, 0, t, s->counters, &matter)) in_skin = true, t = matter.t;
-    if (in_skin) *facet = skin_facet(s, &matter);
-    else if (found) *facet = surface_facet(s, &surface);
-    return found || in_skin;
+    bool found = hierarchy_intersect(s->compiled->hierarchy, &s->ray, 1e-9, VTS_INFINITY, &surface);
+    if (exact_skins_intersect(s->compiled->exact, &s->ray, 0, found ? surface.t : VTS_INFINITY, s->counters, &matter)) {
+        *facet = skin_facet(s, &matter);
+        return true;
+    }
+    if (found) *facet = surface_facet(s, &surface);
+    return found;
 }
 
 /* ---- light ---- */
@@ -64,9 +64,7 @@ static bool lit(const Sample *s, const Light *light, const LightRay *to_light, c
     Ray shadow = {vec3_madd(facet_point(s, facet->t), facet->flat, side), to_light->direction};
     s->counters->shadow_rays++;
     if (hierarchy_occluded(s->compiled->hierarchy, &shadow, facet->bias, to_light->distance)) return false;
-    for (size_t i = 0; i < s->compiled->skin_count; i++)
-        if (exact_skin_occluded(&s->compiled->skins[i], &shadow, 0, to_light->distance, s->counters)) return false;
-    return true;
+    return !exact_skins_occluded(s->compiled->exact, &shadow, 0, to_light->distance, s->counters);
 }
 
 static Vec3f shade(const Sample *s, const Facet *facet) {

@@ -73,7 +73,7 @@ typedef struct PlacedTexel {
 } PlacedTexel;
 
 typedef struct CellTree CellTree; /* hierarchy over the cells' bounds, for entering the layer */
-typedef struct ExactSkin ExactSkin; /* hierarchy over what is in the cells, for the reference: exact_skin.h */
+typedef struct ExactSkins ExactSkins; /* hierarchy over what is in the cells of all skins, for the reference: exact_skin.h */
 
 typedef struct CompiledSkin {
     const Skin *def;
@@ -83,8 +83,7 @@ typedef struct CompiledSkin {
     PlacedTexel *texels;
     size_t texel_count;
     bool overlaps;       /* sheets lie over one another: a cell is folded, or neighbours are turned opposite ways */
-    CellTree *tree;   /* NULL where `exact` is not */
-    ExactSkin *exact; /* NULL but for the reference */
+    CellTree *tree;   /* NULL in the reference */
     Box3 bounds;
 } CompiledSkin;
 

@@ -4,7 +4,6 @@
 #include "base/random.h"
 #include "base/stopwatch.h"
 #include "pattern/pattern.h"
-#include "render/exact_skin.h"
 #include "render/skin_fold.h"
 #include "tape/noise.h"
 #include "texel/texel_content.h"
@@ -113,7 +112,7 @@ BuiltTexel *texel_build(const TexelDef *def, int needed, const CompileOptions *o
     compiled->texels = list;
     compiled->texel_count++;
     texel->matter = arena_new_array(compiled->arena, TexelMatter, def->layer_count);
-    if (!(options->exact ? exact_build_texel : build_matter)(texel, options, compiled, diags)) return NULL;
+    if (!(options->exact ? exact_build_texel(texel, compiled, diags) : build_matter(texel, options, compiled, diags))) return NULL;
     if (texel->matter_count == 0 || options->exact) return texel;
     int size[3];
     voxel_layer_size(texel->matter[0].voxels, 0, size);
@@ -416,7 +415,6 @@ bool skin_compile(const Skin *skin, const CompileOptions *options, CompiledScene
         if (out->texels[i].family_size) out->texel_count = i + 1;
     }
     void *device = hierarchy_device(compiled->hierarchy);
-    if (options->exact) out->exact = exact_skin_build(out, device);
-    else out->tree = cell_tree_build(out, device);
-    return out->tree || out->exact;
+    if (!options->exact) out->tree = cell_tree_build(out, device);
+    return out->tree || options->exact;
 }

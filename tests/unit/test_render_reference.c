@@ -262,7 +262,7 @@ static void rays_meet_the_bent_triangles(void **state) {
     const CompileOptions options = {.width = SIDE, .height = SIDE, .exact = true};
     arena_init(&plain.arena, NULL, 0);
     assert_int_equal(compile_scene(&plain.scene, &options, &plain.arena, &s.diags, &plain.compiled), COMPILE_OK);
-    const CompiledSkin *skin = &s.compiled.skins[0];
+    const ExactSkins *skin = s.compiled.exact;
     enum { RAYS = 8000 };
     int both = 0, one = 0, turned = 0;
     double worst = 0;
@@ -272,9 +272,9 @@ static void rays_meet_the_bent_triangles(void **state) {
         Ray ray = {vec3_madd(target, d, i & 1 ? -5 : 0), d};
         SkinHit hit;
         SurfaceHit explicit_hit;
-        bool found = exact_skin_intersect(skin, &ray, 0, 20, &counters, &hit);
+        bool found = exact_skins_intersect(skin, &ray, 0, 20, &counters, &hit);
         bool expected = hierarchy_intersect(plain.compiled.hierarchy, &ray, 0, 20, &explicit_hit);
-        assert_int_equal(found, exact_skin_occluded(skin, &ray, 0, 20, &counters));
+        assert_int_equal(found, exact_skins_occluded(skin, &ray, 0, 20, &counters));
         if (!found && !expected) continue;
         if (!found || !expected || fabs(hit.t - explicit_hit.t) > 0.01) {
             one++; /* past an edge, by what is left of facets and chords */

@@ -2,6 +2,7 @@
 
 #include "pattern/pattern_function.h"
 #include "shape/extent.h"
+#include "shape/mesh_file.h"
 
 typedef struct Hooks {
     ShapeTracer *tracer;
@@ -52,6 +53,18 @@ static bool texel_file(void *context, Arena *arena, const char *path, Span span,
     return file != NULL;
 }
 
+static bool mesh_file(void *context, Arena *arena, const char *path, const EvalMeshRequest *request, EvalMeshFile *out, StrBuf *error) {
+    (void)context;
+    MeshFile file;
+    MeshFileOptions options = {request->most_vertices, request->by_color, request->smooth};
+    if (!mesh_file_read(path, &options, arena, &file, error)) return false;
+    EvalMeshPart *parts = arena_new_array(arena, EvalMeshPart, file.part_count);
+    for (size_t i = 0; i < file.part_count; i++)
+        parts[i] = (EvalMeshPart){file.parts[i].mesh, file.parts[i].colored, file.parts[i].color};
+    *out = (EvalMeshFile){parts, file.part_count};
+    return true;
+}
+
 EvalGeometry hooks_geometry(Arena *arena, TexelCache *texels) {
     Hooks *hooks = arena_new(arena, Hooks);
     *hooks = (Hooks){shape_tracer_create(arena), texels, arena->budget};
@@ -63,5 +76,6 @@ EvalGeometry hooks_geometry(Arena *arena, TexelCache *texels) {
         .pigment_function = pigment_function,
         .pattern_function = pattern_function,
         .texel_file = texel_file,
+        .mesh_file = mesh_file,
     };
 }

@@ -162,6 +162,7 @@ static const WordRule mesh_rules[] = {
     {"inside_vector", WORD_VECTOR, offsetof(MeshDraft, inside_vector), NULL, false}};
 
 bool build_mesh(BuildContext *context, const EvalBlock *block, Value *out) {
+    if (block_begins_with_string(block)) return build_mesh_file(context, block, out);
     MeshDraft draft = {.common = object_begin(block, OBJECT_TRIANGLES)};
     Reader reader = reader_begin(context, block);
     if (block->count == 0) {

@@ -253,6 +253,7 @@ static bool assemble(Reader *reader, Mesh2Draft *draft) {
 
 bool build_mesh2(BuildContext *context, const EvalBlock *block, Value *out) {
     if (object_is_copy(block)) return build_object(context, block, out);
+    if (block_begins_with_string(block)) return build_mesh_file(context, block, out);
     Mesh2Draft *draft = arena_new(context->arena, Mesh2Draft);
     ObjectDraft common = object_begin(block, OBJECT_TRIANGLES);
     Reader reader = reader_begin(context, block);

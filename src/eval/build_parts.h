@@ -3,6 +3,7 @@
 #define VTS_EVAL_BUILD_PARTS_H
 
 #include "eval/build_reader.h"
+#include "eval/eval.h"
 #include "scene/scene_hash.h"
 
 /* ---- build_transform.c: translate rotate scale matrix transform; target: a Transform, composed onto ---- */
@@ -38,6 +39,11 @@ const ImageMap *image_read(Reader *parent, const Word *word);
  * (eval_path.c); NULL after a report. */
 const char *picture_find(const BuildContext *context, const char *name, const char *format, Span span);
 
+/* The path of a file that the text at `span` names, where includes are looked for (eval_path.c); `what` it is, for the report: "mesh
+ * file". NULL after one. */
+const char *data_file_find(const BuildContext *context, const char *what, const char *name, Span span);
+/* Reads the file of meshes that the text at `span` names (eval_path.c); false after a report. */
+bool mesh_file_load(const BuildContext *context, const char *name, Span span, const EvalMeshRequest *request, EvalMeshFile *out);
 /* Reads the texel's file that the text at `span` names (eval_path.c); false after a report. */
 bool texel_file_read(const BuildContext *context, const char *name, Span span, TexelDef *out);
 
@@ -83,6 +89,10 @@ const Object *object_from_value(const BuildContext *context, const Argument *val
 
 BlockBuilder build_sphere, build_box, build_cone, build_plane, build_disc, build_torus; /* build_solid.c */
 BlockBuilder build_triangle, build_mesh, build_mesh2;                                   /* build_mesh.c */
+BlockBuilder build_mesh_file; /* build_mesh_file.c: mesh { "file" … } */
+static inline bool block_begins_with_string(const EvalBlock *block) {
+    return block->count && block->items[0].kind == ITEM_VALUE && block->items[0].value.kind == VALUE_STRING;
+}
 BlockBuilder build_quadric, build_polynomial, build_superellipsoid, build_ovus, build_polygon, build_lathe, build_sor, build_prism,
     build_sweep, build_patch, build_blob, build_isosurface, build_parametric, build_julia, build_text,
     build_height_field; /* build_rare_kinds.c */

@@ -206,10 +206,6 @@ static bool check_content(Reader *reader, const TexelDraft *draft) {
 
 /* ---- texel { "forest.vtx" } ---- */
 
-static bool is_from_file(const EvalBlock *block) {
-    return block->count && block->items[0].kind == ITEM_VALUE && block->items[0].value.kind == VALUE_STRING;
-}
-
 /* The file's texel in the place of its name; what follows belongs to the skin around it, as with a declared texel. */
 static bool texel_from_file(BuildContext *context, const EvalBlock *block, Value *out) {
     const BlockItem *name = &block->items[0];
@@ -234,7 +230,7 @@ bool build_texel(BuildContext *context, const EvalBlock *block, Value *out) {
         *out = block->count == 1 ? block->items[0].value : (Value){.kind = VALUE_BLOCK, .as.block = block};
         return true;
     }
-    if (is_from_file(block)) return texel_from_file(context, block, out);
+    if (block_begins_with_string(block)) return texel_from_file(context, block, out);
     TexelDraft *draft = arena_new(context->arena, TexelDraft);
     TexelDef *texel = &draft->texel;
     *texel = (TexelDef){.span = block->span,

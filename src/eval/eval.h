@@ -19,6 +19,22 @@ typedef struct EvalLimits {
     uint64_t mesh_vertices;  /* of one mesh, grid or field of heights: 64 million */
 } EvalLimits;
 
+typedef struct EvalMeshRequest {
+    uint64_t most_vertices; /* 0: no limit */
+    bool by_color, smooth;
+} EvalMeshRequest;
+
+typedef struct EvalMeshPart {
+    const MeshData *mesh;
+    bool colored; /* the file gives it `color` */
+    Color color;
+} EvalMeshPart;
+
+typedef struct EvalMeshFile {
+    const EvalMeshPart *parts;
+    size_t count; /* at least 1 */
+} EvalMeshFile;
+
 /* What the evaluator cannot know by itself, supplied by whoever links the folders that can. */
 typedef struct EvalGeometry {
     void *context;
@@ -29,6 +45,9 @@ typedef struct EvalGeometry {
     bool (*pigment_function)(void *context, Arena *arena, const Pigment *pigment, TapeExternal *out);
     /* The texel in a file, in `arena`. False, with a line of text in `error` that says why the file is refused. */
     bool (*texel_file)(void *context, Arena *arena, const char *path, Span span, TexelDef *out, StrBuf *error);
+    /* The parts of a file of meshes, in `arena`: one for each colour in it, or (by_color false) one for all; `smooth`: normals where it
+     * has none. False, with a line of text in `error` that says why the file is refused. */
+    bool (*mesh_file)(void *context, Arena *arena, const char *path, const EvalMeshRequest *request, EvalMeshFile *out, StrBuf *error);
     /* A pattern as a function of place: 3 inputs, 1 output; otherwise the same. */
     bool (*pattern_function)(void *context, Arena *arena, const Pigment *pattern, TapeExternal *out);
 } EvalGeometry;

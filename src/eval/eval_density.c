@@ -1,7 +1,7 @@
 /* Density files of POV-Ray (.df3): three big-endian 16-bit sizes, then that many numbers of 1, 2 or 4 bytes, x fastest. */
 #include "eval/build_pattern.h"
-#include "eval/eval_files.h"
 
+#include <stdio.h>
 #include <sys/stat.h>
 
 enum { HEADER = 6 };
@@ -42,26 +42,13 @@ static bool read_grid(Arena *arena, const unsigned char *bytes, size_t size, Den
     return true;
 }
 
-static const char *find_path(Eval *ev, const char *name, Span span) {
-    StrBuf looked_in = {0};
-    Diagnostic *refused = NULL;
-    const char *path = path_find(ev, name, span, &refused, &looked_in);
-    if (!path && !refused) {
-        Diagnostic *d = diag_error(ev->diags, span, "there is no density file '%s'", name);
-        diag_hint(ev->diags, d, "looked in %s", looked_in.data ? looked_in.data : "nowhere");
-    }
-    strbuf_free(&looked_in);
-    return path;
-}
-
 const DensityGrid *density_load(const BuildContext *context, const char *name, Span span) {
-    Eval *ev = context->eval;
-    const char *path = find_path(ev, name, span);
+    const char *path = data_file_find(context, "density file", name, span);
     if (!path) return NULL;
     size_t size = 0;
     const unsigned char *bytes = read_file(context->arena, path, &size);
     DensityGrid *grid = arena_new(context->arena, DensityGrid);
     if (bytes && read_grid(context->arena, bytes, size, grid)) return grid;
-    diag_error(ev->diags, span, "'%s' cannot be read as a density file (df3)", name);
+    diag_error(context->diags, span, "'%s' cannot be read as a density file (df3)", name);
     return NULL;
 }

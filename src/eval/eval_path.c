@@ -143,28 +143,43 @@ const char *picture_find(const BuildContext *context, const char *name, const ch
     return path;
 }
 
-static const char *texel_path(const BuildContext *context, const char *name, Span span) {
+const char *data_file_find(const BuildContext *context, const char *what, const char *name, Span span) {
     StrBuf looked_in = {0};
     Diagnostic *refused = NULL;
     const char *path = context->eval ? path_find(context->eval, name, span, &refused, &looked_in) : NULL;
     if (!path && !refused) {
-        Diagnostic *d = diag_error(context->diags, span, "there is no texel file '%s'", name);
+        Diagnostic *d = diag_error(context->diags, span, "there is no %s '%s'", what, name);
         diag_hint(context->diags, d, "looked in %s", looked_in.data ? looked_in.data : "nowhere");
     }
     strbuf_free(&looked_in);
     return path;
 }
 
+static const EvalGeometry *geometry_of(const BuildContext *context) {
+    return context->eval ? ((const Eval *)context->eval)->options->geometry : NULL;
+}
+
+static void refuse_file(const BuildContext *context, const char *what, const char *path, Span span, StrBuf *why) {
+    diag_error(context->diags, span, "the %s '%s' is refused: %s", what, path, why->size ? why->data : "such files are not read here");
+    strbuf_free(why);
+}
+
 bool texel_file_read(const BuildContext *context, const char *name, Span span, TexelDef *out) {
-    const char *path = texel_path(context, name, span);
-    if (!path) return false;
-    const EvalGeometry *geometry = ((const Eval *)context->eval)->options->geometry;
+    const char *path = data_file_find(context, "texel file", name, span);
+    const EvalGeometry *geometry = geometry_of(context);
     StrBuf error = {0};
-    bool ok = geometry && geometry->texel_file &&
-              geometry->texel_file(geometry->context, context->arena, path, span, out, &error);
-    if (!ok)
-        diag_error(context->diags, span, "the texel file '%s' is refused: %s", path,
-                   error.size ? error.data : "texels are not read here");
-    strbuf_free(&error);
-    return ok;
+    if (!path) return false;
+    if (geometry && geometry->texel_file && geometry->texel_file(geometry->context, context->arena, path, span, out, &error)) return true;
+    refuse_file(context, "texel file", path, span, &error);
+    return false;
+}
+
+bool mesh_file_load(const BuildContext *context, const char *name, Span span, const EvalMeshRequest *request, EvalMeshFile *out) {
+    const char *path = data_file_find(context, "mesh file", name, span);
+    const EvalGeometry *geometry = geometry_of(context);
+    StrBuf error = {0};
+    if (!path) return false;
+    if (geometry && geometry->mesh_file && geometry->mesh_file(geometry->context, context->arena, path, request, out, &error)) return true;
+    refuse_file(context, "mesh file", path, span, &error);
+    return false;
 }

@@ -1,0 +1,45 @@
+#include "base/module.h"
+
+#include "base/strbuf.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* The folder of the running program; false where the system does not tell. */
+static bool program_folder(StrBuf *out) {
+    char path[MODULE_PATH_SIZE];
+    ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
+    if (length <= 0) return false;
+    path[length] = '\0';
+    char *slash = strrchr(path, '/');
+    if (!slash) return false;
+    strbuf_add(out, path, (size_t)(slash - path));
+    return true;
+}
+
+static bool folder_of_place(int place, StrBuf *out) {
+    const char *chosen = getenv("VTS_MODULE_DIR");
+    switch (place) {
+    case 0:
+        if (chosen) strbuf_adds(out, chosen);
+        return chosen && *chosen;
+    case 1: return program_folder(out);
+    case 2:
+        if (!program_folder(out)) return false;
+        strbuf_adds(out, "/../" VTS_MODULE_SUBDIR);
+        return true;
+    case 3: strbuf_adds(out, VTS_MODULE_BUILD_DIR); return true;
+    default: strbuf_adds(out, VTS_MODULE_INSTALL_DIR); return true;
+    }
+}
+
+bool module_place(int place, const char *name, char path[MODULE_PATH_SIZE]) {
+    StrBuf text = {0};
+    bool known = folder_of_place(place, &text);
+    strbuf_addf(&text, "/%s", name);
+    known = known && text.size < MODULE_PATH_SIZE;
+    if (known) memcpy(path, text.data, text.size + 1);
+    strbuf_free(&text);
+    return known && access(path, R_OK) == 0;
+}

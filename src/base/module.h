@@ -1,0 +1,13 @@
+/* Where parts of vts that are no part of its library lie: what links large foreign libraries is loaded or run when it is needed. */
+#ifndef VTS_BASE_MODULE_H
+#define VTS_BASE_MODULE_H
+
+#include "base/common.h"
+
+enum { MODULE_PLACES = 5, MODULE_PATH_SIZE = 4096 };
+
+/* The path of the file `name` in the place-th of MODULE_PLACES folders: the one that $VTS_MODULE_DIR names, the running program's,
+ * ../lib…/vts from there, where it was built, where it is installed. False where that folder is not known or has no such file. */
+bool module_place(int place, const char *name, char path[MODULE_PATH_SIZE]);
+
+#endif

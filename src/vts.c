@@ -349,13 +349,17 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
 
 /* ---- calls ---- */
 
-typedef enum CallKind { CALL_CHECK, CALL_RUN, CALL_RENDER, CALL_REFERENCE, CALL_DUMP, CALL_TEXEL } CallKind;
+typedef enum CallKind { CALL_CHECK, CALL_RUN, CALL_RENDER, CALL_REFERENCE, CALL_DUMP, CALL_TEXEL, CALL_HALVES, CALL_MEASURE } CallKind;
 
 typedef struct Call {
     CallKind kind;
     const char *scene_path, *output_path;
     VtsDump dump;
     const char *texel_name, *save_path; /* CALL_TEXEL */
+    const char *const *paths;           /* CALL_HALVES */
+    const VtsReference *reference;      /* CALL_MEASURE */
+    VtsReference *halves;               /* CALL_HALVES */
+    VtsMeasure *measure;
 } Call;
 
 static VtsStatus dump(VtsSession *session, const Call *call) {
@@ -381,6 +385,8 @@ static VtsStatus perform(VtsSession *session, const Call *call) {
     case CALL_REFERENCE: return render(session, call->scene_path, call->output_path, true);
     case CALL_DUMP: return dump(session, call);
     case CALL_TEXEL: return session_texel(session, call->scene_path, call->texel_name, call->save_path, call->output_path);
+    case CALL_HALVES: return session_make_reference(session, call->scene_path, call->paths, call->halves);
+    case CALL_MEASURE: return session_measure(session, call->scene_path, call->reference, call->output_path, call->measure);
     }
     return VTS_ERROR_USAGE;
 }
@@ -429,6 +435,18 @@ VtsStatus vts_render(VtsSession *session, const char *scene_path, const char *ou
 }
 VtsStatus vts_reference(VtsSession *session, const char *scene_path, const char *output_path) {
     return guarded(session, &(Call){.kind = CALL_REFERENCE, .scene_path = scene_path, .output_path = output_path});
+}
+VtsStatus vts_reference_make(VtsSession *session, const char *scene_path, const char *const paths[2], VtsReference **out) {
+    *out = reference_create();
+    VtsStatus status = *out ? guarded(session, &(Call){.kind = CALL_HALVES, .scene_path = scene_path, .paths = paths, .halves = *out}) : VTS_ERROR_MEMORY;
+    if (status == VTS_OK) return status;
+    vts_reference_free(*out);
+    *out = NULL;
+    return status;
+}
+VtsStatus vts_measure(VtsSession *session, const char *scene_path, const VtsReference *reference, const char *picture_path, VtsMeasure *out) {
+    *out = (VtsMeasure){0};
+    return guarded(session, &(Call){.kind = CALL_MEASURE, .scene_path = scene_path, .reference = reference, .output_path = picture_path, .measure = out});
 }
 VtsStatus vts_dump(VtsSession *session, const char *scene_path, VtsDump stage) {
     return guarded(session, &(Call){.kind = CALL_DUMP, .scene_path = scene_path, .dump = stage});

@@ -131,6 +131,34 @@ typedef struct VtsDifference {
 VTS_API VtsStatus vts_compare(const char *reference_path, const char *test_path, const char *map_path, VtsDifference *out,
                               char *error, size_t error_size);
 
+/* What renderings are measured by: a picture in memory, and how noisy it is. */
+typedef struct VtsReference VtsReference;
+
+/* Draws two references with half of options.reference_samples each (at least one ray) and different seeds, and keeps their mean, and their
+ * difference as the measure of its noise. paths[0] and paths[1] (or NULL) get the two. *out is the caller's, NULL on failure. */
+VTS_API VtsStatus vts_reference_make(VtsSession *session, const char *scene_path, const char *const paths[2], VtsReference **out);
+/* The same from two pictures drawn before; or of one, paths[1] being NULL, whose noise is then not known. When it fails, `error` (if not
+ * NULL) holds one line of text. */
+VTS_API VtsStatus vts_reference_load(const char *const paths[2], VtsReference **out, char *error, size_t error_size);
+VTS_API void vts_reference_free(VtsReference *reference);
+/* RMSE of the reference against one without noise; negative: not known. */
+VTS_API double vts_reference_noise(const VtsReference *reference);
+
+/* One rendering: its time in seconds, wall clock and user time of all threads, what it counted, and how far off it is. */
+typedef struct VtsMeasure {
+    double parse_wall_s, build_wall_s, render_wall_s;
+    double parse_user_s, build_user_s, render_user_s;
+    unsigned long long camera_rays, shadow_rays, steps, voxels_visited; /* the same on every machine */
+    size_t texel_bytes;
+    VtsDifference difference;
+    double rmse; /* difference.rmse without the reference's noise: the root of the difference of squares, 0 where that is below the noise */
+} VtsMeasure;
+
+/* Renders as vts_render() does and compares with the reference; `picture_path` (or NULL) gets the picture. To be called with a session that
+ * has built nothing yet, or what it has kept is not measured. VTS_ERROR_USAGE when the reference has another size. */
+VTS_API VtsStatus vts_measure(VtsSession *session, const char *scene_path, const VtsReference *reference, const char *picture_path,
+                              VtsMeasure *out);
+
 /* Whether VtsOptions.settings may hold this pair: VTS_OK, or VTS_ERROR_USAGE with a line of text in `error` (if not NULL). */
 VTS_API VtsStatus vts_setting_check(const char *knob, const char *value, char *error, size_t error_size);
 /* The values of a knob that has names for them, the default first, ended by NULL; NULL for any other knob. */

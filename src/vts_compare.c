@@ -1,5 +1,5 @@
 /* vts_compare(): how far two pictures are apart. */
-#include "vts.h"
+#include "vts_session.h"
 
 #include "image/error_map.h"
 #include "image/flip.h"
@@ -8,19 +8,17 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static VtsStatus compare_loaded(const Image *reference, const Image *test, const char *map_path, VtsDifference *out, StrBuf *why) {
+float *difference_map(const Image *reference, const Image *test, VtsDifference *out, StrBuf *why) {
     ImageDifference d;
-    if (!image_compare(reference, test, &d, why)) return VTS_ERROR_USAGE;
-    float *map = flip_map(reference, test, FLIP_PIXELS_PER_DEGREE, &out->flip, why);
-    if (!map) return VTS_ERROR_MEMORY;
-    out->width = test->width;
-    out->height = test->height;
-    out->rmse = d.rmse;
-    out->psnr = d.psnr;
-    out->largest = d.largest;
-    out->x = d.x;
-    out->y = d.y;
-    out->not_finite = d.not_finite;
+    if (!image_compare(reference, test, &d, why)) return NULL;
+    *out = (VtsDifference){.width = test->width, .height = test->height, .rmse = d.rmse, .psnr = d.psnr, .largest = d.largest,
+                           .x = d.x, .y = d.y, .not_finite = d.not_finite};
+    return flip_map(reference, test, FLIP_PIXELS_PER_DEGREE, &out->flip, why);
+}
+
+static VtsStatus compare_loaded(const Image *reference, const Image *test, const char *map_path, VtsDifference *out, StrBuf *why) {
+    float *map = difference_map(reference, test, out, why);
+    if (!map) return out->width ? VTS_ERROR_MEMORY : VTS_ERROR_USAGE; /* it has a size once the pictures could be compared */
     bool saved = !map_path || error_map_save(map, test->width, test->height, map_path, NULL, why);
     free(map);
     return saved ? VTS_OK : VTS_ERROR_FILE;

@@ -57,6 +57,15 @@ void session_print_diagnostics(VtsSession *session);
 /* vts_knobs.c: sets what --set KNOB=VALUE means; false with a line in `why` when it means nothing. */
 bool knob_set(const char *name, const char *value, GlobalSettings *settings, StrBuf *why);
 
+/* vts_compare.c: the difference of two pictures, and FLIP's map, which the caller frees; NULL with a line in `why`. */
+float *difference_map(const Image *reference, const Image *test, VtsDifference *out, StrBuf *why);
+
+/* vts_chart.c: an empty one, NULL without memory; vts_reference_make() and vts_measure() without their guards. */
+VtsReference *reference_create(void);
+VtsStatus session_make_reference(VtsSession *session, const char *scene_path, const char *const paths[2], VtsReference *reference);
+VtsStatus session_measure(VtsSession *session, const char *scene_path, const VtsReference *reference, const char *picture_path,
+                          VtsMeasure *out);
+
 /* vts_texel.c: vts_texel() without its guard. */
 VtsStatus session_texel(VtsSession *session, const char *scene_path, const char *name, const char *save_path,
                         const char *picture_path);

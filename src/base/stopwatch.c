@@ -15,6 +15,12 @@ double stopwatch_cpu(void) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+double stopwatch_user(void) {
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return (double)usage.ru_utime.tv_sec + 1e-6 * (double)usage.ru_utime.tv_usec;
+}
+
 size_t peak_resident_bytes(void) {
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);

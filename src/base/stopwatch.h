@@ -6,6 +6,7 @@
 
 double stopwatch_wall(void); /* seconds on a monotonic clock */
 double stopwatch_cpu(void);  /* user + system seconds of this process, all threads */
+double stopwatch_user(void); /* user seconds alone */
 size_t peak_resident_bytes(void);
 
 #endif

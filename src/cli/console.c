@@ -44,7 +44,7 @@ void console_note(Console *console, const char *format, ...) {
 static void show_text(void *context, VtsStream stream, const char *text) {
     Console *console = context;
     size_t size = strlen(text);
-    if (size == 0) return;
+    if (size == 0 || console->quiet) return;
     console_clear(console);
     fwrite(text, 1, size, console->dumping && stream == VTS_STREAM_STATISTICS ? stdout : stderr);
     console->within_line = text[size - 1] != '\n';
@@ -54,6 +54,7 @@ static void show_diagnostic(void *context, const char *text, bool is_error) {
     Console *console = context;
     size_t size = strlen(text);
     (void)is_error;
+    if (console->quiet) return; /* whoever fails tells what vts_diagnostics() has */
     console_clear(console);
     if (console->within_line) fputc('\n', stderr);
     console->within_line = false;
@@ -86,13 +87,13 @@ static void draw_bar(Console *console, double share, double now) {
         strcat(left, " left");
     }
     int columns = terminal_columns();
-    int room = columns - (int)strlen(console->stage) - (int)strlen(left) - 12;
+    int room = columns - (int)strlen(console->part) - (int)strlen(console->stage) - (int)strlen(left) - 12;
     int cells = room < NARROWEST ? 0 : room > WIDEST ? WIDEST : room;
     char bar[WIDEST + 1];
     for (int i = 0; i < cells; i++) bar[i] = i < (int)(share * cells) ? '#' : '-';
     bar[cells] = '\0';
     char line[LONGEST_LINE];
-    snprintf(line, sizeof line, "%s %3d %% %s%s%s %s", console->stage, (int)(share * 100), cells ? "[" : "",
+    snprintf(line, sizeof line, "%s%s %3d %% %s%s%s %s", console->part, console->stage, (int)(share * 100), cells ? "[" : "",
              bar, cells ? "]" : "", left);
     fprintf(stderr, "\r\033[K%.*s", columns - 1, line);
     fflush(stderr);
@@ -118,7 +119,7 @@ static void show_progress(void *context, const char *stage, size_t done, size_t 
         draw_bar(console, share, now);
     } else if (console->style == PROGRESS_PLAIN && (int)(share * 10) > console->last_tenth) {
         console->last_tenth = (int)(share * 10);
-        fprintf(stderr, "%s %d %%\n", console->stage, console->last_tenth * 10);
+        fprintf(stderr, "%s%s %d %%\n", console->part, console->stage, console->last_tenth * 10);
     }
 }
 

@@ -13,6 +13,8 @@ typedef struct Console {
     bool bar_shown;   /* the last line holds a bar */
     bool within_line; /* the last text did not end its line: no bar now */
     bool diagnostics_shown;
+    bool quiet;         /* the scene has spoken before: its texts and diagnostics are dropped */
+    char part[24];      /* of a larger work, before each stage: "3/12 " */
     char stage[64];       /* that progress was last told of */
     double stage_start_s; /* on a monotonic clock */
     double last_drawn_s;

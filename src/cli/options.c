@@ -135,6 +135,24 @@ static const char *apply_diff(Settings *s, const char *value) {
     s->diff = value;
     return *value ? NULL : "a file name";
 }
+static const char *apply_sweep(Settings *s, const char *value) {
+    return settings_add_pair(s, &s->sweeps, value) ? NULL : "KNOB=VALUE,VALUE,…";
+}
+static const char *apply_methods(Settings *s, const char *value) {
+    s->methods = value;
+    return *value ? NULL : "names of knobs, such as quadrature,ray_path";
+}
+static const char *apply_reference(Settings *s, const char *value) {
+    settings_add(&s->references, value);
+    return *value && s->references.count <= 2 ? NULL : "a picture, or two halves by two options";
+}
+static const char *apply_keep(Settings *s, const char *value) {
+    s->keep = value;
+    return *value ? NULL : "a folder";
+}
+static const char *apply_repeat(Settings *s, const char *value) {
+    return option_int(value, 1, 100, &s->repeats) ? NULL : "a number from 1 to 100";
+}
 static const char *apply_save(Settings *s, const char *value) {
     s->save = value;
     return *value ? NULL : "a file name";
@@ -154,6 +172,8 @@ static const Option OPTIONS[] = {
     {"output", 'o', "F", COMMAND_DRAW, apply_output,
      "the picture; its suffix names the format (.exr .png .tif .jpg .hdr .pfm .ppm); default: the scene's "
      "name with .png"},
+    {"output", 'o', "F", COMMAND_CHART, apply_output,
+     "the plot, .svg, .png or .pdf, and beside it the numbers as .csv; default: the scene's name with .svg"},
     {"size", 's', "WxH", COMMAND_ALL, apply_size, "size of the picture in pixels; default 768x576"},
     {"threads", 't', "N", COMMAND_ALL, apply_threads, "workers; default 0: all processors"},
     {"clock", 0, "V", COMMAND_ALL, apply_clock, "value of `clock` in the scene"},
@@ -164,6 +184,13 @@ static const Option OPTIONS[] = {
     {"samples", 0, "N", COMMAND_RENDER | COMMAND_TEXEL, apply_samples,
      "samples of a pixel where it needs several; default: by --max-error"},
     {"samples", 0, "N", COMMAND_REFERENCE, apply_rays, "rays of a pixel, 1 to 65536; default 64"},
+    {"samples", 0, "N", COMMAND_CHART, apply_rays, "rays of a pixel of the reference, in two halves, 1 to 65536; default 64"},
+    {"sweep", 0, "KNOB=V,V,...", COMMAND_CHART, apply_sweep, "a point of the chart for each value; may be given several times"},
+    {"methods", 0, "KNOB,...", COMMAND_CHART, apply_methods, "a curve for each method that these knobs have names for"},
+    {"reference", 0, "F", COMMAND_CHART, apply_reference,
+     "measures by this picture; given twice, by the mean of two whose noise their difference tells"},
+    {"keep", 0, "DIR", COMMAND_CHART, apply_keep, "keeps the picture of each point, and the reference, in this folder"},
+    {"repeat", 0, "N", COMMAND_CHART, apply_repeat, "renders each point N times and takes the least time; default 1"},
     {"declare", 'D', "NAME=VALUE", COMMAND_ALL, apply_declare,
      "declares a float, or a string if VALUE is no number"},
     {"include", 'I', "DIR", COMMAND_ALL, apply_include, "where includes and data are looked for as well"},
@@ -172,9 +199,9 @@ static const Option OPTIONS[] = {
     {"report", 0, "F|-", COMMAND_RENDER | COMMAND_REFERENCE, apply_report, "writes what was modelled, counted and timed as JSON"},
     {"progress", 0, "auto|bar|plain|none", COMMAND_ALL, apply_progress,
      "how to show progress; auto: a bar on a terminal"},
-    {"seed", 0, "N", COMMAND_DRAW, apply_seed, "of the sampling; default 0"},
+    {"seed", 0, "N", COMMAND_DRAW | COMMAND_CHART, apply_seed, "of the sampling; default 0"},
     {"set", 0, "KNOB=VALUE", COMMAND_ALL, apply_set, "sets what global_settings would"},
-    {"exposure", 0, "EV", COMMAND_DRAW, apply_exposure, "multiplies the picture by 2^EV"},
+    {"exposure", 0, "EV", COMMAND_DRAW | COMMAND_CHART, apply_exposure, "multiplies the picture by 2^EV"},
     {"alpha", 0, NULL, COMMAND_DRAW, apply_alpha, "leaves the background transparent"},
     {"float-type", 0, "half|float", COMMAND_DRAW, apply_float_type, "how EXR stores colours; default half"},
     {"limit", 0, "NAME=N,...", COMMAND_ALL, apply_limit, "limits of the language: loops, recursion ..."},
@@ -190,10 +217,8 @@ static const Option OPTIONS[] = {
     {"resume", 0, NULL, COMMAND_ALL, NULL, NULL},
     {"aov", 0, "NAMES", COMMAND_ALL, NULL, NULL},
     {"preview", 0, "HOST:PORT", COMMAND_ALL, NULL, NULL},
-    {"cache", 0, "DIR|off", COMMAND_ALL, apply_cache,
+    {"cache", 0, "DIR|off", COMMAND_ALL & ~COMMAND_CHART, apply_cache,
      "keeps built texels in this folder from one run to the next; default: off"},
-    {"sweep", 0, "KNOB=VALUES", COMMAND_ALL, NULL, NULL},
-    {"methods", 0, "NAMES", COMMAND_ALL, NULL, NULL},
     {"metric", 0, "NAMES", COMMAND_COMPARE, apply_metric, "of rmse,psnr,flip,max; default rmse,psnr,flip"},
     {"diff", 0, "F", COMMAND_COMPARE, apply_diff,
      "a picture of FLIP's errors; numbers in .exr and .pfm, else colours"},
@@ -217,10 +242,13 @@ static const Option *find_long(const char *name, size_t size, unsigned command) 
     return found;
 }
 
-static const Option *find_short(char letter) {
-    for (int i = 0; i < OPTION_COUNT; i++)
-        if (OPTIONS[i].letter && OPTIONS[i].letter == letter) return &OPTIONS[i];
-    return NULL;
+static const Option *find_short(char letter, unsigned command) {
+    const Option *found = NULL;
+    for (int i = 0; i < OPTION_COUNT; i++) {
+        if (!OPTIONS[i].letter || OPTIONS[i].letter != letter) continue;
+        if (!found || OPTIONS[i].commands & command) found = &OPTIONS[i];
+    }
+    return found;
 }
 
 /* `argument` with its "--" and value, as typed. */
@@ -265,7 +293,7 @@ static int parse_long(Settings *settings, unsigned command, const char *argument
 
 static int parse_short(Settings *settings, unsigned command, const char *argument, Arguments *rest) {
     char typed[3] = {'-', argument[1], '\0'};
-    const Option *option = find_short(argument[1]);
+    const Option *option = find_short(argument[1], command);
     if (!option) return complain_unknown(settings, "option", argument, NULL);
     return apply_option(settings, command, option, typed, argument[2] ? argument + 2 : NULL, rest);
 }

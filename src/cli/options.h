@@ -14,7 +14,8 @@ enum {
     COMMAND_COMPARE = 8,
     COMMAND_REFERENCE = 16,
     COMMAND_TEXEL = 32,
-    COMMAND_ALL = 55, /* that take scenes */
+    COMMAND_CHART = 64,
+    COMMAND_ALL = 119, /* that take scenes */
     COMMAND_DRAW = 49 /* that make pictures of them */
 };
 

@@ -25,10 +25,11 @@ void settings_init(Settings *settings, const char *program) {
 void settings_free(Settings *settings) {
     for (size_t i = 0; i < settings->owned_count; i++) free(settings->owned[i]);
     free(settings->owned);
-    PairList *pairs[] = {&settings->declares, &settings->limits, &settings->knobs};
+    PairList *pairs[] = {&settings->declares, &settings->limits, &settings->knobs,
+                         &settings->sweeps};
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) free(pairs[i]->items);
     TextList *texts[] = {&settings->scenes, &settings->includes, &settings->read_folders,
-                         &settings->write_folders};
+                         &settings->write_folders, &settings->references};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) free(texts[i]->items);
     *settings = (Settings){0};
 }

@@ -37,6 +37,10 @@ typedef struct Settings {
     const char *report;         /* file, "-" for stdout, or NULL */
     const char *metrics, *diff; /* of compare; NULL: the usual ones, no picture */
     bool json;
+    const char *methods;        /* of chart: "quadrature,ray_path", or NULL */
+    TextList references;        /* of chart: one picture or two, or none */
+    const char *keep;           /* of chart: a folder for its pictures, or NULL */
+    int repeats;                /* of chart: renderings of each point; 0: 1 */
     ProgressStyle progress;
     bool verbose;
     bool help;
@@ -46,7 +50,7 @@ typedef struct Settings {
     double rows[2],
         columns[2]; /* POV-Ray's partial picture: numbers from 1, or shares below 1; 0: not given */
     Animation animation;
-    PairList declares, limits, knobs;
+    PairList declares, limits, knobs, sweeps;
     TextList includes, read_folders, write_folders;
     char **owned; /* texts that the settings free */
     size_t owned_count;

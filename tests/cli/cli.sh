@@ -51,7 +51,7 @@ case_help() {
   run; want_status 2; want_empty out; want_in err Usage
   run help compare; want_status 0; want_in out --diff
   local command
-  for command in render check run texel; do
+  for command in render check run texel chart; do
     run $command --help; want_status 0; want_empty err; want_in out "Usage: vts $command"; want_in out --include
     cp out first; run help $command; want_status 0; cmp -s first out || fail "help $command is not $command --help"
     run $command -h; want_status 0
@@ -83,7 +83,7 @@ case_usage() {
   refused check scene.vts --alpha
   refused render scene.vts --alpha=1
   local word
-  for word in chart farm info stitch; do refused $word scene.vts; want_in err 'not available in this version'; done
+  for word in farm info stitch; do refused $word scene.vts; want_in err 'not available in this version'; done
   for word in --resume --preview=h:1 --aov=depth --frames=1-3 -f1-3; do refused render scene.vts $word; want_in err 'not available in this version'; done
   want_only scene.vts
 }
@@ -441,6 +441,81 @@ case_dump() {
   done
   refused run scene.vts --dump=nonsense
   refused render scene.vts --dump=ast
+}
+
+# column NAME [ROW]: a field of chart.csv; rows count from 1.
+column() {
+  awk -F, -v name="$1" -v row="${2:-1}" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) at = i } NR == row + 1 { gsub(/"/, "", $at); print $at }' chart.csv
+}
+want_column() { # NAME ROW VALUE
+  [ "$(column "$1" "$2")" = "$3" ] || fail "'$call': $1 of row $2 is '$(column "$1" "$2")', not '$3'"
+}
+is_true() { awk "BEGIN { exit !($1) }" || fail "'$call': not $1"; }
+
+case_chart() {
+  scene
+  cat >>scene.vts <<'S'
+global_settings { max_error 1/60 }
+skin {
+  surface { patch_grid 1, 1 function(u, v) { <4*u - 2, 0, 4*v - 2> } }
+  texel { texel { layer { cone { <0.5, 0, 0.5>, 0.2, <0.5, 1, 0.5>, 0 } } resolution 32 } }
+  mapping { repeat 6 height 0.3 }
+}
+S
+  local options='scene.vts -s 40x30'
+  # Two points and the scene as it is, which is one of them; with gnuplot's absence noted, no error.
+  mkdir bin
+  PATH=$folder/bin run chart $options --samples 16 --sweep max_error=1/60,1/2000 -o chart.svg --keep pictures; want_status 0
+  want_in err 'gnuplot'; want_in err chart.csv; [ ! -e chart.svg ] || fail "a plot without gnuplot"
+  want_in out 'max_error: 1/60'
+  [ "$(wc -l <chart.csv)" = 4 ] || fail "chart.csv has not three points"
+  want_column curve 2 max_error; want_column knob 2 max_error; want_column value 3 1/2000; want_column default 1 1; want_column default 2 0
+  want_column rmse_measured 2 "$(column rmse_measured 1)"; want_column voxels_visited 2 "$(column voxels_visited 1)"
+  want_column width 1 40; want_column height 1 30; want_column picture 1 pictures/plain.png
+  is_true "$(column voxels_visited 3) > 1.2*$(column voxels_visited 2)"
+  is_true "$(column cpu_s 3) > 0 && $(column wall_s 3) > 0 && $(column parse_wall_s 3) > 0 && $(column flip 3) > 0 && $(column psnr 3) > 10"
+  # Errors are those of the pictures that are kept, but for the eight bits that these have; noise is that of the halves, and is taken off.
+  is_true "($(column rmse 1)^2 + $(column reference_noise 1)^2 - $(column rmse_measured 1)^2)^2 < 1e-14"
+  "$vts" compare pictures/reference-1.exr pictures/reference-2.exr --metric rmse >apart
+  is_true "($(cut -d' ' -f2 apart)/2 - $(column reference_noise 1))^2 < 1e-12"
+  local n
+  for n in plain max_error-1_60 max_error-1_2000; do want_file pictures/$n.png; done
+  cmp -s pictures/plain.png pictures/max_error-1_60.png || fail "the scene's own setting gives another picture"
+  cp chart.csv first.csv
+  # The halves that were kept are as good as new ones; and one picture has no known noise.
+  run chart $options --reference pictures/reference-1.exr --reference pictures/reference-2.exr --sweep max_error=1/60,1/2000 -o chart.svg; want_status 0
+  [ "$(column rmse 2)" = "$(awk -F, 'NR == 3 { print $16 }' first.csv)" ] || fail "references read again give another error"
+  run chart $options --reference pictures/reference-1.exr --methods quadrature -o chart.svg --set max_error=1/100; want_status 0
+  [ "$(wc -l <chart.csv)" = 6 ] || fail "four methods and the scene as it is are not five points"
+  want_column reference_noise 1 ''; want_column curve 2 quadrature; want_column method_value 5 lune
+  run chart $options --reference pictures/reference-1.exr --methods ray_path,opacity_model --sweep max_error=1/100,1/60 --set samples=1 --repeat 2
+  want_status 0; want_file scene.csv; [ "$(wc -l <scene.csv)" = 14 ] || fail "two sets of three curves with two points each are not there"
+  if command -v gnuplot >/dev/null; then
+    want_file scene.svg; grep -q '</svg>' scene.svg || fail "the plot is not whole"
+    for n in 'ray_path straight' 'Pareto front' 'as the scene has it' "$("$vts" --version)" 'its noise is not known' 'CPU seconds'; do grep -qF "$n" scene.svg || fail "no '$n' in the plot"; done
+  fi
+  # What cannot be.
+  refused chart; refused chart $options; want_in err '--sweep'; refused chart $options --sweep max_error; refused chart $options --sweep max_error=
+  refused chart $options --sweep opacity_modl=mean; want_in err "did you mean 'opacity_model'?"
+  refused chart $options --sweep opacity_model=meen; want_in err "did you mean 'mean'?"
+  refused chart $options --sweep max_error=2; refused chart $options --methods samples; want_in err '--sweep'; refused chart $options --methods quadratur
+  refused chart $options --methods quadrature --sweep quadrature=lune; refused chart $options --methods quadrature -o chart.txt
+  refused chart $options --methods quadrature --reference a --reference b --reference c; refused chart $options a.vts --methods quadrature
+  refused chart $options --methods quadrature --cache c; refused render scene.vts --sweep max_error=1
+  run chart $options --methods quadrature --reference none.exr; want_status 3
+  run chart $options --methods quadrature -o no/such.svg; want_status 3
+  run chart scene.vts -s 41x30 --methods quadrature --reference pictures/reference-1.exr; want_status 2; want_in err '40 x 30'
+  echo '#error "no"' >wrong.vts
+  run chart wrong.vts --methods quadrature; want_status 1; want_in err 'wrong.vts:1'
+  rm -r pictures bin chart.* scene.svg first.csv apart
+  "$vts" chart scene.vts -s 2000x1500 --samples 4000 --methods quadrature >out 2>err &
+  local pid=$!
+  sleep 1
+  kill -s INT $pid
+  wait $pid
+  status=$? call='vts chart with SIGINT'
+  want_status 130
+  want_only scene.vts scene.csv wrong.vts
 }
 
 case_reference() {

@@ -107,6 +107,8 @@ bool skin_cell_holds(const SkinCell *cell, Vec3 world, double tolerance, SkinPoi
  * point is outside: beyond the top, below the foot, past a border, or lost (the mapping is folded there). */
 typedef enum SkinSide { SKIN_INSIDE, SKIN_ABOVE, SKIN_BELOW, SKIN_BORDER, SKIN_LOST } SkinSide;
 SkinSide skin_locate(const CompiledSkin *skin, Vec3 world, double tolerance, SkinPoint *point, bool *crossed_seam);
+/* Takes a point on an edge of its cell to the neighbour across it; returns that cell's number of the edge. There must be a neighbour. */
+int skin_cross_edge(const CompiledSkin *skin, int edge, SkinPoint *point);
 /* The first t in [t_min, t_max] at which the ray is within the layer; unit direction. False when nowhere. */
 bool skin_enter(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, SkinPoint *point, double *t);
 

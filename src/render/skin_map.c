@@ -95,6 +95,15 @@ static void point_at_edge(const SkinCell *cell, int e, double s, double in, Skin
     }
 }
 
+int skin_cross_edge(const CompiledSkin *skin, int edge, SkinPoint *point) {
+    const SkinCell *cell = &skin->cells[point->cell];
+    SurfaceNeighbour next = cell->neighbour[edge];
+    double s = 1 - along_edge(cell, edge, point);
+    point->cell = next.cell;
+    point_at_edge(&skin->cells[next.cell], next.edge, s, 0, point);
+    return next.edge;
+}
+
 SkinSide skin_locate(const CompiledSkin *skin, Vec3 world, double tolerance, SkinPoint *point, bool *crossed_seam) {
     int32_t before = -1;
     for (int hop = 0; hop < MOST_HOPS; hop++) {
@@ -138,16 +147,12 @@ bool skin_cell_holds(const SkinCell *cell, Vec3 world, double tolerance, SkinPoi
     return beyond <= 1e-7 && p->w >= -1e-7 && p->w <= 1 + 1e-7;
 }
 
-/* The first t of the ray within this cell. */
-static bool enter_cell(const SkinCell *cell, const Ray *ray, double t_min, double t_max, SkinPoint *point, double *t) {
+/* The piece of the ray within this cell that begins first. */
+static bool enter_cell(const SkinCell *cell, int32_t number, const Ray *ray, double t_min, double t_max, SkinPiece *first) {
     SkinPiece pieces[MOST_PIECES];
-    int count = skin_cell_pieces(cell, point->cell, ray, t_min, t_max, pieces);
-    *t = t_max;
-    for (int i = 0; i < count; i++) {
-        if (pieces[i].t0 >= *t) continue;
-        *t = pieces[i].t0;
-        *point = pieces[i].middle;
-    }
+    int count = skin_cell_pieces(cell, number, ray, t_min, t_max, pieces);
+    for (int i = 0; i < count; i++)
+        if (i == 0 || pieces[i].t0 < first->t0) *first = pieces[i];
     return count > 0;
 }
 
@@ -160,8 +165,8 @@ typedef struct EnterQuery {
     struct RTCIntersectContext context; /* first: Embree hands back its address */
     const CompiledSkin *skin;
     const Ray *ray;
-    double t_min, t;
-    SkinPoint point;
+    double t_min, t_max;
+    SkinPiece piece; /* t0 = t_max: none yet */
 } EnterQuery;
 
 void skin_bound_cell(const struct RTCBoundsFunctionArguments *args) {
@@ -176,16 +181,19 @@ void skin_bound_cell(const struct RTCBoundsFunctionArguments *args) {
     b->lower_z = (float)(box.min.z - margin), b->upper_z = (float)(box.max.z + margin);
 }
 
+/* Floats at most and at least as large as t. */
+static float float_below(double t) { return (float)(t - 1e-7 * fabs(t)); }
+static float float_above(double t) { return t < 1e30 ? (float)(t + 1e-7 * fabs(t)) : INFINITY; }
+
 static void intersect_cell(const struct RTCIntersectFunctionNArguments *args) {
     if (!args->valid[0]) return;
     EnterQuery *query = (EnterQuery *)(void *)args->context;
     struct RTCRayHit *rayhit = (struct RTCRayHit *)(void *)args->rayhit;
-    SkinPoint point = {.cell = (int32_t)args->primID};
-    double t;
-    if (!enter_cell(&query->skin->cells[args->primID], query->ray, query->t_min, query->t, &point, &t) || t >= query->t) return;
-    query->t = t;
-    query->point = point;
-    rayhit->ray.tfar = (float)t;
+    SkinPiece piece;
+    if (!enter_cell(&query->skin->cells[args->primID], (int32_t)args->primID, query->ray, query->t_min, query->t_max, &piece)) return;
+    if (piece.t0 >= query->piece.t0) return;
+    query->piece = piece;
+    rayhit->ray.tfar = float_above(piece.t0);
     rayhit->hit.geomID = args->geomID;
     rayhit->hit.primID = args->primID;
 }
@@ -213,17 +221,23 @@ void cell_tree_destroy(CellTree *tree) {
     free(tree);
 }
 
-bool skin_enter(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, SkinPoint *point, double *t) {
-    EnterQuery query = {.skin = skin, .ray = ray, .t_min = t_min, .t = t_max, .point = {.cell = -1}};
+bool skin_first_piece(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, SkinPiece *out) {
+    EnterQuery query = {.skin = skin, .ray = ray, .t_min = t_min, .t_max = t_max, .piece = {.t0 = t_max, .middle.cell = -1}};
     rtcInitIntersectContext(&query.context);
     struct RTCRayHit rayhit = {
         .ray = {.org_x = (float)ray->origin.x, .org_y = (float)ray->origin.y, .org_z = (float)ray->origin.z,
                 .dir_x = (float)ray->direction.x, .dir_y = (float)ray->direction.y, .dir_z = (float)ray->direction.z,
-                .tnear = (float)t_min, .tfar = t_max < 1e30 ? (float)t_max : INFINITY, .mask = 0xFFFFFFFFu},
+                .tnear = float_below(t_min), .tfar = float_above(t_max), .mask = 0xFFFFFFFFu},
         .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
     rtcIntersect1(skin->tree->scene, &query.context, &rayhit);
-    if (query.point.cell < 0) return false;
-    *point = query.point;
-    *t = query.t;
+    *out = query.piece;
+    return query.piece.middle.cell >= 0;
+}
+
+bool skin_enter(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, SkinPoint *point, double *t) {
+    SkinPiece piece;
+    if (!skin_first_piece(skin, ray, t_min, t_max, &piece)) return false;
+    *point = piece.middle;
+    *t = piece.t0;
     return true;
 }

@@ -1,10 +1,10 @@
 #include "render/skin_march.h"
 
-#include "render/skin_cross.h"
-
 /* A cone that takes more steps than this is lost in a mapping that no voxel fits; it ends there. */
 enum { MOST_STEPS = 1 << 14 };
-enum { MOST_ENTRIES = 64, MOST_HALVINGS = 7, SPAN_STEPS = 48, BORDER_BISECTIONS = 7 };
+enum { MOST_ENTRIES = 1 << 10, MOST_HALVINGS = 7, SPAN_STEPS = 48 };
+/* Cells without length around a vertex, and cells within one step, that are passed at once. */
+enum { MOST_FAN = 64, MOST_CELLS = 64 };
 /* A step crosses at most this share of the layer, so that what is homogeneous on the large is not stepped over. */
 static const double LAYER_STEP = 0.3;
 /* A span crosses at most this many tiles, and bends at most this many voxels from its chord: the quadratic through its
@@ -35,7 +35,6 @@ static void begin(SkinMarch *m, const Cone *cone, double t_min, double t_max, co
     m->fitted = false;
     m->span.t1 = -VTS_INFINITY;
     m->span.leaves = true;
-    m->chord.cell = -1;
 }
 
 /* ---- spans ---- */
@@ -82,34 +81,6 @@ static SkinPoint guess(const SkinPoint *from, const TexturePlace *place, Vec3 d,
                        from->w + vec3_dot(place->grad_layer, d) * dt};
 }
 
-/* Where in (0, 1] the quadratic through w0, wm (at 1/2) and w1 first passes the limit. */
-static double crossing(double w0, double wm, double w1, double limit) {
-    double c = w0 - limit, b = -3 * w0 + 4 * wm - w1, a = 2 * (w0 - 2 * wm + w1);
-    double disc = b * b - 4 * a * c;
-    if (disc >= 0 && (a != 0 || b != 0)) {
-        double q = -0.5 * (b + copysign(sqrt(disc), b));
-        double roots[2] = {a != 0 ? q / a : -1, q != 0 ? c / q : -1}, best = 2;
-        for (int i = 0; i < 2; i++)
-            if (roots[i] > 0 && roots[i] <= 1) best = double_min(best, roots[i]);
-        if (best <= 1) return best;
-    }
-    return w1 != w0 ? double_clamp((limit - w0) / (w1 - w0), 0, 1) : 1;
-}
-
-/* The largest share of the way to t1 that is still over the surface. */
-static double border(const SkinMarch *m, const SkinPoint *start, double t0, double t1, double tolerance) {
-    double lo = 0, hi = 1;
-    for (int i = 0; i < BORDER_BISECTIONS; i++) {
-        double f = (lo + hi) / 2, t = t0 + f * (t1 - t0);
-        SkinPoint p = guess(start, &m->place, m->cone->direction, t - t0);
-        bool seam = false;
-        SkinSide side = skin_locate(m->skin, cone_point(m->cone, t), tolerance, &p, &seam);
-        if (side == SKIN_BORDER || side == SKIN_LOST) hi = f;
-        else lo = f;
-    }
-    return lo;
-}
-
 static void lay_quadratic(MarchSpan *span, Vec3 x0, Vec3 xm, Vec3 x1, double length) {
     Vec3 bend = vec3_sub(vec3_add(x0, x1), vec3_scale(xm, 2));
     span->c0 = x0;
@@ -118,145 +89,165 @@ static void lay_quadratic(MarchSpan *span, Vec3 x0, Vec3 xm, Vec3 x1, double len
     span->c2 = vec3_scale(bend, 2 / (length * length));
 }
 
-/* From the current point to where the ray leaves its cell or the layer. */
-static MarchChord find_chord(const SkinMarch *m) {
-    const SkinCell *cell = &m->skin->cells[m->point.cell];
-    Vec3 d = m->cone->direction;
-    MarchChord chord = {.cell = m->point.cell, .t0 = m->t, .t1 = m->t, .c0 = coordinates(&m->place)};
-    chord.c1 = vec3(vec3_dot(m->place.grad_u, d), vec3_dot(m->place.grad_v, d), vec3_dot(m->place.grad_w, d));
-    double size = vec3_length(vec3_sub(cell->bounds.max, cell->bounds.min));
-    Ray ray = {m->cone->origin, d};
-    SkinCrossing crossings[MOST_CROSSINGS];
-    if (!skin_cell_cross(cell, &ray, m->t + 1e-6 * size, VTS_INFINITY, crossings)) return chord;
-    const SkinCrossing *out = &crossings[0];
-    SkinPoint end = {chord.cell, out->a, out->b, out->w};
-    chord.t1 = out->t;
-    TexturePlace place = skin_texture_place(cell, &end);
-    chord.c1 = vec3_scale(vec3_sub(coordinates(&place), chord.c0), 1 / (chord.t1 - chord.t0));
-    return chord;
+/* A span that is being tried, from the march's place to t1 in the stretch `last`. */
+typedef struct SpanTrial {
+    SkinStretch last;
+    bool one_cell; /* `last` is the stretch in which the march is */
+    double t1;
+    bool shortest;
+} SpanTrial;
+
+static Ray ray_of(const SkinMarch *m) { return (Ray){m->cone->origin, m->cone->direction}; }
+
+/* Newton's method in the cell of the guess. */
+static bool find(const SkinMarch *m, double t, double tolerance, SkinPoint *point) {
+    return skin_cell_invert(&m->skin->cells[point->cell], cone_point(m->cone, t), tolerance, point);
 }
 
-/* The part of the chord from t0 on, instead of the quadratic. */
+static bool find_end(const SkinMarch *m, const SpanTrial *trial, double tolerance, SkinPoint *end) {
+    if (trial->t1 >= trial->last.t1) {
+        *end = trial->last.end;
+        return true;
+    }
+    if (trial->one_cell) {
+        *end = guess(&m->point, &m->place, m->cone->direction, trial->t1 - m->at);
+    } else {
+        TexturePlace place = skin_texture_place(&m->skin->cells[trial->last.start.cell], &trial->last.start);
+        *end = guess(&trial->last.start, &place, m->cone->direction, trial->t1 - trial->last.t0);
+    }
+    return find(m, trial->t1, tolerance, end);
+}
+
+/* Through several cells the span is straight: no quadratic follows the kinks at their walls. */
+static bool find_middle(const SkinMarch *m, const SpanTrial *trial, double tolerance, SkinPoint *middle) {
+    double t = (m->at + trial->t1) / 2;
+    *middle = guess(&m->point, &m->place, m->cone->direction, t - m->at);
+    return trial->one_cell && find(m, t, tolerance, middle);
+}
+
+/* The chord of the whole stretch, from t0 on. */
 static void lay_chord(SkinMarch *m, double t0) {
-    m->span.c0 = vec3_madd(m->chord.c0, m->chord.c1, t0 - m->chord.t0);
-    m->span.c1 = m->chord.c1;
+    const SkinStretch *s = &m->stretch;
+    const SkinCell *cell = &m->skin->cells[s->start.cell];
+    TexturePlace start = skin_texture_place(cell, &s->start), end = skin_texture_place(cell, &s->end);
+    Vec3 x0 = coordinates(&start), rate = vec3_scale(vec3_sub(coordinates(&end), x0), 1 / (s->t1 - s->t0));
+    m->span.c0 = vec3_madd(x0, rate, t0 - s->t0);
+    m->span.c1 = rate;
     m->span.c2 = vec3(0, 0, 0);
 }
 
-/* Tries a span of this length from the current point. False: take a shorter one. */
-static bool try_span(SkinMarch *m, double length, bool shortest) {
+/* Lays the span. False: take a shorter one. */
+static bool try_span(SkinMarch *m, const SpanTrial *trial) {
     MarchSpan *span = &m->span;
-    bool straight = m->settings->path == RAY_PATH_STRAIGHT;
-    if (straight && (m->chord.cell != m->point.cell || m->t >= m->chord.t1)) m->chord = find_chord(m);
-    Vec3 d = m->cone->direction;
-    double t0 = m->t, t1 = t0 + length, tm = t0 + length / 2;
+    double t0 = m->at, length = trial->t1 - t0;
     /* Of the residual before the last Newton step, which squares it: what is left is far below the footprint. */
     double tolerance = 0.2 * double_max(cone_diameter(m->cone, t0), 1e-4 * length) + 1e-9 * length;
-    SkinPoint middle = guess(&m->point, &m->place, d, length / 2);
-    bool seam = false;
-    SkinSide side_m = skin_locate(m->skin, cone_point(m->cone, tm), tolerance, &middle, &seam);
-    if (side_m != SKIN_INSIDE && !shortest) return false;
-    if (side_m == SKIN_LOST) return false;
-    TexturePlace place_m = skin_texture_place(&m->skin->cells[middle.cell], &middle);
-    SkinPoint end = guess(&middle, &place_m, d, length / 2);
-    SkinSide side = skin_locate(m->skin, cone_point(m->cone, t1), tolerance, &end, &seam);
-    if (side == SKIN_LOST) return false;
-    if (seam && !shortest) return false;
+    SkinPoint middle, end;
+    bool ends = find_end(m, trial, tolerance, &end), found = ends && find_middle(m, trial, tolerance, &middle);
+    if (!found && !trial->shortest) return false;
+    if (!found) middle = m->point;
+    if (!ends) end = guess(&m->point, &m->place, m->cone->direction, length); /* a singular place: on as at its start */
+    TexturePlace place_m = found ? skin_texture_place(&m->skin->cells[middle.cell], &middle) : m->place;
     TexturePlace place_e = skin_texture_place(&m->skin->cells[end.cell], &end);
-    Vec3 x0 = coordinates(&m->place), xm = coordinates(&place_m), x1 = coordinates(&place_e);
-    if (seam || side_m == SKIN_BORDER) { /* coordinates jump or end: the rate at the start, over one short step */
-        Vec3 rate = vec3(vec3_dot(m->place.grad_u, d), vec3_dot(m->place.grad_v, d), vec3_dot(m->place.grad_w, d));
-        xm = vec3_madd(x0, rate, length / 2);
-        x1 = vec3_madd(x0, rate, length);
-        place_m = m->place;
-        middle = m->point;
-    }
+    Vec3 x0 = coordinates(&m->place), x1 = coordinates(&place_e), xm = found ? coordinates(&place_m) : vec3_lerp(x0, x1, 0.5);
     double bend = vec3_length(vec3_scale(vec3_sub(vec3_add(x0, x1), vec3_scale(xm, 2)), 0.25));
-    if (!shortest && !straight && bend > SPAN_BEND_VOXELS * (double)m->span.voxel_world * vec3_length(vec3_sub(x1, x0)) / length) return false;
-    /* A span that dips out of the layer and in again, or whose exit is found late, does no harm: beyond the texel's box
-     * nothing is met. */
-    double part = 1;
-    if (side == SKIN_ABOVE || side == SKIN_BELOW) part = crossing(m->point.w, middle.w, end.w, side == SKIN_ABOVE ? 1 : 0);
-    if (side == SKIN_BORDER) part = border(m, &m->point, t0, t1, tolerance);
-    lay_quadratic(span, x0, xm, x1, length);
+    bool straight = m->settings->path == RAY_PATH_STRAIGHT && trial->one_cell;
+    if (!trial->shortest && !straight && bend > SPAN_BEND_VOXELS * (double)span->voxel_world * vec3_length(vec3_sub(x1, x0)) / length) return false;
     if (straight) lay_chord(m, t0);
+    else lay_quadratic(span, x0, xm, x1, length);
     span->t0 = t0;
-    span->t1 = t0 + part * length;
+    span->t1 = trial->t1;
     span->place = place_m;
     span->middle = middle;
-    span->leaves = side != SKIN_INSIDE;
-    fit_span(m, &place_m, tm, span);
+    span->leaves = trial->t1 >= trial->last.t1 && !skin_stretch_goes_on(m->skin, &trial->last);
+    fit_span(m, &place_m, (t0 + trial->t1) / 2, span);
     /* The path leaves its tangent by |c2|·s². */
     double bending = vec3_length(span->c2), voxel = (double)span->voxel_world * vec3_length(span->c1);
     span->straight = bending > 0 ? sqrt(TANGENT_VOXELS * voxel / bending) : VTS_INFINITY;
+    m->at = trial->t1;
     m->point = end;
     m->place = place_e;
+    m->stretch = trial->last;
     m->inside = !span->leaves;
     return true;
 }
 
-/* The way in t until (a, b), moving at these rates, leaves the cell's square or triangle. */
-static double to_wall(const SkinCell *cell, const SkinPoint *p, double rate_a, double rate_b) {
-    double way = VTS_INFINITY;
-    if (rate_a < 0) way = double_min(way, -p->a / rate_a);
-    if (rate_b < 0) way = double_min(way, -p->b / rate_b);
-    if (cell->triangle) {
-        if (rate_a + rate_b > 0) way = double_min(way, (1 - p->a - p->b) / (rate_a + rate_b));
-    } else {
-        if (rate_a > 0) way = double_min(way, (1 - p->a) / rate_a);
-        if (rate_b > 0) way = double_min(way, (1 - p->b) / rate_b);
-    }
-    return double_max(way, 0);
+static bool crosses_seam(const SkinMarch *m, const SkinStretch *s) {
+    return m->skin->cells[s->end.cell].neighbour[s->exit].seam;
 }
 
-/* The next span from the current point. False where the mapping is lost: the march then looks for another entry. */
+/* From the end of the stretch into the next that has a length. False where the layer ends. */
+static bool next_stretch(SkinMarch *m) {
+    Ray ray = ray_of(m);
+    for (int i = 0; i < MOST_FAN && skin_stretch_goes_on(m->skin, &m->stretch); i++) {
+        m->stretch = skin_stretch_next(m->skin, &ray, &m->stretch, m->t_max);
+        if (m->stretch.t1 - m->stretch.t0 <= skin_hair(&m->skin->cells[m->stretch.start.cell], &ray, m->stretch.t0)) continue;
+        m->at = m->stretch.t0;
+        m->point = m->stretch.start;
+        m->place = skin_texture_place(&m->skin->cells[m->point.cell], &m->point);
+        return true;
+    }
+    return false;
+}
+
+/* Through cells smaller than a step until the way is as long as one; texture coordinates go on across walls, but not across seams. Larger
+ * cells end the way: the mapping has a kink at their walls. */
+static void reach_through_cells(const SkinMarch *m, double least, SpanTrial *trial) {
+    Ray ray = ray_of(m);
+    trial->last = m->stretch;
+    trial->one_cell = true;
+    for (int i = 0; i < MOST_CELLS && trial->last.t1 - m->at < least; i++) {
+        if (!skin_stretch_goes_on(m->skin, &trial->last) || crosses_seam(m, &trial->last)) return;
+        SkinStretch next = skin_stretch_next(m->skin, &ray, &trial->last, m->t_max);
+        if (next.t1 - next.t0 >= least) return;
+        trial->last = next;
+        trial->one_cell = false;
+    }
+}
+
+/* The next span from the current place. False where the layer ends: the march then looks for another entry. */
 static bool next_span(SkinMarch *m) {
-    if (!m->fitted) fit_span(m, &m->place, m->t, &m->span); /* else the span before tells how long steps are here */
+    if (m->at >= m->stretch.t1 && !next_stretch(m)) return false;
+    if (!m->fitted) fit_span(m, &m->place, m->at, &m->span); /* else the span before tells how long steps are here */
     m->fitted = true;
     Vec3 d = m->cone->direction;
     double rate = fmax(fabs(vec3_dot(m->place.grad_u, d)), fabs(vec3_dot(m->place.grad_v, d)));
-    double length = (m->settings->path == RAY_PATH_EXACT ? 1 : SPAN_STEPS) * m->span.step;
+    double step = m->span.step, length = (m->settings->path == RAY_PATH_EXACT ? 1 : SPAN_STEPS) * step;
     if (rate > 0) length = double_min(length, SPAN_TILES / rate);
-    /* To just past the wall of the cell: the mapping has a kink there, which no quadratic follows. */
-    length = double_min(length, 1.01 * to_wall(&m->skin->cells[m->point.cell], &m->point, vec3_dot(m->place.grad_a, d), vec3_dot(m->place.grad_b, d)));
-    length = double_max(length, m->span.step);
-    length = double_min(length, m->t_max - m->t);
-    const SkinPoint point = m->point;
-    const TexturePlace place = m->place;
-    for (int i = 0; i <= MOST_HALVINGS; i++) {
-        bool shortest = i == MOST_HALVINGS || length <= m->span.step;
-        if (!try_span(m, length, shortest)) {
-            length /= 2;
-            continue;
-        }
-        /* A span that ends far outside of the layer fits it badly: once more, to just past the exit. */
-        double used = m->span.t1 - m->span.t0;
-        if (!m->span.leaves || shortest || used > 0.7 * length) return true;
-        m->point = point;
-        m->place = place;
-        m->inside = true;
-        length = double_max(1.1 * used, 0.05 * length);
+    SpanTrial trial;
+    reach_through_cells(m, double_min(step, length), &trial);
+    double most = trial.last.t1 - m->at;
+    if (!(most > 0)) return false;
+    length = double_min(trial.one_cell ? length : double_min(step, length), most);
+    for (int i = 0; i <= MOST_HALVINGS; i++, length /= 2) {
+        trial.t1 = most - length < 0.25 * double_min(step, length) ? trial.last.t1 : m->at + length;
+        trial.shortest = !trial.one_cell || i == MOST_HALVINGS || length <= step;
+        if (try_span(m, &trial)) return true;
     }
-    m->inside = false;
-    m->span.leaves = true;
-    m->t += double_max(length, 1e-9);
     return false;
 }
 
 /* ---- entering ---- */
 
-static bool enter(SkinMarch *m) {
-    if (m->t >= m->t_max || m->entries++ >= MOST_ENTRIES) return false;
-    Ray ray = {m->cone->origin, m->cone->direction};
-    double t;
-    if (!skin_enter(m->skin, &ray, m->t, m->t_max, &m->point, &t)) return false;
-    /* The query leaves the point somewhere in the piece it found: bring it to the entry. */
-    SkinPoint at = m->point;
-    if (skin_cell_invert(&m->skin->cells[at.cell], cone_point(m->cone, t), 1e-7 * (1 + fabs(t)), &at)) m->point = at;
-    m->point.w = double_clamp(m->point.w, 0, 1);
-    m->t = t;
+static void begin_stretch(SkinMarch *m, const SkinStretch *stretch) {
+    m->entries++;
+    m->stretch = *stretch;
+    m->at = stretch->t0;
+    m->point = stretch->start;
     m->place = skin_texture_place(&m->skin->cells[m->point.cell], &m->point);
     m->inside = true;
+}
+
+static bool enter(SkinMarch *m) {
+    Ray ray = ray_of(m);
+    SkinStretch stretch;
+    if (m->t >= m->t_max || m->entries > MOST_ENTRIES) return false;
+    bool again = m->entries > 0 && m->stretch.t1 >= m->t;
+    if (!(again ? skin_stretch_again(m->skin, &ray, &m->stretch, m->t_max, &stretch)
+                : skin_stretch_first(m->skin, &ray, m->t, m->t_max, &stretch)))
+        return false;
+    begin_stretch(m, &stretch);
+    m->t = m->at;
     return true;
 }
 
@@ -287,10 +278,11 @@ double skin_march_begin_around(SkinMarch *m, const Cone *cone, const SkinPoint *
     fit_span(m, &m->place, 0, &m->span);
     double back = reach * (double)m->span.voxel_world, wanted = back;
     m->point = step_back(m, point, tolerance, &back);
-    if (back > 0) m->place = skin_texture_place(&m->skin->cells[m->point.cell], &m->point);
     m->t = -back;
-    m->inside = true;
     m->fitted = true;
+    Ray ray = ray_of(m);
+    SkinStretch stretch = skin_stretch_from(m->skin, &ray, m->point, m->t, t_max);
+    if (stretch.t1 > m->t) begin_stretch(m, &stretch);
     return wanted;
 }
 
@@ -312,7 +304,8 @@ static float wrapped(float x, float size) {
     float turns = x / size;
     if (!(fabsf(turns) < 1e9f)) return 0; /* past all precision, or not a number */
     float whole = (float)(int64_t)turns;
-    return (turns - whole + (turns < whole ? 1.0f : 0.0f)) * size;
+    float part = turns - whole + (turns < whole ? 1.0f : 0.0f);
+    return part < 1 ? part * size : 0; /* a hair below 0 is rounded to 1 */
 }
 
 /* A path along the foot or the top of the layer may pass them by a hair, by rounding and by what the quadratic misses. */
@@ -514,11 +507,15 @@ static void sample(SkinMarch *m, double t0, double t1, SkinSegment *out) {
 bool skin_march_next(SkinMarch *m, SkinSegment *segment) {
     while (m->steps_left-- > 0) {
         if (m->t >= m->span.t1) {
-            if (m->span.leaves) m->t = double_max(m->t, m->span.t1) + (isfinite(m->span.t1) ? 1e-6 * m->span.step : 0);
             if (!m->inside && !enter(m)) return false;
-            if (m->t >= m->t_max) return false;
+            if (m->at >= m->t_max) return false;
             m->counters->steps++;
-            if (!next_span(m)) continue;
+            if (!next_span(m)) {
+                m->inside = false;
+                continue;
+            }
+            m->t = double_max(m->t, m->span.t0);
+            if (m->t >= m->span.t1) continue;
         }
         /* Over what is empty, and ask again: other tiles may begin there. Slivers are not worth the question. */
         double gap = empty_way(m, m->t), sliver = 1e-3 * m->span.step;

@@ -2,7 +2,7 @@
 #ifndef VTS_RENDER_SKIN_MARCH_H
 #define VTS_RENDER_SKIN_MARCH_H
 
-#include "render/skin.h"
+#include "render/skin_walk.h"
 
 enum { MOST_MATTER_HITS = 12, MOST_PLACED_TEXELS = 8 };
 
@@ -91,25 +91,18 @@ typedef struct MarchSpan {
     bool leaves;       /* the layer ends at t1 */
 } MarchSpan;
 
-/* RAY_PATH_STRAIGHT: texture coordinates within one cell are c0 + c1·(t − t0). */
-typedef struct MarchChord {
-    int32_t cell; /* −1: none */
-    double t0, t1;
-    Vec3 c0, c1;
-} MarchChord;
-
 typedef struct SkinMarch {
     const CompiledSkin *skin;
     const Cone *cone;
     const MarchSettings *settings;
     TraceCounters *counters;
     bool shade;           /* fill MatterHit.s and .place */
-    bool inside;          /* point and place are those at span.t1, where the next span begins */
-    double t, t_max;
+    bool inside;          /* the layer goes on at `at`, where point and place are and the next span begins */
+    double t, t_max, at;
     SkinPoint point;
     TexturePlace place;
+    SkinStretch stretch;  /* of the way, in which `at` lies */
     MarchSpan span;       /* holds for t in [span.t0, span.t1] */
-    MarchChord chord;
     int entries, steps_left;
     bool fitted;          /* span.step is of this cone */
     uint32_t number;      /* of the cone, counted up by each begin */

@@ -93,10 +93,10 @@ static void chords_of_a_ball_are_whole(void **state) {
         printf("%s\n", cases[c].name);
         for (int k = 0; k < 4; k++) {
             print_errors(aims[k], &errors[k], "heights");
-            /* Nothing leaks. Matter ends at the top and the foot, so that what runs along them is found to a hair. */
-            assert_true(errors[k].least > -.004);
-            assert_true(fabs(errors[k].bias / errors[k].rays) < .01);
-            assert_true(errors[k].bad < errors[k].rays / 20);
+            /* Nothing leaks, nothing is counted twice; slivers of a thousandth of a step are passed over. */
+            assert_true(errors[k].worst < .001);
+            assert_true(fabs(errors[k].bias / errors[k].rays) < 1e-5);
+            assert_int_equal(errors[k].bad, 0);
         }
         skin_scene_end(&s);
     }

@@ -18,8 +18,9 @@ typedef enum OpacityModel {
  * Correlated: a sheet that is interpolated trilinearly is smeared over two voxels of depth, and neither exp(−τ) nor
  * 1 − τ applied to the smeared density is opaque again (0.37 and 0.14 … 0.3 get through). What tells the middle of an
  * intact sheet is its density alone: 2ρh, area per voxel's face, is 0.8 to 1 there whatever way the sheet is turned or
- * seen. So τ is enhanced by 1 + (4 γ ρ h)², which leaves matter much thinner than a voxel as it is and makes intact
- * sheets opaque from everywhere. Matter that hides itself in clumps, as blades do in a coarse voxel, has a gamma < 0 and
+ * seen. So τ is enhanced by 1 + 5 (2γρh)³, which leaves matter much thinner than a voxel as it is and makes intact
+ * sheets opaque from everywhere. γ is above 1 where a sheet goes over from one layer of voxels to the next: together they are
+ * intact. Matter that hides itself in clumps, as blades do in a coarse voxel, has a gamma < 0 and
  * a factor 1 + γ < 1. h: side of the voxels, 2^lod times that of the finest level where levels are mixed.
  *
  * Crossing: T = γ max(0, 1 − τ) + (1 − γ) exp(−τ), not below 1/512, for the mean crossing l = h/(|dx| + |dy| + |dz|) of a
@@ -40,11 +41,12 @@ float opacity_depth_mean(const VoxelSample *v, float finest, float h, Vec3f step
 
 /* The factor by which OPACITY_CORRELATED enhances τ, for density in units of 1/h; and the gamma for a factor. */
 static inline float opacity_enhancement(float gamma, float density) {
-    return gamma < 0 ? 1 + gamma : 1 + 16 * gamma * gamma * density * density;
+    float x = 2 * gamma * density;
+    return gamma < 0 ? 1 + gamma : 1 + 5 * x * x * x;
 }
 static inline float opacity_gamma_for(float enhancement, float density) {
     if (enhancement <= 1) return enhancement - 1;
-    return float_min(1, sqrtf(enhancement - 1) / (4 * density));
+    return cbrtf((enhancement - 1) / 5) / (2 * density);
 }
 
 #endif

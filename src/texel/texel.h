@@ -35,7 +35,7 @@ typedef struct TexelMesh {
 
 typedef struct VoxelSample {
     float density; /* 1 / texel length; 0 = empty, the rest is then meaningless */
-    float gamma;   /* −0.48 clumped, 0 random matter … 1 one sheet */
+    float gamma;   /* −0.48 clumped, 0 random matter, 1 one sheet … 2.5 a part of one that goes on in the next voxel */
     Sym3f s;       /* unit mean projected area */
 } VoxelSample;
 

@@ -40,6 +40,7 @@ static void merge_rays(VoxelCell *parent, const VoxelCell *child, const VoxelMer
     uint64_t inside = place_rays(child->inside[axis], hu, hv, corner[u], corner[v], step->level);
     parent->odd += (float)count_bits(inside) * step->rays[axis];
     parent->joined += 2 * (float)count_bits(parent->inside[axis] & inside) * step->rays[axis];
+    parent->met[axis] += child->met[axis] * (hu ? 0.5f : 1) * (hv ? 0.5f : 1);
     parent->cover[axis] |= cover;
     parent->inside[axis] ^= inside;
 }
@@ -55,6 +56,7 @@ void voxel_cell_merge(VoxelCell *parent, const VoxelCell *child, const VoxelMerg
 }
 
 void voxel_cell_close_finest(VoxelCell *cell) {
+    for (int axis = 0; axis < 3; axis++) cell->met[axis] /= 64;
     for (int axis = 0; axis < 3; axis++) cell->single += (float)count_bits(cell->inside[axis]);
     cell->apart = cell->walls;
 }
@@ -122,6 +124,9 @@ static Sym3f unit_root(const VoxelCell *cell) {
     return square_root(m, s, 1 / mean_projection(s));
 }
 
+/* A sheet goes on in the next voxel if the two hide more than this, and surely if they hide all. */
+static const float MOST_CONTINUATION = 2.5f, LEAST_INTACT = 0.7f;
+
 /* Per axis: τ of a crossing of length `side`, and what the rays say is let through over such a length. */
 typedef struct AxisLight {
     float tau[3], through[3];
@@ -139,6 +144,25 @@ static AxisLight axis_light(const VoxelCell *cell, const Sym3f *root, float dens
         light.through[axis] = sides[axis] == side ? through : powf(through, side / sides[axis]);
     }
     return light;
+}
+
+/* A sheet goes over from one layer of voxels to the next, and is whole with those before and behind: by how much more of the rays they
+ * hide together. Each axis counts as it meets the matter. */
+static float fit_continuation(const VoxelCell *cell, const VoxelSurround *around) {
+    float alone = 0, together = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        uint64_t cover = cell->cover[axis];
+        float w = cell->met[axis], all = cell->met[axis];
+        for (int i = 0; i < 2; i++) {
+            const VoxelCell *near = around->near[axis][i];
+            if (near) cover |= near->cover[axis], all += near->met[axis];
+        }
+        /* More than one sheet is none that goes on. */
+        float whole = (float)count_bits(cover), own = (float)count_bits(cell->cover[axis]), one = float_clamp(2 - all, 0, 1) * float_clamp((whole / 64 - LEAST_INTACT) / (1 - LEAST_INTACT), 0, 1);
+        alone += w * own;
+        together += w * (own + one * (whole - own));
+    }
+    return alone > 0 ? float_min(together / alone, MOST_CONTINUATION) : 1;
 }
 
 /* How much of the matter is one sheet: least squares of T = gamma·max(0, 1 − τ) + (1 − gamma)·exp(−τ) along the axes. */
@@ -161,7 +185,7 @@ static float fit_alone(const AxisLight *light, float density) {
         above -= weighted * logf(t);
         below += weighted * light->tau[axis];
     }
-    return opacity_gamma_for(above / below, density);
+    return float_min(1, opacity_gamma_for(above / below, density));
 }
 
 /* A ray meets the walls of a solid twice. Each at full strength fattens the solid by nearly half a voxel all around; at 0.6
@@ -170,20 +194,21 @@ static float fit_alone(const AxisLight *light, float density) {
 static float wall_strength(int level) { return level == 0 ? 0.9f : level == 1 ? 0.7f : 0.6f; }
 
 /* Sheets and single walls go on into the next voxels; thin solids and clumps end in this one. */
-static float fit_gamma(const VoxelCell *cell, const AxisLight *light, float density, float thin, int level) {
+static float fit_gamma(const VoxelCell *cell, const VoxelSurround *around, const AxisLight *light, float density, float thin, int level) {
     float sheet = fit_sheet(light), alone = fit_alone(light, density);
     if (sheet <= 0) return float_min(alone, 0);
+    sheet *= fit_continuation(cell, around);
     float solid = cell->solid / (cell->solid + cell->sheet), wall = sheet * wall_strength(level);
     float gamma = wall + thin * (float_min(wall, alone) - wall);
     return sheet + solid * (gamma - sheet);
 }
 
-VoxelMatter voxel_cell_matter(const VoxelCell *cell, const float sides[3], float side, float thin, int level) {
+VoxelMatter voxel_cell_matter(const VoxelCell *cell, const VoxelSurround *around, const float sides[3], float side, float thin, int level) {
     VoxelMatter matter = {.root = unit_root(cell)};
     float area = cell->sheet + cell->solid * (1 - 0.5f * thin);
     /* Cauchy: an area is seen as half of itself, on the mean over directions. */
     matter.density = area / (2 * sides[0] * sides[1] * sides[2]) * side;
     AxisLight light = axis_light(cell, &matter.root, matter.density, sides, side);
-    matter.gamma = fit_gamma(cell, &light, matter.density, thin, level);
+    matter.gamma = fit_gamma(cell, around, &light, matter.density, thin, level);
     return matter;
 }

@@ -12,6 +12,7 @@
 typedef struct VoxelCell {
     float sheet, solid; /* area of open sheets; of walls of solids, both walls counted */
     float normals[6];   /* sum of area · n nᵗ: xx yy zz xy xz yz */
+    float met[3];       /* how often the rays along an axis met anything, on the mean over them */
     float walls;        /* walls that the finest level's rays met in the cell */
     float single;       /* of these, without the other one of their pair in the cell */
     float
@@ -51,8 +52,14 @@ void voxel_cell_close_merged(VoxelCell *cell);
  * thinner than one side of a child, falling to none at two. */
 float voxel_cell_thinness(const VoxelCell *parent);
 
+/* The cells before and behind a cell along each axis; NULL where it is not known what is there. */
+typedef struct VoxelSurround {
+    const VoxelCell *near[3][2];
+} VoxelSurround;
+
 /* sides: lengths of the cell; side: the length h that opacity.h is told; thin: the parent's thinness. The two walls of a
  * thin solid count once. */
-VoxelMatter voxel_cell_matter(const VoxelCell *cell, const float sides[3], float side, float thin, int level);
+VoxelMatter voxel_cell_matter(const VoxelCell *cell, const VoxelSurround *around, const float sides[3], float side, float thin,
+                              int level);
 
 #endif

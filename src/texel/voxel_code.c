@@ -19,7 +19,7 @@ VoxelCode voxel_code_pack(float density, float gamma, const Sym3f *root) {
             diagonal(root->xx) | diagonal(root->yy) << 8 | diagonal(root->zz) << 16 | mixed(root->xy) << 24,
         .rest =
             mixed(root->xz) | mixed(root->yz) << 8 | density_code(density) << VOXEL_DENSITY_SHIFT |
-            whole(gamma * (VOXEL_GAMMA_LARGEST - VOXEL_GAMMA_ZERO) + VOXEL_GAMMA_ZERO, 0, VOXEL_GAMMA_LARGEST)
+            whole(gamma / VOXEL_GAMMA_STEP + VOXEL_GAMMA_ZERO, 0, VOXEL_GAMMA_LARGEST)
                 << VOXEL_GAMMA_SHIFT,
     };
 }

@@ -5,7 +5,7 @@
  * most the same error of the projected area (1.2 % of its mean at worst, 0.4 % rms). A rotation with two ratios has a
  * similar error but costs a square root and sixty products to read.
  * Density in eleven bits: a small float (5 bits exponent, 6 mantissa), in units of 1/side; relative error at most 0.8 %.
- * Gamma in five bits, from −0.48 to 1 by steps of 1/21. */
+ * Gamma in five bits, from −0.48 to 2.5 by steps of 0.096. */
 #ifndef VTS_TEXEL_VOXEL_CODE_H
 #define VTS_TEXEL_VOXEL_CODE_H
 
@@ -24,8 +24,9 @@ enum {
     VOXEL_GAMMA_SHIFT = 27,
     VOXEL_DENSITY_LARGEST = 2047,
     VOXEL_GAMMA_LARGEST = 31,
-    VOXEL_GAMMA_ZERO = 10
+    VOXEL_GAMMA_ZERO = 5
 };
+#define VOXEL_GAMMA_STEP 0.096f
 
 /* `density` in units of 1/side (> 0), s of unit mean projected area and roughness at least VOXEL_ROUGHNESS. */
 VoxelCode voxel_code_pack(float density, float gamma, const Sym3f *root);
@@ -51,7 +52,7 @@ static inline float voxel_code_density(uint32_t rest) {
 }
 static inline float voxel_code_gamma(uint32_t rest) {
     return (float)((int32_t)(rest >> VOXEL_GAMMA_SHIFT) - VOXEL_GAMMA_ZERO) *
-           (1.0f / (VOXEL_GAMMA_LARGEST - VOXEL_GAMMA_ZERO));
+           VOXEL_GAMMA_STEP;
 }
 
 #endif

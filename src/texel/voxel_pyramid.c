@@ -82,6 +82,101 @@ static int list_children(const Pyramid *p, int level, const int at[3], int child
     return count;
 }
 
+/* Bricks of one level that are known together: those under one brick of the next. */
+typedef struct BrickBlock {
+    const int (*bricks)[3];
+    const VoxelCell *cells; /* BRICK_VOXELS for each */
+    int count;
+    const VoxelLevel *level;
+    bool cyclic[3];
+    int first[3], end[3]; /* voxels of the block: outside nothing is known */
+} BrickBlock;
+
+/* The cell of a voxel; NULL where it is not known. */
+static const VoxelCell *block_cell(const BrickBlock *block, const int voxel[3]) {
+    static const VoxelCell nothing = {0};
+    for (int k = 0; k < 3; k++) {
+        if (!block->cyclic[k] && (voxel[k] < 0 || voxel[k] >= block->level->size[k])) return &nothing;
+        if (voxel[k] < block->first[k] || voxel[k] >= block->end[k]) return NULL;
+    }
+    for (int i = 0; i < block->count; i++) {
+        const int *b = block->bricks[i];
+        if (b[0] == voxel[0] / BRICK_SIDE && b[1] == voxel[1] / BRICK_SIDE && b[2] == voxel[2] / BRICK_SIDE)
+            return &block->cells[i * BRICK_VOXELS + ((voxel[2] & 7) * BRICK_SIDE + (voxel[1] & 7)) * BRICK_SIDE + (voxel[0] & 7)];
+    }
+    return &nothing;
+}
+
+static VoxelSurround look_around(const BrickBlock *block, const int brick[3], const VoxelCell *cells, int i) {
+    static const int strides[3] = {1, BRICK_SIDE, BRICK_SIDE * BRICK_SIDE};
+    const int within[3] = {i & 7, i >> 3 & 7, i >> 6};
+    VoxelSurround around;
+    for (int k = 0; k < 3; k++)
+        for (int side = 0; side < 2; side++) {
+            int step = side ? 1 : -1, there = within[k] + step;
+            if (there >= 0 && there < BRICK_SIDE) {
+                around.near[k][side] = &cells[i + step * strides[k]];
+                continue;
+            }
+            int voxel[3] = {brick[0] * BRICK_SIDE + within[0], brick[1] * BRICK_SIDE + within[1], brick[2] * BRICK_SIDE + within[2]};
+            voxel[k] += step;
+            around.near[k][side] = block_cell(block, voxel);
+        }
+    return around;
+}
+
+/* parent: the cells of the brick above; NULL for the topmost. */
+static void code_brick(const BrickBlock *block, int level, const bool halved[3], int number, const VoxelCell *parent, PyramidOutput *out) {
+    const VoxelLevel *l = block->level;
+    const int *at = block->bricks[number];
+    const VoxelCell *cells = block->cells + number * BRICK_VOXELS;
+    BuiltBrick brick = {.level = level, .place = (uint32_t)voxel_level_brick_at(l, at[0], at[1], at[2]), .first = out->codes.count};
+    for (int i = 0; i < BRICK_VOXELS; i++) {
+        if (voxel_cell_is_empty(&cells[i])) continue;
+        int corner[3];
+        const VoxelCell *above = parent ? &parent[index_in_parent(halved, at, i, corner)] : &cells[i];
+        VoxelSurround around = look_around(block, at, cells, i);
+        VoxelMatter m = voxel_cell_matter(&cells[i], &around, l->sides, 1 / l->density_unit, voxel_cell_thinness(above), level);
+        VoxelCode *code = grow_buffer_add(&out->codes, 1, sizeof *code);
+        if (!code) return;
+        *code = voxel_code_pack(m.density, m.gamma, &m.root);
+        brick.slice[i >> 6] |= (uint64_t)1 << (i & 63);
+    }
+    brick.count = out->codes.count - brick.first;
+    if (brick.count == 0) return;
+    BuiltBrick *place = grow_buffer_add(&out->bricks, 1, sizeof *place);
+    if (place) *place = brick;
+}
+
+static BrickBlock make_block(const VoxelLayer *layer, int level, const int (*bricks)[3], int count, const VoxelCell *cells) {
+    BrickBlock block = {.bricks = bricks, .cells = cells, .count = count, .level = &layer->level[level]};
+    memcpy(block.cyclic, layer->cyclic, sizeof block.cyclic);
+    return block;
+}
+
+/* Codes the bricks under brick `at` of level + 1, whose cells are `parent`. */
+static void code_children(const Pyramid *p, int level, const int at[3], const int (*bricks)[3], int count, const VoxelCell *cells,
+                          const VoxelCell *parent, PyramidOutput *out) {
+    BrickBlock block = make_block(p->layer, level, bricks, count, cells);
+    bool halved[3];
+    for (int k = 0; k < 3; k++) {
+        halved[k] = voxel_layer_halves(p->layer, level, k);
+        int bricks_wide = halved[k] ? 2 : 1;
+        block.first[k] = at[k] * bricks_wide * BRICK_SIDE;
+        block.end[k] = int_min(block.first[k] + bricks_wide * BRICK_SIDE, block.level->size[k]);
+    }
+    for (int i = 0; i < count; i++) code_brick(&block, level, halved, i, parent, out);
+}
+
+void pyramid_code_top(const VoxelLayer *layer, const VoxelCell *cells, PyramidOutput *out) {
+    static const int origin[1][3] = {{0, 0, 0}};
+    int top = layer->levels - 1;
+    BrickBlock block = make_block(layer, top, origin, 1, cells);
+    const bool halved[3] = {false, false, false};
+    for (int k = 0; k < 3; k++) block.end[k] = block.level->size[k];
+    code_brick(&block, top, halved, 0, NULL, out);
+}
+
 static void build_from_children(const Pyramid *p, int level, const int at[3], bool from_top, VoxelCell *cells,
                                 VoxelCell *scratch, PyramidOutput *out) {
     int children[PYRAMID_CHILDREN][3], count = list_children(p, level, at, children);
@@ -93,8 +188,7 @@ static void build_from_children(const Pyramid *p, int level, const int at[3], bo
         merge_brick(p->layer, level, children[i], child, cells);
     }
     close_cells(cells, level);
-    for (int i = 0; i < count; i++)
-        pyramid_code_brick(p->layer, level - 1, children[i], scratch + i * BRICK_VOXELS, cells, out);
+    code_children(p, level - 1, at, (const int(*)[3])children, count, scratch, cells, out);
 }
 
 void pyramid_build_brick(const Pyramid *p, int level, const int at[3], bool from_top, VoxelCell *cells,
@@ -110,27 +204,3 @@ void pyramid_build_brick(const Pyramid *p, int level, const int at[3], bool from
     }
 }
 
-void pyramid_code_brick(const VoxelLayer *layer, int level, const int at[3], const VoxelCell *cells,
-                        const VoxelCell *parent, PyramidOutput *out) {
-    const VoxelLevel *l = &layer->level[level];
-    BuiltBrick brick = {.level = level,
-                        .place = (uint32_t)voxel_level_brick_at(l, at[0], at[1], at[2]),
-                        .first = out->codes.count};
-    bool halved[3];
-    for (int k = 0; k < 3; k++) halved[k] = voxel_layer_halves(layer, level, k);
-    for (int i = 0; i < BRICK_VOXELS; i++) {
-        if (voxel_cell_is_empty(&cells[i])) continue;
-        int corner[3];
-        const VoxelCell *above = parent ? &parent[index_in_parent(halved, at, i, corner)] : &cells[i];
-        VoxelMatter m =
-            voxel_cell_matter(&cells[i], l->sides, 1 / l->density_unit, voxel_cell_thinness(above), level);
-        VoxelCode *code = grow_buffer_add(&out->codes, 1, sizeof *code);
-        if (!code) return;
-        *code = voxel_code_pack(m.density, m.gamma, &m.root);
-        brick.slice[i >> 6] |= (uint64_t)1 << (i & 63);
-    }
-    brick.count = out->codes.count - brick.first;
-    if (brick.count == 0) return;
-    BuiltBrick *place = grow_buffer_add(&out->bricks, 1, sizeof *place);
-    if (place) *place = brick;
-}

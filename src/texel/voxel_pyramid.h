@@ -38,8 +38,7 @@ enum { PYRAMID_CHILDREN = 8 };
 void pyramid_build_brick(const Pyramid *pyramid, int level, const int at[3], bool from_top, VoxelCell *cells,
                          VoxelCell *scratch, PyramidOutput *out);
 
-/* Codes a brick. parent: the cells of the brick above it, that of level + 1; NULL for the topmost. */
-void pyramid_code_brick(const VoxelLayer *layer, int level, const int at[3], const VoxelCell *cells,
-                        const VoxelCell *parent, PyramidOutput *out);
+/* Codes the topmost brick, which has no parent. */
+void pyramid_code_top(const VoxelLayer *layer, const VoxelCell *cells, PyramidOutput *out);
 
 #endif

@@ -75,9 +75,11 @@ static bool cross_outline(const Edge edges[3], double at, double *lo, double *hi
 }
 
 static void meet(VoxelCell *cell, int axis, uint64_t rays, bool solid) {
+    float count = (float)count_bits(rays);
     cell->cover[axis] |= rays;
+    cell->met[axis] += count;
     if (!solid) return;
-    cell->walls += (float)count_bits(rays);
+    cell->walls += count;
     cell->inside[axis] ^= rays;
 }
 

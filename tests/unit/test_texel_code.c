@@ -114,14 +114,14 @@ static void test_density_and_gamma(void **state) {
         VoxelSample out;
         voxel_code_unpack(voxel_code_pack(density, gamma, &root), &out);
         assert_true(fabsf(out.density / density - 1) < .0079f);
-        assert_true(fabsf(out.gamma - gamma) < .024f);
+        assert_true(fabsf(out.gamma - gamma) < .049f);
     }
     const float extremes[] = {0x1p-30f, 1e-38f, 16000, 1e30f};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(extremes); i++) {
         VoxelSample out;
         voxel_code_unpack(voxel_code_pack(extremes[i], 1, &root), &out);
         assert_true(out.density > 0 && isfinite(out.density));
-        assert_true(out.gamma == 1);
+        assert_true(fabsf(out.gamma - 1) < .049f);
     }
 }
 
@@ -133,7 +133,7 @@ static void test_any_bits(void **state) {
         uint64_t bits = random_next(&r);
         VoxelSample out;
         voxel_code_unpack((VoxelCode){(uint32_t)bits, (uint32_t)(bits >> 32)}, &out);
-        assert_true(out.density >= 0 && isfinite(out.density) && out.gamma > -.5f && out.gamma <= 1);
+        assert_true(out.density >= 0 && isfinite(out.density) && out.gamma > -.5f && out.gamma < 2.6f);
         Vec3 d = random_direction(&r);
         assert_true(sym3f_quadratic(&out.s, vec3f_from(d)) >= -1e-5f);
     }
@@ -153,7 +153,7 @@ static void test_cells_have_unit_mean(void **state) {
             const double squares[6] = {d.x * d.x, d.y * d.y, d.z * d.z, d.x * d.y, d.x * d.z, d.y * d.z};
             for (int k = 0; k < 6; k++) cell.normals[k] += (float)(w * squares[k]);
         }
-        VoxelMatter m = voxel_cell_matter(&cell, sides, 1, 0, 0);
+        VoxelMatter m = voxel_cell_matter(&cell, &(VoxelSurround){0}, sides, 1, 0, 0);
         double sum = 0;
         enum { N = 4000 };
         for (int k = 0; k < N; k++) {

@@ -13,6 +13,7 @@ typedef struct Build {
     VoxelLayer *layer;
     const TexelBuildOptions *options;
     TriangleBins bins;
+    VoxelFill fill;
     PyramidOutput *outputs; /* per job, and one more for the levels above */
     size_t jobs;
     VoxelCell **scratch; /* per worker */
@@ -20,30 +21,60 @@ typedef struct Build {
     atomic_size_t done;
 } Build;
 
-/* Marks a level's bricks of which any child brick is marked. */
-static void mark_parents(const VoxelLayer *layer, int level, const uint8_t *below, uint8_t *marks) {
-    const VoxelLevel *child = &layer->level[level - 1], *parent = &layer->level[level];
-    for (int z = 0; z < child->brick_size[2]; z++)
-        for (int y = 0; y < child->brick_size[1]; y++)
-            for (int x = 0; x < child->brick_size[0]; x++) {
-                if (!below[voxel_level_brick_at(child, x, y, z)]) continue;
-                int at[3] = {x, y, z};
-                for (int k = 0; k < 3; k++)
-                    if (voxel_layer_halves(layer, level - 1, k)) at[k] >>= 1;
-                marks[voxel_level_brick_at(parent, at[0], at[1], at[2])] = 1;
+/* ---- marks ---- */
+
+static void mark_finest(const Build *b, uint8_t *marks) {
+    const VoxelLevel *level = &b->layer->level[0];
+    for (int z = 0; z < level->brick_size[2]; z++)
+        for (int y = 0; y < level->brick_size[1]; y++)
+            for (int x = 0; x < level->brick_size[0]; x++) {
+                size_t i = voxel_level_brick_at(level, x, y, z);
+                if (b->bins.start[i + 1] > b->bins.start[i]) marks[i] = BRICK_AREA | BRICK_BUILT;
+                else if (voxel_fill_column(&b->fill, x * BRICK_SIDE, y * BRICK_SIDE, z * BRICK_SIDE) & 1) marks[i] = BRICK_INSIDE;
             }
 }
 
-static bool mark_present(Build *b) {
+/* A level's marks from those of its bricks' children. */
+static void mark_parents(const VoxelLayer *layer, int level, const uint8_t *below, uint8_t *marks) {
+    const VoxelLevel *child = &layer->level[level - 1], *parent = &layer->level[level];
+    size_t bricks = voxel_level_bricks(parent);
+    for (size_t i = 0; i < bricks; i++) marks[i] = BRICK_INSIDE;
+    for (int z = 0; z < child->brick_size[2]; z++)
+        for (int y = 0; y < child->brick_size[1]; y++)
+            for (int x = 0; x < child->brick_size[0]; x++) {
+                int at[3] = {x, y, z};
+                for (int k = 0; k < 3; k++)
+                    if (voxel_layer_halves(layer, level - 1, k)) at[k] >>= 1;
+                uint8_t from = below[voxel_level_brick_at(child, x, y, z)], *to = &marks[voxel_level_brick_at(parent, at[0], at[1], at[2])];
+                *to = (uint8_t)((*to & from & BRICK_INSIDE) | ((*to | from) & (BRICK_AREA | BRICK_BUILT)));
+            }
+}
+
+/* What lies within a solid and next to its walls has voxels too. */
+static void mark_beside(const VoxelLayer *layer, int level, uint8_t *marks) {
+    const VoxelLevel *l = &layer->level[level];
+    for (int z = 0; z < l->brick_size[2]; z++)
+        for (int y = 0; y < l->brick_size[1]; y++)
+            for (int x = 0; x < l->brick_size[0]; x++) {
+                uint8_t *own = &marks[voxel_level_brick_at(l, x, y, z)];
+                for (int side = 0; side < 6 && *own & BRICK_INSIDE; side++) {
+                    int at[3] = {x, y, z}, k = side >> 1, size = l->brick_size[k];
+                    at[k] += side & 1 ? 1 : -1;
+                    if (layer->cyclic[k]) at[k] = (at[k] + size) % size;
+                    if (at[k] < 0 || at[k] >= size) continue;
+                    if (marks[voxel_level_brick_at(l, at[0], at[1], at[2])] & BRICK_AREA) *own |= BRICK_BUILT;
+                }
+            }
+}
+
+static bool mark_bricks(Build *b) {
     for (int i = 0; i < b->layer->levels; i++) {
-        size_t bricks = voxel_level_bricks(&b->layer->level[i]);
-        b->pyramid.present[i] = calloc(bricks, 1);
-        if (!b->pyramid.present[i]) return false;
+        uint8_t *marks = b->pyramid.marks[i] = calloc(voxel_level_bricks(&b->layer->level[i]), 1);
+        if (!marks) return false;
+        if (i == 0) mark_finest(b, marks);
+        else mark_parents(b->layer, i, b->pyramid.marks[i - 1], marks);
+        if (b->fill.start) mark_beside(b->layer, i, marks);
     }
-    for (size_t i = 0; i < b->bins.bricks; i++)
-        b->pyramid.present[0][i] = b->bins.start[i + 1] > b->bins.start[i];
-    for (int i = 1; i < b->layer->levels; i++)
-        mark_parents(b->layer, i, b->pyramid.present[i - 1], b->pyramid.present[i]);
     return true;
 }
 
@@ -78,11 +109,12 @@ static void release(Build *b) {
     }
     for (size_t i = 0; b->pyramid.job_cells && i < b->jobs; i++) free(b->pyramid.job_cells[i]);
     for (int i = 0; b->scratch && i < pool_threads(b->options->pool); i++) free(b->scratch[i]);
-    for (int i = 0; i < b->layer->levels; i++) free(b->pyramid.present[i]);
+    for (int i = 0; i < b->layer->levels; i++) free(b->pyramid.marks[i]);
     free(b->scratch);
     free(b->outputs);
     free(b->pyramid.job_cells);
     triangle_bins_free(&b->bins, b->options->memory);
+    voxel_fill_free(&b->fill, b->options->memory);
 }
 
 static void tell_progress(Build *b) {
@@ -97,7 +129,7 @@ static void run_job(void *context, size_t job, int worker) {
     Build *b = context;
     Pyramid *p = &b->pyramid;
     const VoxelLevel *level = &b->layer->level[p->job_level];
-    if (p->present[p->job_level][job]) {
+    if (p->marks[p->job_level][job] & BRICK_BUILT) {
         size_t x = (size_t)level->brick_size[0], y = (size_t)level->brick_size[1];
         const int at[3] = {(int)(job % x), (int)(job / x % y), (int)(job / x / y)};
         VoxelCell *cells = p->job_cells[job] = calloc(BRICK_VOXELS, sizeof *cells);
@@ -113,7 +145,7 @@ static void run_job(void *context, size_t job, int worker) {
 static void build_top(Build *b) {
     const int origin[3] = {0, 0, 0};
     int top = b->layer->levels - 1;
-    if (!b->pyramid.present[top][0]) return;
+    if (!(b->pyramid.marks[top][0] & BRICK_BUILT)) return;
     VoxelCell *cells = b->scratch[0];
     memset(cells, 0, BRICK_VOXELS * sizeof *cells);
     pyramid_build_brick(&b->pyramid, top, origin, true, cells, cells + BRICK_VOXELS, &b->outputs[b->jobs]);
@@ -169,9 +201,9 @@ static bool assemble(Build *b) {
 
 static bool build(Build *b, const TexelMesh *mesh) {
     if (!triangle_bins_build(&b->bins, mesh, b->layer, b->options)) return false;
-    b->pyramid =
-        (Pyramid){.mesh = mesh, .layer = b->layer, .bins = &b->bins, .job_level = choose_job_level(b->layer)};
-    if (!mark_present(b) || !take_scratch(b)) return false;
+    if (!voxel_fill_build(&b->fill, mesh, b->layer, b->options->memory)) return false;
+    b->pyramid = (Pyramid){.mesh = mesh, .layer = b->layer, .bins = &b->bins, .fill = &b->fill, .job_level = choose_job_level(b->layer)};
+    if (!mark_bricks(b) || !take_scratch(b)) return false;
     if (!pool_run(b->options->pool, b->jobs, run_job, b)) return false;
     build_top(b);
     return assemble(b);

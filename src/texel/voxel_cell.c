@@ -47,6 +47,7 @@ static void merge_rays(VoxelCell *parent, const VoxelCell *child, const VoxelMer
 
 void voxel_cell_merge(VoxelCell *parent, const VoxelCell *child, const VoxelMerge *step,
                       const int corner[3]) {
+    parent->fill += child->fill * step->share;
     parent->sheet += child->sheet;
     parent->solid += child->solid;
     for (int i = 0; i < 6; i++) parent->normals[i] += child->normals[i];
@@ -126,6 +127,15 @@ static Sym3f unit_root(const VoxelCell *cell) {
 
 /* A sheet goes on in the next voxel if the two hide more than this, and surely if they hide all. */
 static const float MOST_CONTINUATION = 2.5f, LEAST_INTACT = 0.7f;
+
+static const float ROUNDING = 0.2f;
+
+Sym3f voxel_cell_root_inside(const VoxelCell *parent) {
+    VoxelCell walls = {.normals = {1, 1, 1}};
+    float trace = parent->normals[0] + parent->normals[1] + parent->normals[2];
+    for (int i = 0; i < 6 && trace > 0; i++) walls.normals[i] = parent->normals[i] / trace + (i < 3 ? ROUNDING : 0);
+    return unit_root(&walls);
+}
 
 /* Per axis: τ of a crossing of length `side`, and what the rays say is let through over such a length. */
 typedef struct AxisLight {

@@ -12,6 +12,7 @@
 typedef struct VoxelCell {
     float sheet, solid; /* area of open sheets; of walls of solids, both walls counted */
     float normals[6];   /* sum of area · n nᵗ: xx yy zz xy xz yz */
+    float fill;         /* the share of it that lies within solids, of the finest voxels' middles */
     float met[3];       /* how often the rays along an axis met anything, on the mean over them */
     float walls;        /* walls that the finest level's rays met in the cell */
     float single;       /* of these, without the other one of their pair in the cell */
@@ -34,9 +35,13 @@ typedef struct VoxelMatter {
 
 static inline bool voxel_cell_is_empty(const VoxelCell *cell) { return !(cell->sheet + cell->solid > 0); }
 
+/* Nothing but the inside of a solid. */
+static inline bool voxel_cell_is_inside(const VoxelCell *cell) { return voxel_cell_is_empty(cell) && cell->fill > 0.5f; }
+
 /* The step from one level to the next. */
 typedef struct VoxelMerge {
     int level;      /* the parent's: chooses the rays kept */
+    float share;    /* of the parent that a child is */
     bool halved[3]; /* whether there are two children along the axis */
     float rays[3];  /* per axis: rays of the finest level for which a ray of the parent stands */
 } VoxelMerge;
@@ -61,5 +66,7 @@ typedef struct VoxelSurround {
  * thin solid count once. */
 VoxelMatter voxel_cell_matter(const VoxelCell *cell, const VoxelSurround *around, const float sides[3], float side, float thin,
                               int level);
+/* Square root of the S of a cell within a solid: as the walls around it are turned, rounded so that it is seen from everywhere. */
+Sym3f voxel_cell_root_inside(const VoxelCell *parent);
 
 #endif

@@ -24,6 +24,15 @@ VoxelCode voxel_code_pack(float density, float gamma, const Sym3f *root) {
     };
 }
 
+/* With the largest gamma this density is opaque within a fraction of the voxel. */
+#define INSIDE_DENSITY 0.5f
+
+VoxelCode voxel_code_inside(const Sym3f *root) {
+    VoxelCode code = voxel_code_pack(INSIDE_DENSITY, 0, root);
+    code.rest |= (uint32_t)VOXEL_GAMMA_INSIDE << VOXEL_GAMMA_SHIFT;
+    return code;
+}
+
 void voxel_code_unpack(VoxelCode code, VoxelSample *out) {
     float xx = voxel_code_diagonal(code.diagonal, 0), yy = voxel_code_diagonal(code.diagonal, 1);
     float zz = voxel_code_diagonal(code.diagonal, 2), xy = voxel_code_mixed(code.diagonal, 3);

@@ -5,7 +5,8 @@
  * most the same error of the projected area (1.2 % of its mean at worst, 0.4 % rms). A rotation with two ratios has a
  * similar error but costs a square root and sixty products to read.
  * Density in eleven bits: a small float (5 bits exponent, 6 mantissa), in units of 1/side; relative error at most 0.8 %.
- * Gamma in five bits, from −0.48 to 2.5 by steps of 0.096. */
+ * Gamma in five bits, from −0.48 to 2.4 by steps of 0.096. The largest code, 2.5, is kept for voxels that lie within solids, far
+ * from any surface: they stop light and have no area of their own. */
 #ifndef VTS_TEXEL_VOXEL_CODE_H
 #define VTS_TEXEL_VOXEL_CODE_H
 
@@ -23,13 +24,17 @@ enum {
     VOXEL_DENSITY_SHIFT = 16,
     VOXEL_GAMMA_SHIFT = 27,
     VOXEL_DENSITY_LARGEST = 2047,
-    VOXEL_GAMMA_LARGEST = 31,
+    VOXEL_GAMMA_LARGEST = 30,
+    VOXEL_GAMMA_INSIDE = 31,
     VOXEL_GAMMA_ZERO = 5
 };
 #define VOXEL_GAMMA_STEP 0.096f
 
 /* `density` in units of 1/side (> 0), s of unit mean projected area and roughness at least VOXEL_ROUGHNESS. */
 VoxelCode voxel_code_pack(float density, float gamma, const Sym3f *root);
+/* A voxel within a solid that turns like `root`. */
+VoxelCode voxel_code_inside(const Sym3f *root);
+static inline bool voxel_code_is_inside(VoxelCode code) { return code.rest >> VOXEL_GAMMA_SHIFT == VOXEL_GAMMA_INSIDE; }
 void voxel_code_unpack(VoxelCode code, VoxelSample *out);
 
 /* The parts, for readers that decode several at once. Entries of B scaled by 255/2: whole numbers. */

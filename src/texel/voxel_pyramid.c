@@ -21,6 +21,16 @@ static void build_finest(const Pyramid *p, const int at[3], VoxelCell *cells) {
     }
 }
 
+/* Middles of voxels within solids. */
+static void fill_finest(const Pyramid *p, const int at[3], VoxelCell *cells) {
+    const VoxelLevel *finest = &p->layer->level[0];
+    for (int z = 0; z < BRICK_SIDE && at[2] * BRICK_SIDE + z < finest->size[2]; z++)
+        for (int x = 0; x < BRICK_SIDE && at[0] * BRICK_SIDE + x < finest->size[0]; x++) {
+            uint32_t bits = voxel_fill_column(p->fill, at[0] * BRICK_SIDE + x, at[1] * BRICK_SIDE, at[2] * BRICK_SIDE + z);
+            for (int y = 0; bits; y++, bits >>= 1) cells[(z * BRICK_SIDE + y) * BRICK_SIDE + x].fill = (float)(bits & 1);
+        }
+}
+
 static void close_cells(VoxelCell *cells, int level) {
     for (int i = 0; i < BRICK_VOXELS; i++) {
         if (voxel_cell_is_empty(&cells[i])) continue;
@@ -45,10 +55,11 @@ static int index_in_parent(const bool halved[3], const int at[3], int i, int cor
 
 static VoxelMerge step_to(const VoxelLayer *layer, int level) {
     const int *finest = layer->level[0].size, *size = layer->level[level].size;
-    VoxelMerge step = {.level = level};
+    VoxelMerge step = {.level = level, .share = 1};
     for (int k = 0; k < 3; k++) {
         int u = (k + 1) % 3, v = (k + 2) % 3;
         step.halved[k] = voxel_layer_halves(layer, level - 1, k);
+        if (step.halved[k]) step.share /= 2;
         step.rays[k] = (float)(finest[u] / size[u]) * (float)(finest[v] / size[v]);
     }
     return step;
@@ -59,14 +70,23 @@ static void merge_brick(const VoxelLayer *layer, int level, const int at[3], con
                         VoxelCell *to) {
     VoxelMerge step = step_to(layer, level);
     for (int i = 0; i < BRICK_VOXELS; i++) {
-        if (voxel_cell_is_empty(&from[i])) continue;
+        if (voxel_cell_is_empty(&from[i]) && !(from[i].fill > 0)) continue;
         int corner[3], parent = index_in_parent(step.halved, at, i, corner);
         voxel_cell_merge(&to[parent], &from[i], &step, corner);
     }
 }
 
-/* The bricks of level − 1 under brick `at` of level in which anything is. */
-static int list_children(const Pyramid *p, int level, const int at[3], int children[PYRAMID_CHILDREN][3]) {
+/* Adds a brick that lies within a solid as a whole. */
+static void merge_inside(const VoxelLayer *layer, int level, const int at[3], VoxelCell *to) {
+    VoxelMerge step = step_to(layer, level);
+    for (int i = 0; i < BRICK_VOXELS; i++) {
+        int corner[3];
+        to[index_in_parent(step.halved, at, i, corner)].fill += step.share;
+    }
+}
+
+/* The bricks of level − 1 under brick `at` of level that have any of these marks, and none of those. */
+static int list_children(const Pyramid *p, int level, const int at[3], int with, int without, int children[PYRAMID_CHILDREN][3]) {
     const VoxelLevel *below = &p->layer->level[level - 1];
     int first[3], end[3], c[3], count = 0;
     for (int k = 0; k < 3; k++) {
@@ -76,9 +96,10 @@ static int list_children(const Pyramid *p, int level, const int at[3], int child
     }
     for (c[2] = first[2]; c[2] < end[2]; c[2]++)
         for (c[1] = first[1]; c[1] < end[1]; c[1]++)
-            for (c[0] = first[0]; c[0] < end[0]; c[0]++)
-                if (p->present[level - 1][voxel_level_brick_at(below, c[0], c[1], c[2])])
-                    memcpy(children[count++], c, sizeof c);
+            for (c[0] = first[0]; c[0] < end[0]; c[0]++) {
+                int marks = p->marks[level - 1][voxel_level_brick_at(below, c[0], c[1], c[2])];
+                if (marks & with && !(marks & without)) memcpy(children[count++], c, sizeof c);
+            }
     return count;
 }
 
@@ -125,6 +146,25 @@ static VoxelSurround look_around(const BrickBlock *block, const int brick[3], co
     return around;
 }
 
+/* Deep within a solid nothing is stored: no ray comes there. */
+static bool may_be_beside_walls(const VoxelSurround *around) {
+    for (int k = 0; k < 6; k++) {
+        const VoxelCell *near = around->near[k >> 1][k & 1];
+        if (!near || !voxel_cell_is_empty(near)) return true;
+    }
+    return false;
+}
+
+static VoxelCode code_inside(const VoxelCell *parent) {
+    Sym3f root = voxel_cell_root_inside(parent);
+    return voxel_code_inside(&root);
+}
+
+static VoxelCode code_matter(const VoxelCell *cell, const VoxelSurround *around, const VoxelLevel *l, float thin, int level) {
+    VoxelMatter m = voxel_cell_matter(cell, around, l->sides, 1 / l->density_unit, thin, level);
+    return voxel_code_pack(m.density, m.gamma, &m.root);
+}
+
 /* parent: the cells of the brick above; NULL for the topmost. */
 static void code_brick(const BrickBlock *block, int level, const bool halved[3], int number, const VoxelCell *parent, PyramidOutput *out) {
     const VoxelLevel *l = block->level;
@@ -132,14 +172,15 @@ static void code_brick(const BrickBlock *block, int level, const bool halved[3],
     const VoxelCell *cells = block->cells + number * BRICK_VOXELS;
     BuiltBrick brick = {.level = level, .place = (uint32_t)voxel_level_brick_at(l, at[0], at[1], at[2]), .first = out->codes.count};
     for (int i = 0; i < BRICK_VOXELS; i++) {
-        if (voxel_cell_is_empty(&cells[i])) continue;
+        bool inside = voxel_cell_is_inside(&cells[i]);
+        if (voxel_cell_is_empty(&cells[i]) && !inside) continue;
         int corner[3];
         const VoxelCell *above = parent ? &parent[index_in_parent(halved, at, i, corner)] : &cells[i];
         VoxelSurround around = look_around(block, at, cells, i);
-        VoxelMatter m = voxel_cell_matter(&cells[i], &around, l->sides, 1 / l->density_unit, voxel_cell_thinness(above), level);
+        if (inside && voxel_cell_is_empty(above) && !may_be_beside_walls(&around)) continue;
         VoxelCode *code = grow_buffer_add(&out->codes, 1, sizeof *code);
         if (!code) return;
-        *code = voxel_code_pack(m.density, m.gamma, &m.root);
+        *code = inside ? code_inside(above) : code_matter(&cells[i], &around, l, voxel_cell_thinness(above), level);
         brick.slice[i >> 6] |= (uint64_t)1 << (i & 63);
     }
     brick.count = out->codes.count - brick.first;
@@ -179,7 +220,9 @@ void pyramid_code_top(const VoxelLayer *layer, const VoxelCell *cells, PyramidOu
 
 static void build_from_children(const Pyramid *p, int level, const int at[3], bool from_top, VoxelCell *cells,
                                 VoxelCell *scratch, PyramidOutput *out) {
-    int children[PYRAMID_CHILDREN][3], count = list_children(p, level, at, children);
+    int children[PYRAMID_CHILDREN][3], count = list_children(p, level, at, BRICK_INSIDE, BRICK_BUILT, children);
+    for (int i = 0; i < count; i++) merge_inside(p->layer, level, children[i], cells);
+    count = list_children(p, level, at, BRICK_BUILT, 0, children);
     VoxelCell *deeper = scratch + PYRAMID_CHILDREN * BRICK_VOXELS;
     memset(scratch, 0, (size_t)count * BRICK_VOXELS * sizeof *scratch);
     for (int i = 0; i < count; i++) {
@@ -198,6 +241,7 @@ void pyramid_build_brick(const Pyramid *p, int level, const int at[3], bool from
         if (p->job_cells[place]) memcpy(cells, p->job_cells[place], BRICK_VOXELS * sizeof *cells);
     } else if (level == 0) {
         build_finest(p, at, cells);
+        if (p->fill->start) fill_finest(p, at, cells);
         close_cells(cells, 0);
     } else {
         build_from_children(p, level, at, from_top, cells, scratch, out);

@@ -5,6 +5,7 @@
 #include "texel/grow_buffer.h"
 #include "texel/voxel_bin.h"
 #include "texel/voxel_cell.h"
+#include "texel/voxel_fill.h"
 
 /* A coded brick on its way into the layer; its codes are in the same output, from `first` on. */
 typedef struct BuiltBrick {
@@ -19,13 +20,20 @@ typedef struct PyramidOutput {
     GrowBuffer codes;  /* VoxelCode */
 } PyramidOutput;
 
+enum {
+    BRICK_AREA = 1,   /* some triangle meets it */
+    BRICK_INSIDE = 2, /* it lies within a solid as a whole */
+    BRICK_BUILT = 4,  /* it, or one below it, has voxels: area, or the inside next to it */
+};
+
 /* A part of the pyramid is the tree under one brick: bricks are built from the finest up, and coded when their parent is
  * known; only the children of one brick per level are in memory as cells. */
 typedef struct Pyramid {
     const TexelMesh *mesh;
     const VoxelLayer *layer;
     const TriangleBins *bins;
-    uint8_t *present[TEXEL_MAX_LEVELS]; /* per brick: some triangle meets it */
+    const VoxelFill *fill;
+    uint8_t *marks[TEXEL_MAX_LEVELS]; /* per brick: BRICK_… */
     /* Level whose bricks are built as parallel jobs; their cells are kept for the levels above. */
     int job_level;
     VoxelCell **job_cells; /* per brick of job_level: BRICK_VOXELS cells, or NULL */

@@ -1,5 +1,7 @@
 #include "texel/voxel_raster.h"
 
+#include "texel/voxel_scan.h"
+
 #include <math.h>
 
 typedef struct AreaSink {
@@ -44,34 +46,6 @@ static double ray_offset(int row) {
     static const double offsets[8] = {1 / 16., 9 / 16.,  5 / 16., 13 / 16.,
                                       3 / 16., 11 / 16., 7 / 16., 15 / 16.};
     return offsets[row & 7];
-}
-
-/* An edge as a function of v, from its lower end, so that two triangles that share it agree and a closed surface is met an
- * even number of times. */
-typedef struct Edge {
-    double v0, v1, u0, slope;
-} Edge;
-
-static Edge make_edge(const double *a, const double *b, int u, int v) {
-    if (a[v] > b[v]) {
-        const double *swap = a;
-        a = b;
-        b = swap;
-    }
-    return (Edge){a[v], b[v], a[u], a[v] < b[v] ? (b[u] - a[u]) / (b[v] - a[v]) : 0};
-}
-
-/* Where the line v = at meets the triangle's outline. */
-static bool cross_outline(const Edge edges[3], double at, double *lo, double *hi) {
-    int crossings = 0;
-    double x[3];
-    for (int i = 0; i < 3; i++)
-        if (edges[i].v0 <= at && at < edges[i].v1)
-            x[crossings++] = edges[i].u0 + (at - edges[i].v0) * edges[i].slope;
-    if (crossings != 2) return false;
-    *lo = double_min(x[0], x[1]);
-    *hi = double_max(x[0], x[1]);
-    return true;
 }
 
 static void meet(VoxelCell *cell, int axis, uint64_t rays, bool solid) {
@@ -120,12 +94,12 @@ static void add_rays(VoxelCell *cells, const ClipPolygon *t, bool solid, const i
     double v_hi = double_max(t->at[0][v], double_max(t->at[1][v], t->at[2][v]));
     bool flat = slope_u == 0 && slope_v == 0;
     if (!fits_depth(slope_u)) return;
-    Edge edges[3];
-    for (int i = 0; i < 3; i++) edges[i] = make_edge(t->at[i], t->at[(i + 1) % 3], u, v);
+    ScanEdge edges[3];
+    for (int i = 0; i < 3; i++) edges[i] = scan_edge(t->at[i], t->at[(i + 1) % 3], u, v);
     int row_end = (int)ceil(double_min(8 * v_hi - 0.5, 8 * size[v]));
     for (int row = (int)ceil(double_max(8 * v_lo - 0.5, 0)); row < row_end; row++) {
         double at = (row + 0.5) / 8, lo, hi, offset = ray_offset(row);
-        if (!cross_outline(edges, at, &lo, &hi)) continue;
+        if (!scan_outline(edges, at, &lo, &hi)) continue;
         RayRow r = {.row = row,
                     .begin = (int)ceil(double_clamp(8 * lo - offset, 0, 8 * size[u])),
                     .end = (int)ceil(double_clamp(8 * hi - offset, 0, 8 * size[u]))};

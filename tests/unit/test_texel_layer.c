@@ -22,6 +22,7 @@ static double voxel_area(const VoxelLayer *layer, int index, double seen[DIRECTI
     for (int d = 0; d < DIRECTIONS; d++) seen[d] = 0;
     for (size_t i = 0; i < level->code_count; i++) {
         VoxelSample v;
+        if (voxel_code_is_inside(level->codes[i])) continue; /* what stops light within a solid has no area */
         voxel_code_unpack(level->codes[i], &v);
         double area = (double)v.density * (double)level->density_unit * volume;
         sum += area;

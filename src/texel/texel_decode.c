@@ -41,8 +41,8 @@ static bool read_header(FormatReader *r) {
     memcpy(h, r->data, sizeof *h);
     if (h->byte_order != TEXEL_BYTE_ORDER)
         return format_refuse(r, "it was written by a machine of another byte order, or is damaged");
-    if (h->version != TEXEL_FILE_VERSION)
-        return format_refuse(r, "its format is version %u; this program reads version %d", h->version,
+    if (h->version < TEXEL_FILE_OLDEST || h->version > TEXEL_FILE_VERSION)
+        return format_refuse(r, "its format is version %u; this program reads versions up to %d", h->version,
                              TEXEL_FILE_VERSION);
     if (h->file_size != r->size)
         return format_refuse(r, "it is damaged: it has %zu bytes and should have %llu", r->size,
@@ -236,6 +236,8 @@ static bool read_codes(FormatReader *r, VoxelLayer *layer, size_t number, int l)
     level->codes = voxel_layer_allocate(layer, level->code_count + 2, sizeof *level->codes);
     if (!level->codes) return lack_memory(r);
     memcpy(level->codes, at, (size_t)r->section.size);
+    for (size_t i = 0; r->header.version == 1 && i < level->code_count; i++)
+        level->codes[i] = voxel_code_from_first(level->codes[i]);
     return voxel_level_mark_support(layer, level) || lack_memory(r);
 }
 

@@ -29,8 +29,10 @@ static void mark_finest(const Build *b, uint8_t *marks) {
         for (int y = 0; y < level->brick_size[1]; y++)
             for (int x = 0; x < level->brick_size[0]; x++) {
                 size_t i = voxel_level_brick_at(level, x, y, z);
-                if (b->bins.start[i + 1] > b->bins.start[i]) marks[i] = BRICK_AREA | BRICK_BUILT;
-                else if (voxel_fill_column(&b->fill, x * BRICK_SIDE, y * BRICK_SIDE, z * BRICK_SIDE) & 1) marks[i] = BRICK_INSIDE;
+                if (b->bins.start[i + 1] > b->bins.start[i])
+                    marks[i] = BRICK_AREA | BRICK_BUILT;
+                else if (voxel_fill_column(&b->fill, x * BRICK_SIDE, y * BRICK_SIDE, z * BRICK_SIDE) & 1)
+                    marks[i] = BRICK_INSIDE;
             }
 }
 
@@ -45,7 +47,8 @@ static void mark_parents(const VoxelLayer *layer, int level, const uint8_t *belo
                 int at[3] = {x, y, z};
                 for (int k = 0; k < 3; k++)
                     if (voxel_layer_halves(layer, level - 1, k)) at[k] >>= 1;
-                uint8_t from = below[voxel_level_brick_at(child, x, y, z)], *to = &marks[voxel_level_brick_at(parent, at[0], at[1], at[2])];
+                uint8_t from = below[voxel_level_brick_at(child, x, y, z)],
+                        *to = &marks[voxel_level_brick_at(parent, at[0], at[1], at[2])];
                 *to = (uint8_t)((*to & from & BRICK_INSIDE) | ((*to | from) & (BRICK_AREA | BRICK_BUILT)));
             }
 }
@@ -71,8 +74,10 @@ static bool mark_bricks(Build *b) {
     for (int i = 0; i < b->layer->levels; i++) {
         uint8_t *marks = b->pyramid.marks[i] = calloc(voxel_level_bricks(&b->layer->level[i]), 1);
         if (!marks) return false;
-        if (i == 0) mark_finest(b, marks);
-        else mark_parents(b->layer, i, b->pyramid.marks[i - 1], marks);
+        if (i == 0)
+            mark_finest(b, marks);
+        else
+            mark_parents(b->layer, i, b->pyramid.marks[i - 1], marks);
         if (b->fill.start) mark_beside(b->layer, i, marks);
     }
     return true;
@@ -202,7 +207,11 @@ static bool assemble(Build *b) {
 static bool build(Build *b, const TexelMesh *mesh) {
     if (!triangle_bins_build(&b->bins, mesh, b->layer, b->options)) return false;
     if (!voxel_fill_build(&b->fill, mesh, b->layer, b->options->memory)) return false;
-    b->pyramid = (Pyramid){.mesh = mesh, .layer = b->layer, .bins = &b->bins, .fill = &b->fill, .job_level = choose_job_level(b->layer)};
+    b->pyramid = (Pyramid){.mesh = mesh,
+                           .layer = b->layer,
+                           .bins = &b->bins,
+                           .fill = &b->fill,
+                           .job_level = choose_job_level(b->layer)};
     if (!mark_bricks(b) || !take_scratch(b)) return false;
     if (!pool_run(b->options->pool, b->jobs, run_job, b)) return false;
     build_top(b);

@@ -133,7 +133,8 @@ static const float ROUNDING = 0.2f;
 Sym3f voxel_cell_root_inside(const VoxelCell *parent) {
     VoxelCell walls = {.normals = {1, 1, 1}};
     float trace = parent->normals[0] + parent->normals[1] + parent->normals[2];
-    for (int i = 0; i < 6 && trace > 0; i++) walls.normals[i] = parent->normals[i] / trace + (i < 3 ? ROUNDING : 0);
+    for (int i = 0; i < 6 && trace > 0; i++)
+        walls.normals[i] = parent->normals[i] / trace + (i < 3 ? ROUNDING : 0);
     return unit_root(&walls);
 }
 
@@ -168,7 +169,9 @@ static float fit_continuation(const VoxelCell *cell, const VoxelSurround *around
             if (near) cover |= near->cover[axis], all += near->met[axis];
         }
         /* More than one sheet is none that goes on. */
-        float whole = (float)count_bits(cover), own = (float)count_bits(cell->cover[axis]), one = float_clamp(2 - all, 0, 1) * float_clamp((whole / 64 - LEAST_INTACT) / (1 - LEAST_INTACT), 0, 1);
+        float whole = (float)count_bits(cover), own = (float)count_bits(cell->cover[axis]),
+              one = float_clamp(2 - all, 0, 1) *
+                    float_clamp((whole / 64 - LEAST_INTACT) / (1 - LEAST_INTACT), 0, 1);
         alone += w * own;
         together += w * (own + one * (whole - own));
     }
@@ -198,27 +201,28 @@ static float fit_alone(const AxisLight *light, float density) {
     return float_min(1, opacity_gamma_for(above / below, density));
 }
 
-/* A ray meets the walls of a solid twice. Each at full strength fattens the solid by nearly half a voxel all around; at 0.6
- * silhouettes have the right size, a wall lets 0.18 through and both 0.03. Where voxels are fine, half a voxel is little and
- * what shines through a wall is seen; where they are coarse it is the other way round. */
-static float wall_strength(int level) { return level == 0 ? 0.9f : level == 1 ? 0.7f : 0.6f; }
+/* Walls before the inside of a solid, which stops the light, only smooth its outline: at full strength they would fatten it by nearly
+ * half a voxel all around. Thin solids have no inside; a ray meets both walls, and at full strength each would count twice. */
+static const float BACKED_WALL = -0.4f, THIN_WALL = 0.6f;
 
-/* Sheets and single walls go on into the next voxels; thin solids and clumps end in this one. */
-static float fit_gamma(const VoxelCell *cell, const VoxelSurround *around, const AxisLight *light, float density, float thin, int level) {
-    float sheet = fit_sheet(light), alone = fit_alone(light, density);
-    if (sheet <= 0) return float_min(alone, 0);
-    sheet *= fit_continuation(cell, around);
-    float solid = cell->solid / (cell->solid + cell->sheet), wall = sheet * wall_strength(level);
-    float gamma = wall + thin * (float_min(wall, alone) - wall);
-    return sheet + solid * (gamma - sheet);
+/* Sheets go on into the next voxels; thin solids and clumps end in this one. */
+static float fit_gamma(const VoxelCell *cell, const VoxelSurround *around, const AxisLight *light,
+                       float density, float thin) {
+    float sheet = fit_sheet(light), alone = fit_alone(light, density),
+          solid = cell->solid / (cell->solid + cell->sheet);
+    float ending = sheet > 0 ? float_min(THIN_WALL * sheet, alone) : float_min(alone, 0);
+    float whole = sheet > 0 ? sheet * fit_continuation(cell, around) : ending;
+    float wall = BACKED_WALL + thin * (ending - BACKED_WALL);
+    return whole + solid * (wall - whole);
 }
 
-VoxelMatter voxel_cell_matter(const VoxelCell *cell, const VoxelSurround *around, const float sides[3], float side, float thin, int level) {
+VoxelMatter voxel_cell_matter(const VoxelCell *cell, const VoxelSurround *around, const float sides[3],
+                              float side, float thin) {
     VoxelMatter matter = {.root = unit_root(cell)};
     float area = cell->sheet + cell->solid * (1 - 0.5f * thin);
     /* Cauchy: an area is seen as half of itself, on the mean over directions. */
     matter.density = area / (2 * sides[0] * sides[1] * sides[2]) * side;
     AxisLight light = axis_light(cell, &matter.root, matter.density, sides, side);
-    matter.gamma = fit_gamma(cell, around, &light, matter.density, thin, level);
+    matter.gamma = fit_gamma(cell, around, &light, matter.density, thin);
     return matter;
 }

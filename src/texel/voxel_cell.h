@@ -36,7 +36,9 @@ typedef struct VoxelMatter {
 static inline bool voxel_cell_is_empty(const VoxelCell *cell) { return !(cell->sheet + cell->solid > 0); }
 
 /* Nothing but the inside of a solid. */
-static inline bool voxel_cell_is_inside(const VoxelCell *cell) { return voxel_cell_is_empty(cell) && cell->fill > 0.5f; }
+static inline bool voxel_cell_is_inside(const VoxelCell *cell) {
+    return voxel_cell_is_empty(cell) && cell->fill > 0.5f;
+}
 
 /* The step from one level to the next. */
 typedef struct VoxelMerge {
@@ -64,8 +66,8 @@ typedef struct VoxelSurround {
 
 /* sides: lengths of the cell; side: the length h that opacity.h is told; thin: the parent's thinness. The two walls of a
  * thin solid count once. */
-VoxelMatter voxel_cell_matter(const VoxelCell *cell, const VoxelSurround *around, const float sides[3], float side, float thin,
-                              int level);
+VoxelMatter voxel_cell_matter(const VoxelCell *cell, const VoxelSurround *around, const float sides[3],
+                              float side, float thin);
 /* Square root of the S of a cell within a solid: as the walls around it are turned, rounded so that it is seen from everywhere. */
 Sym3f voxel_cell_root_inside(const VoxelCell *parent);
 

@@ -1,5 +1,7 @@
 #include "texel/voxel_code.h"
 
+#include "texel/opacity.h"
+
 static uint32_t whole(float x, float lo, float hi) { return (uint32_t)(float_clamp(x, lo, hi) + 0.5f); }
 static uint32_t diagonal(float b) { return whole(b * 127.5f, 0, 255); }
 static uint32_t mixed(float b) { return whole(b * 127.5f + 128, 0, 255); }
@@ -13,19 +15,21 @@ static uint32_t density_code(float density) {
     return code > VOXEL_DENSITY_LARGEST ? VOXEL_DENSITY_LARGEST : code;
 }
 
+static uint32_t gamma_code(float gamma) {
+    return whole(gamma / VOXEL_GAMMA_STEP + VOXEL_GAMMA_ZERO, 0, VOXEL_GAMMA_LARGEST) << VOXEL_GAMMA_SHIFT;
+}
+
 VoxelCode voxel_code_pack(float density, float gamma, const Sym3f *root) {
     return (VoxelCode){
         .diagonal =
             diagonal(root->xx) | diagonal(root->yy) << 8 | diagonal(root->zz) << 16 | mixed(root->xy) << 24,
-        .rest =
-            mixed(root->xz) | mixed(root->yz) << 8 | density_code(density) << VOXEL_DENSITY_SHIFT |
-            whole(gamma / VOXEL_GAMMA_STEP + VOXEL_GAMMA_ZERO, 0, VOXEL_GAMMA_LARGEST)
-                << VOXEL_GAMMA_SHIFT,
+        .rest = mixed(root->xz) | mixed(root->yz) << 8 | density_code(density) << VOXEL_DENSITY_SHIFT |
+                gamma_code(gamma),
     };
 }
 
 /* With the largest gamma this density is opaque within a fraction of the voxel. */
-#define INSIDE_DENSITY 0.5f
+#define INSIDE_DENSITY 0.4f
 
 VoxelCode voxel_code_inside(const Sym3f *root) {
     VoxelCode code = voxel_code_pack(INSIDE_DENSITY, 0, root);
@@ -45,4 +49,12 @@ void voxel_code_unpack(VoxelCode code, VoxelSample *out) {
               k * (xz * xz + yz * yz + zz * zz), k * (xx * xy + xy * yy + xz * yz),
               k * (xx * xz + xy * yz + xz * zz), k * (xy * xz + yy * yz + yz * zz)},
     };
+}
+
+VoxelCode voxel_code_from_first(VoxelCode code) {
+    float gamma = ((float)(int32_t)(code.rest >> VOXEL_GAMMA_SHIFT) - 10) / 21,
+          density = voxel_code_density(code.rest);
+    if (gamma > 0) gamma = opacity_gamma_for(1 + 16 * gamma * gamma * density * density, density);
+    code.rest = (code.rest & (((uint32_t)1 << VOXEL_GAMMA_SHIFT) - 1)) | gamma_code(gamma);
+    return code;
 }

@@ -34,8 +34,12 @@ enum {
 VoxelCode voxel_code_pack(float density, float gamma, const Sym3f *root);
 /* A voxel within a solid that turns like `root`. */
 VoxelCode voxel_code_inside(const Sym3f *root);
-static inline bool voxel_code_is_inside(VoxelCode code) { return code.rest >> VOXEL_GAMMA_SHIFT == VOXEL_GAMMA_INSIDE; }
+static inline bool voxel_code_is_inside(VoxelCode code) {
+    return code.rest >> VOXEL_GAMMA_SHIFT == VOXEL_GAMMA_INSIDE;
+}
 void voxel_code_unpack(VoxelCode code, VoxelSample *out);
+/* From a code of files of version 1. */
+VoxelCode voxel_code_from_first(VoxelCode code);
 
 /* The parts, for readers that decode several at once. Entries of B scaled by 255/2: whole numbers. */
 static inline float voxel_code_diagonal(uint32_t word, int byte) {
@@ -56,8 +60,7 @@ static inline float voxel_code_density(uint32_t rest) {
     return u.value;
 }
 static inline float voxel_code_gamma(uint32_t rest) {
-    return (float)((int32_t)(rest >> VOXEL_GAMMA_SHIFT) - VOXEL_GAMMA_ZERO) *
-           VOXEL_GAMMA_STEP;
+    return (float)((int32_t)(rest >> VOXEL_GAMMA_SHIFT) - VOXEL_GAMMA_ZERO) * VOXEL_GAMMA_STEP;
 }
 
 #endif

@@ -35,7 +35,8 @@ static void meet_column(const FillPass *pass, int x, int z, double depth, bool u
 }
 
 /* Lines of one row that the triangle crosses. */
-static void meet_row(const FillPass *pass, const double t[3][3], const ScanEdge edges[3], const double slopes[2], int row, bool up) {
+static void meet_row(const FillPass *pass, const double t[3][3], const ScanEdge edges[3],
+                     const double slopes[2], int row, bool up) {
     double at = row + 0.5, lo, hi;
     int width = pass->fill->size[0], z = wrap_index(row, pass->fill->size[2]);
     if (!scan_outline(edges, at, &lo, &hi)) return;
@@ -47,14 +48,19 @@ static void meet_row(const FillPass *pass, const double t[3][3], const ScanEdge 
     }
 }
 
-static double smallest(const double t[3][3], int axis) { return double_min(t[0][axis], double_min(t[1][axis], t[2][axis])); }
-static double largest(const double t[3][3], int axis) { return double_max(t[0][axis], double_max(t[1][axis], t[2][axis])); }
+static double smallest(const double t[3][3], int axis) {
+    return double_min(t[0][axis], double_min(t[1][axis], t[2][axis]));
+}
+static double largest(const double t[3][3], int axis) {
+    return double_max(t[0][axis], double_max(t[1][axis], t[2][axis]));
+}
 
 static void meet_triangle(const FillPass *pass, const double t[3][3]) {
     double ab[3], ac[3], n[3];
     for (int k = 0; k < 3; k++) {
         if (!(fabs(smallest(t, k)) < FARTHEST && fabs(largest(t, k)) < FARTHEST)) return;
-        if (pass->cyclic[k] && largest(t, k) - smallest(t, k) > MOST_COPIES * (double)pass->fill->size[k]) return;
+        if (pass->cyclic[k] && largest(t, k) - smallest(t, k) > MOST_COPIES * (double)pass->fill->size[k])
+            return;
         ab[k] = t[1][k] - t[0][k];
         ac[k] = t[2][k] - t[0][k];
     }
@@ -115,8 +121,10 @@ static bool has_solids(const TexelMesh *mesh) {
 static void *take(VoxelFill *fill, size_t count, MemoryBudget *memory) {
     if (!memory_budget_take(memory, count * sizeof(int32_t))) return NULL;
     void *block = calloc(count, sizeof(int32_t));
-    if (block) fill->bytes += count * sizeof(int32_t);
-    else memory_budget_give_back(memory, count * sizeof(int32_t));
+    if (block)
+        fill->bytes += count * sizeof(int32_t);
+    else
+        memory_budget_give_back(memory, count * sizeof(int32_t));
     return block;
 }
 

@@ -5,9 +5,12 @@
 #include "texel/voxel_layer.h"
 
 typedef struct VoxelFill {
-    uint32_t *start; /* columns + 1, x fastest: walls[start[c]] … of column c, none if there are no solids (start NULL) */
-    int32_t *walls;  /* 2·y + 1 or 2·y: a wall that faces up or down lies just below the middle of voxel y; in order */
-    int32_t *below;  /* per column: how many more walls face up than down above all of it, by copies on a cyclic axis */
+    uint32_t *
+        start; /* columns + 1, x fastest: walls[start[c]] … of column c, none if there are no solids (start NULL) */
+    int32_t *
+        walls; /* 2·y + 1 or 2·y: a wall that faces up or down lies just below the middle of voxel y; in order */
+    int32_t *
+        below; /* per column: how many more walls face up than down above all of it, by copies on a cyclic axis */
     int size[3];
     size_t bytes;
 } VoxelFill;

@@ -26,8 +26,10 @@ static void fill_finest(const Pyramid *p, const int at[3], VoxelCell *cells) {
     const VoxelLevel *finest = &p->layer->level[0];
     for (int z = 0; z < BRICK_SIDE && at[2] * BRICK_SIDE + z < finest->size[2]; z++)
         for (int x = 0; x < BRICK_SIDE && at[0] * BRICK_SIDE + x < finest->size[0]; x++) {
-            uint32_t bits = voxel_fill_column(p->fill, at[0] * BRICK_SIDE + x, at[1] * BRICK_SIDE, at[2] * BRICK_SIDE + z);
-            for (int y = 0; bits; y++, bits >>= 1) cells[(z * BRICK_SIDE + y) * BRICK_SIDE + x].fill = (float)(bits & 1);
+            uint32_t bits = voxel_fill_column(p->fill, at[0] * BRICK_SIDE + x, at[1] * BRICK_SIDE,
+                                              at[2] * BRICK_SIDE + z);
+            for (int y = 0; bits; y++, bits >>= 1)
+                cells[(z * BRICK_SIDE + y) * BRICK_SIDE + x].fill = (float)(bits & 1);
         }
 }
 
@@ -86,7 +88,8 @@ static void merge_inside(const VoxelLayer *layer, int level, const int at[3], Vo
 }
 
 /* The bricks of level − 1 under brick `at` of level that have any of these marks, and none of those. */
-static int list_children(const Pyramid *p, int level, const int at[3], int with, int without, int children[PYRAMID_CHILDREN][3]) {
+static int list_children(const Pyramid *p, int level, const int at[3], int with, int without,
+                         int children[PYRAMID_CHILDREN][3]) {
     const VoxelLevel *below = &p->layer->level[level - 1];
     int first[3], end[3], c[3], count = 0;
     for (int k = 0; k < 3; k++) {
@@ -123,7 +126,9 @@ static const VoxelCell *block_cell(const BrickBlock *block, const int voxel[3]) 
     for (int i = 0; i < block->count; i++) {
         const int *b = block->bricks[i];
         if (b[0] == voxel[0] / BRICK_SIDE && b[1] == voxel[1] / BRICK_SIDE && b[2] == voxel[2] / BRICK_SIDE)
-            return &block->cells[i * BRICK_VOXELS + ((voxel[2] & 7) * BRICK_SIDE + (voxel[1] & 7)) * BRICK_SIDE + (voxel[0] & 7)];
+            return &block
+                        ->cells[i * BRICK_VOXELS +
+                                ((voxel[2] & 7) * BRICK_SIDE + (voxel[1] & 7)) * BRICK_SIDE + (voxel[0] & 7)];
     }
     return &nothing;
 }
@@ -139,7 +144,8 @@ static VoxelSurround look_around(const BrickBlock *block, const int brick[3], co
                 around.near[k][side] = &cells[i + step * strides[k]];
                 continue;
             }
-            int voxel[3] = {brick[0] * BRICK_SIDE + within[0], brick[1] * BRICK_SIDE + within[1], brick[2] * BRICK_SIDE + within[2]};
+            int voxel[3] = {brick[0] * BRICK_SIDE + within[0], brick[1] * BRICK_SIDE + within[1],
+                            brick[2] * BRICK_SIDE + within[2]};
             voxel[k] += step;
             around.near[k][side] = block_cell(block, voxel);
         }
@@ -160,17 +166,21 @@ static VoxelCode code_inside(const VoxelCell *parent) {
     return voxel_code_inside(&root);
 }
 
-static VoxelCode code_matter(const VoxelCell *cell, const VoxelSurround *around, const VoxelLevel *l, float thin, int level) {
-    VoxelMatter m = voxel_cell_matter(cell, around, l->sides, 1 / l->density_unit, thin, level);
+static VoxelCode code_matter(const VoxelCell *cell, const VoxelSurround *around, const VoxelLevel *l,
+                             float thin) {
+    VoxelMatter m = voxel_cell_matter(cell, around, l->sides, 1 / l->density_unit, thin);
     return voxel_code_pack(m.density, m.gamma, &m.root);
 }
 
 /* parent: the cells of the brick above; NULL for the topmost. */
-static void code_brick(const BrickBlock *block, int level, const bool halved[3], int number, const VoxelCell *parent, PyramidOutput *out) {
+static void code_brick(const BrickBlock *block, int level, const bool halved[3], int number,
+                       const VoxelCell *parent, PyramidOutput *out) {
     const VoxelLevel *l = block->level;
     const int *at = block->bricks[number];
     const VoxelCell *cells = block->cells + number * BRICK_VOXELS;
-    BuiltBrick brick = {.level = level, .place = (uint32_t)voxel_level_brick_at(l, at[0], at[1], at[2]), .first = out->codes.count};
+    BuiltBrick brick = {.level = level,
+                        .place = (uint32_t)voxel_level_brick_at(l, at[0], at[1], at[2]),
+                        .first = out->codes.count};
     for (int i = 0; i < BRICK_VOXELS; i++) {
         bool inside = voxel_cell_is_inside(&cells[i]);
         if (voxel_cell_is_empty(&cells[i]) && !inside) continue;
@@ -180,7 +190,7 @@ static void code_brick(const BrickBlock *block, int level, const bool halved[3],
         if (inside && voxel_cell_is_empty(above) && !may_be_beside_walls(&around)) continue;
         VoxelCode *code = grow_buffer_add(&out->codes, 1, sizeof *code);
         if (!code) return;
-        *code = inside ? code_inside(above) : code_matter(&cells[i], &around, l, voxel_cell_thinness(above), level);
+        *code = inside ? code_inside(above) : code_matter(&cells[i], &around, l, voxel_cell_thinness(above));
         brick.slice[i >> 6] |= (uint64_t)1 << (i & 63);
     }
     brick.count = out->codes.count - brick.first;
@@ -189,15 +199,16 @@ static void code_brick(const BrickBlock *block, int level, const bool halved[3],
     if (place) *place = brick;
 }
 
-static BrickBlock make_block(const VoxelLayer *layer, int level, const int (*bricks)[3], int count, const VoxelCell *cells) {
+static BrickBlock make_block(const VoxelLayer *layer, int level, const int (*bricks)[3], int count,
+                             const VoxelCell *cells) {
     BrickBlock block = {.bricks = bricks, .cells = cells, .count = count, .level = &layer->level[level]};
     memcpy(block.cyclic, layer->cyclic, sizeof block.cyclic);
     return block;
 }
 
 /* Codes the bricks under brick `at` of level + 1, whose cells are `parent`. */
-static void code_children(const Pyramid *p, int level, const int at[3], const int (*bricks)[3], int count, const VoxelCell *cells,
-                          const VoxelCell *parent, PyramidOutput *out) {
+static void code_children(const Pyramid *p, int level, const int at[3], const int (*bricks)[3], int count,
+                          const VoxelCell *cells, const VoxelCell *parent, PyramidOutput *out) {
     BrickBlock block = make_block(p->layer, level, bricks, count, cells);
     bool halved[3];
     for (int k = 0; k < 3; k++) {
@@ -220,7 +231,8 @@ void pyramid_code_top(const VoxelLayer *layer, const VoxelCell *cells, PyramidOu
 
 static void build_from_children(const Pyramid *p, int level, const int at[3], bool from_top, VoxelCell *cells,
                                 VoxelCell *scratch, PyramidOutput *out) {
-    int children[PYRAMID_CHILDREN][3], count = list_children(p, level, at, BRICK_INSIDE, BRICK_BUILT, children);
+    int children[PYRAMID_CHILDREN][3],
+        count = list_children(p, level, at, BRICK_INSIDE, BRICK_BUILT, children);
     for (int i = 0; i < count; i++) merge_inside(p->layer, level, children[i], cells);
     count = list_children(p, level, at, BRICK_BUILT, 0, children);
     VoxelCell *deeper = scratch + PYRAMID_CHILDREN * BRICK_VOXELS;
@@ -247,4 +259,3 @@ void pyramid_build_brick(const Pyramid *p, int level, const int at[3], bool from
         build_from_children(p, level, at, from_top, cells, scratch, out);
     }
 }
-

@@ -139,7 +139,8 @@ static float skip_in_brick(const uint64_t bits[8], const int brick[3], const flo
 }
 
 static bool cell_is_set(const VoxelSupport *cells, int x, int y, int z) {
-    size_t at = ((size_t)(z / BRICK_SIDE) * (size_t)cells->brick_size[1] + (size_t)(y / BRICK_SIDE)) * (size_t)cells->brick_size[0] +
+    size_t at = ((size_t)(z / BRICK_SIDE) * (size_t)cells->brick_size[1] + (size_t)(y / BRICK_SIDE)) *
+                    (size_t)cells->brick_size[0] +
                 (size_t)(x / BRICK_SIDE);
     return cells->index[at] >= 0 && (cells->bits[cells->index[at]][z & 7] >> (8 * (y & 7) + (x & 7)) & 1);
 }
@@ -160,7 +161,8 @@ static float skip_level(const VoxelLevel *level, const bool cyclic[3], const flo
         brick_x[k] = x[k] / BRICK_SIDE;
         brick_v[k] = v[k] / BRICK_SIDE;
     }
-    if (cell_is_set(cells, (int)x[0], (int)x[1], (int)x[2])) return 0; /* the most frequent answer within matter */
+    if (cell_is_set(cells, (int)x[0], (int)x[1], (int)x[2]))
+        return 0; /* the most frequent answer within matter */
     GridWalk walk;
     start_walk(&walk, brick_x, brick_v, zero, cells->brick_size, 0);
     for (float t = 0; t < limit;) {

@@ -243,7 +243,7 @@ static void test_headers_of_others(void **state) {
         unsigned char value;
         const char *says;
     } cases[] = {{0, 'P', "not a texel file"},
-                 {8, 2, "version 2"},
+                 {8, 3, "version 3"},
                  {12, 1, "byte order"},
                  {16, 1, "should have"},
                  {48, 7, "checksum of its header"}};
@@ -257,6 +257,36 @@ static void test_headers_of_others(void **state) {
         free(b.data);
     }
     texel_file_release(&file);
+}
+
+/* A file of version 1 hides as much as it did: its gammas meant 1 + (4γρh)². */
+static void test_files_of_version_1(void **state) {
+    (void)state;
+    TexelFile file = meadow(32, 0), back;
+    VoxelLevel *level = &file.layers[0].voxels->level[0];
+    RandomStream r = {5};
+    for (size_t i = 0; i < level->code_count; i++)
+        level->codes[i].rest = (level->codes[i].rest & 0x7ffffffu) | (uint32_t)(random_next(&r) % 32) << VOXEL_GAMMA_SHIFT;
+    Bytes b = encode(&file);
+    FormatHeader header;
+    memcpy(&header, b.data, sizeof header);
+    header.version = 1;
+    header.checksum = format_header_checksum(&header, b.data + sizeof header, header.section_count * sizeof(FormatSection));
+    memcpy(b.data, &header, sizeof header);
+    assert_int_equal(decode(b, &back, NULL), TEXEL_FILE_OK);
+    for (size_t i = 0; i < level->code_count; i++) {
+        uint32_t was = level->codes[i].rest, now = back.layers[0].voxels->level[0].codes[i].rest;
+        double density = (double)voxel_code_density(was), gamma = ((was >> VOXEL_GAMMA_SHIFT) - 10.0) / 21;
+        double before = gamma < 0 ? 1 + gamma : 1 + 16 * gamma * gamma * density * density;
+        double after = (double)opacity_enhancement(voxel_code_gamma(now), voxel_code_density(now));
+        assert_int_equal(was & 0x7ffffffu, now & 0x7ffffffu);
+        assert_false(voxel_code_is_inside(back.layers[0].voxels->level[0].codes[i]));
+        /* by half a step of the coarser code, or as far as it reaches */
+        if (before < 0.95 * (double)opacity_enhancement(2.4f, (float)density)) assert_true(fabs(after / before - 1) < .2);
+    }
+    free(b.data);
+    texel_file_release(&file);
+    texel_file_release(&back);
 }
 
 static void test_memory_that_runs_out(void **state) {
@@ -303,6 +333,7 @@ int main(void) {
         cmocka_unit_test(test_hostile_files_do_no_harm),
         cmocka_unit_test(test_refusals_name_what_is_wrong),
         cmocka_unit_test(test_headers_of_others),
+        cmocka_unit_test(test_files_of_version_1),
         cmocka_unit_test(test_memory_that_runs_out),
         cmocka_unit_test(test_files_on_disk),
     };

@@ -101,8 +101,6 @@ static const char *what_happens(const BuildContext *context, const char *word) {
         {"tiling wang", "is drawn as 'tiling plain'"},
         {"reflection", "is not modelled yet: nothing mirrors"},
         {"filter or transmit", "is not modelled yet: what has it is opaque"},
-        {"intersection", "is not modelled yet: it is left out"},
-        {"difference", "is not modelled yet: it is left out"},
         {"wind_field", "is not modelled yet: nothing moves"},
     };
     for (size_t i = 0; i < VTS_ARRAY_COUNT(effects); i++)
@@ -166,8 +164,6 @@ static void walk_surface(SceneDraft *draft, BuildContext *context, const Surface
 
 static void walk_object(SceneDraft *draft, BuildContext *context, const Object *object) {
     if (!visit(draft, context, object)) return;
-    if (object->kind == OBJECT_INTERSECTION || object->kind == OBJECT_DIFFERENCE)
-        warn_word(draft, context, object_word(object), object->span);
     warn_inert(draft, context, object_inert(object));
     walk_texture(draft, context, object->texture);
     if (object_has_group(object) &&

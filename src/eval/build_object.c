@@ -50,7 +50,6 @@ static void read_bounded_by(Reader *reader, const Word *word, void *target) {
 
 static void read_clipped_by(Reader *reader, const Word *word, void *target) {
     ObjectDraft *draft = target;
-    inert_add(reader->context, &draft->rest.inert, "clipped_by", word->span);
     if (says(word, "bounded_by")) draft->rest.clipped_by = draft->rest.bounded_by;
     read_objects(reader, word, draft, &draft->rest.clipped_by);
 }

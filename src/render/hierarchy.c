@@ -66,6 +66,58 @@ static void add_triangles(Builder *b, const Object *object, const Transform *par
     }
 }
 
+/* How far triangles may be off what they stand for: a fraction of a pixel of usual pictures, where the object is nearest. */
+static double view_tolerance(const Builder *b, Box3 box) {
+    static const double SHARE = 5e-4;
+    const Camera *camera = &b->scene->camera;
+    double width = vec3_length(camera->right);
+    if (camera->kind == CAMERA_PERSPECTIVE) {
+        Vec3 nearest = vec3_max(box.min, vec3_min(box.max, camera->location));
+        width *= vec3_length(vec3_sub(nearest, camera->location)) / vec3_length(camera->direction);
+    }
+    return isfinite(width) ? double_clamp(SHARE * width, 0.01 * b->tolerance, 10 * b->tolerance) : b->tolerance;
+}
+
+/* The triangles of one surface of a set, which has its own texture. */
+static void add_set_surface(Builder *b, const Object *object, const TriangleSoup *soup, size_t surface,
+                            const TessellateSurface *from, const Texture *inherited) {
+    TriangleSoup own = {.vertices = soup->vertices};
+    for (size_t t = 0; t < soup->triangles.count; t++)
+        if (soup->triangles.items[t].surface == surface) *list_push(b->arena, &own.triangles) = soup->triangles.items[t];
+    if (own.triangles.count == 0) return;
+    Part *part = add_part(b, &b->hierarchy->parts, object, &from->place, make_look(b, from->texture ? from->texture : inherited));
+    part->object = NULL;
+    part->soup = own;
+}
+
+static bool looks_alike(const TessellateSurface *a, const TessellateSurface *b) { return a->texture == b->texture; }
+
+/* Surfaces with the same texture become one part. */
+static void add_set(Builder *b, const Object *object, const Transform *parent, const Texture *inherited) {
+    TessellateSurfaces surfaces = {0};
+    ShapeRefusal refusal, doubt = {0};
+    TriangleSoup soup = {0};
+    Transform own = object_transform(object), to_world = transform_then(&own, parent);
+    Box3 box = box3_transform(&to_world, shape_bounds(object));
+    const TessellateOptions options = {.tolerance = view_tolerance(b, box), .particles = particles_tessellate, .doubt = &doubt,
+                                       .surfaces = &surfaces};
+    if (!tessellate(object, parent, &options, b->arena, &soup, &refusal)) {
+        diag_warning(b->diags, refusal.span, "not drawn: %s", refusal.reason);
+        return;
+    }
+    if (doubt.reason) diag_warning(b->diags, doubt.span, "this is coarser than asked: %s", doubt.reason);
+    if (surfaces.count == 0) *list_push(b->arena, &surfaces) = (TessellateSurface){NULL, to_world};
+    for (size_t t = 0; t < soup.triangles.count; t++) {
+        uint16_t surface = soup.triangles.items[t].surface;
+        for (uint16_t i = 0; i < surface; i++)
+            if (looks_alike(&surfaces.items[i], &surfaces.items[surface])) {
+                soup.triangles.items[t].surface = i;
+                break;
+            }
+    }
+    for (size_t i = 0; i < surfaces.count; i++) add_set_surface(b, object, &soup, i, &surfaces.items[i], inherited);
+}
+
 static void add_surface(Builder *b, const Object *object, const Transform *to_world, const Look *look) {
     SurfaceMeshOptions options = {.tolerance = b->tolerance};
     SurfaceMesh mesh;
@@ -99,6 +151,10 @@ static void add_surface(Builder *b, const Object *object, const Transform *to_wo
 static void add_object(Builder *b, const Object *object, const Transform *parent, const Texture *inherited) {
     Transform own = object_transform(object), to_world = transform_then(&own, parent);
     const Texture *texture = object->texture ? object->texture : inherited;
+    if (object_clipped_by(object).count) {
+        add_set(b, object, parent, inherited);
+        return;
+    }
     switch (object->kind) {
     case OBJECT_UNION:
     case OBJECT_MERGE:
@@ -117,7 +173,7 @@ static void add_object(Builder *b, const Object *object, const Transform *parent
     case OBJECT_TEXEL: return; /* a skin of its own */
     case OBJECT_INTERSECTION:
     case OBJECT_DIFFERENCE:
-    case OBJECT_SOLID:
+    case OBJECT_SOLID: add_set(b, object, parent, inherited); return;
     case OBJECT_UNMODELLED:
         return; /* named in a warning when the scene was read */
     }

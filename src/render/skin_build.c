@@ -30,6 +30,7 @@ bool texel_mesh_layer(const BuiltTexel *texel, const TexelLayer *layer, double t
         diag_error(diags, refusal.span, "this cannot be part of a texel: %s", refusal.reason);
         return false;
     }
+    if (refusal.reason) diag_warning(diags, refusal.span, "this is coarser than asked: %s", refusal.reason);
     if (mesh->triangle_count == 0) diag_warning(diags, layer->span, "this layer of the texel '%s' is empty", texel->def->name);
     return true;
 }

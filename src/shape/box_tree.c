@@ -146,26 +146,31 @@ void box_tree_ray(const BoxTree *tree, const Ray *ray, double t_min, const doubl
     }
 }
 
-static bool holds(const Box3 *box, Vec3 p) {
-    return p.x >= box->min.x && p.y >= box->min.y && p.z >= box->min.z && p.x <= box->max.x &&
-           p.y <= box->max.y && p.z <= box->max.z;
+static bool touches(const Box3 *a, const Box3 *b) {
+    return a->min.x <= b->max.x && a->min.y <= b->max.y && a->min.z <= b->max.z && b->min.x <= a->max.x &&
+           b->min.y <= a->max.y && b->min.z <= a->max.z;
 }
 
-bool box_tree_point(const BoxTree *tree, Vec3 point, bool (*visit)(void *context, uint32_t item),
-                    void *context) {
+bool box_tree_touch(const BoxTree *tree, const Box3 *box, bool (*visit)(void *context, uint32_t item), void *context) {
     uint32_t stack[DEEPEST + 2];
     size_t depth = 0;
     stack[depth++] = 0;
     while (depth) {
         const TreeNode *node = &tree->nodes[stack[--depth]];
-        if (!holds(&node->box, point)) continue;
+        if (!touches(&node->box, box)) continue;
         for (uint32_t i = 0; i < node->count; i++) {
             uint32_t item = tree->items[node->first + i];
-            if (holds(&tree->boxes[item], point) && visit(context, item)) return true;
+            if (touches(&tree->boxes[item], box) && visit(context, item)) return true;
         }
         if (node->count || tree->node_count == 1) continue;
         stack[depth++] = node->first + 1;
         stack[depth++] = node->first;
     }
     return false;
+}
+
+bool box_tree_point(const BoxTree *tree, Vec3 point, bool (*visit)(void *context, uint32_t item),
+                    void *context) {
+    const Box3 box = {point, point};
+    return box_tree_touch(tree, &box, visit, context);
 }

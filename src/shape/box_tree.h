@@ -16,6 +16,8 @@ void box_tree_ray(const BoxTree *tree, const Ray *ray, double t_min, const doubl
 /* Calls visit(context, item) for items whose box holds the point until it returns true; whether it did. */
 bool box_tree_point(const BoxTree *tree, Vec3 point, bool (*visit)(void *context, uint32_t item),
                     void *context);
+/* The same for items whose box touches `box`. */
+bool box_tree_touch(const BoxTree *tree, const Box3 *box, bool (*visit)(void *context, uint32_t item), void *context);
 /* Where the ray is in the box, within [*t_near, *t_far], which it narrows; false when nowhere. Generous by rounding errors. */
 bool box_tree_clip(const Box3 *box, const Ray *ray, double *t_near, double *t_far);
 

@@ -11,7 +11,7 @@ uint32_t soup_vertex(Arena *arena, TriangleSoup *soup, Vec3 position, Vec3 norma
 
 void soup_triangle(Arena *arena, TriangleSoup *soup, uint32_t a, uint32_t b, uint32_t c, bool solid) {
     if (a == b || b == c || c == a) return;
-    *list_push(arena, &soup->triangles) = (SoupTriangle){{a, b, c}, solid};
+    *list_push(arena, &soup->triangles) = (SoupTriangle){{a, b, c}, solid, 0};
 }
 
 static void grid_cell(Arena *arena, TriangleSoup *soup, const SoupGrid *grid, uint32_t corner, int row) {

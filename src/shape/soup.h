@@ -22,6 +22,7 @@ typedef struct SoupTriangle {
     uint32_t
         vertex[3]; /* (b - a) × (c - a) points to the outside; to the side of the normals on open sheets */
     bool solid;    /* belongs to the boundary of a closed solid; else an open sheet seen from both sides */
+    uint16_t surface; /* of a set: which of its surfaces it comes from (TessellateSurfaces); else 0 */
 } SoupTriangle;
 
 typedef struct SoupVertexList {

@@ -1,14 +1,8 @@
 #include "shape/tessellate.h"
 
 #include "shape/tessellate_mesh.h"
+#include "shape/tessellate_parts.h"
 #include "shape/tessellate_solids.h"
-
-typedef struct Walk {
-    const TessellateOptions *options;
-    Arena *arena;
-    TriangleSoup *out;
-    ShapeRefusal *refusal;
-} Walk;
 
 double tessellate_stretch(const Mat3 *m) {
     double largest = 0;
@@ -26,26 +20,35 @@ double tessellate_stretch(const Mat3 *m) {
     return largest * sqrt((double)values[0]) * (1 + 1e-5);
 }
 
-static bool refuse(const Walk *walk, const Object *object, const char *reason) {
+bool tessellate_refuse(const TessellateWalk *walk, const Object *object, const char *reason) {
     *walk->refusal = (ShapeRefusal){object->span, reason};
     return false;
 }
 
-static bool push_mesh(const Walk *walk, const Object *object) {
-    const char *reason;
-    return tessellate_mesh(object->as.mesh, walk->options->parts, walk->arena, walk->out, &reason) ||
-           refuse(walk, object, reason);
+void tessellate_doubt(const TessellateWalk *walk, const Object *object, const char *reason) {
+    ShapeRefusal *doubt = walk->options->doubt;
+    if (doubt && !doubt->reason) *doubt = (ShapeRefusal){object->span, reason};
 }
 
-static bool push_particles(const Walk *walk, const Object *object, double tolerance) {
-    if (!walk->options->particles) return refuse(walk, object, "particles do not make a surface");
+ShapeTracer *tessellate_tracer(TessellateWalk *walk) {
+    if (!walk->tracer) walk->tracer = shape_tracer_create(walk->arena);
+    return walk->tracer;
+}
+
+static bool push_mesh(const TessellateWalk *walk, const Object *object) {
+    const char *reason;
+    return tessellate_mesh(object->as.mesh, walk->options->parts, walk->arena, walk->out, &reason) ||
+           tessellate_refuse(walk, object, reason);
+}
+
+static bool push_particles(const TessellateWalk *walk, const Object *object, double tolerance) {
+    if (!walk->options->particles) return tessellate_refuse(walk, object, "particles do not make a surface");
     walk->options->particles(object->as.particles.items, object->as.particles.count, tolerance, walk->arena,
                              walk->out);
     return true;
 }
 
-/* In object space. */
-static bool push_shape(const Walk *walk, const Object *object, double tolerance) {
+bool tessellate_shape(TessellateWalk *walk, const Object *object, double tolerance, const Box3 *region) {
     int parts = walk->options->parts;
     switch (object->kind) {
     case OBJECT_SPHERE: tessellate_sphere(object, tolerance, parts, walk->arena, walk->out); return true;
@@ -58,22 +61,25 @@ static bool push_shape(const Walk *walk, const Object *object, double tolerance)
     case OBJECT_PARTICLES: return push_particles(walk, object, tolerance);
     case OBJECT_SURFACE:
         return tessellate_surface(object->as.surface, tolerance, walk->arena, walk->out, walk->refusal);
-    case OBJECT_PLANE: return refuse(walk, object, "a plane has no end");
-    case OBJECT_TEXEL: return refuse(walk, object, "a texel has no surface");
+    case OBJECT_PLANE:
+        if (!region) return tessellate_refuse(walk, object, "a plane has no end");
+        tessellate_plane(object, region, walk->arena, walk->out);
+        return true;
+    case OBJECT_SOLID: return tessellate_refuse(walk, object, "this object is not modelled yet");
+    case OBJECT_TEXEL: return tessellate_refuse(walk, object, "a texel has no surface");
     case OBJECT_INTERSECTION:
     case OBJECT_DIFFERENCE:
-        return refuse(walk, object, "intersections and differences have no triangles yet");
     case OBJECT_UNION:
     case OBJECT_MERGE:
-    case OBJECT_SOLID:
     case OBJECT_UNMODELLED: break;
     }
-    return refuse(walk, object, "this object is not modelled yet");
+    return tessellate_refuse(walk, object, "this object is not modelled yet");
 }
 
-static bool push_tree(const Walk *walk, const Object *object, const Transform *outer) {
+static bool push_tree(TessellateWalk *walk, const Object *object, const Transform *outer) {
+    if (tessellate_is_set(object)) return tessellate_set(walk, object, outer);
     Transform own = object_transform(object), whole = transform_then(&own, outer);
-    if (object->kind == OBJECT_UNION || object->kind == OBJECT_MERGE) {
+    if (object->kind == OBJECT_UNION) {
         for (size_t i = 0; i < object->as.group->count; i++) {
             if (!push_tree(walk, object->as.group->items[i], &whole)) return false;
         }
@@ -81,14 +87,14 @@ static bool push_tree(const Walk *walk, const Object *object, const Transform *o
     }
     SoupMark since = soup_mark(walk->out);
     double stretch = tessellate_stretch(&whole.linear);
-    if (!push_shape(walk, object, stretch > 0 ? walk->options->tolerance / stretch : HUGE_VAL)) return false;
+    if (!tessellate_shape(walk, object, stretch > 0 ? walk->options->tolerance / stretch : HUGE_VAL, NULL)) return false;
     soup_transform(walk->arena, walk->out, since, &whole);
     return true;
 }
 
 bool tessellate(const Object *object, const Transform *transform, const TessellateOptions *options,
                 Arena *arena, TriangleSoup *out, ShapeRefusal *refusal) {
-    const Walk walk = {options, arena, out, refusal};
+    TessellateWalk walk = {options, NULL, arena, out, refusal};
     Transform identity = transform_identity();
     return push_tree(&walk, object, transform ? transform : &identity);
 }

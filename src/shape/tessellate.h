@@ -10,7 +10,7 @@
 #include "scene/scene.h"
 #include "shape/soup.h"
 
-/* Why something has no triangles. */
+/* Why something has no triangles, or not those that were asked for. */
 typedef struct ShapeRefusal {
     Span span;          /* of the object at fault */
     const char *reason; /* a clause for a diagnostic, static: "a plane has no end" */
@@ -20,20 +20,36 @@ typedef struct ShapeRefusal {
 typedef void (*TessellateParticles)(const Particle *items, size_t count, double tolerance, Arena *arena,
                                     TriangleSoup *out);
 
+/* The surfaces that sets consist of: triangles name them by number. */
+typedef struct TessellateSurface {
+    const Texture *texture; /* its own, or inherited within the set; NULL: that of the set's parent */
+    Transform place;        /* of the object that has the texture (NULL: of the set), to the space of the output */
+} TessellateSurface;
+
+typedef struct TessellateSurfaces {
+    TessellateSurface *items;
+    size_t count, capacity;
+} TessellateSurfaces;
+
 typedef struct TessellateOptions {
     double tolerance; /* > 0: largest distance between surface and triangles, in the space of the output */
     int parts;        /* 0: by tolerance; N: N per quarter turn, and N along each edge of what is flat */
     TessellateParticles particles; /* NULL: particles are refused */
+    ShapeRefusal *doubt;           /* its reason is set where something may be missing or is coarser than asked; or NULL */
+    TessellateSurfaces *surfaces;  /* gets the surfaces of sets; NULL: not wanted */
 } TessellateOptions;
 
 enum { TESSELLATE_MOST_PARTS = 256 }; /* per quarter turn; a tolerance that asks for more is not met */
 
-/* Appends the object, with `transform` (NULL: none) after its own, to *out (start with {0}), in `arena`. Unions and merges
- * are their children, walls inside included. Spheres, boxes, tori, closed cylinders and cones, round particles and closed
- * meshes are solid: every edge belongs to two triangles that run along it in opposite ways, with coordinates equal bit for
- * bit (meshes: as given).
- * False, with *refusal filled, for planes, intersections, differences, texels and what is not modelled; *out is then
- * incomplete. */
+/* Appends the object, with `transform` (NULL: none) after its own, to *out (start with {0}), in `arena`, which also keeps what was needed on
+ * the way. Unions are their children, walls inside included; intersections, differences, merges and what is clipped have no walls
+ * inside. All solids that have a boundary are solid: every edge belongs to two triangles that run along it in opposite ways, with
+ * coordinates equal bit for bit (meshes: as given).
+ *
+ * Where surfaces of a set meet, triangles end within the tolerance of the curve; parts of the surfaces that are thinner than the
+ * tolerance are kept, unless less than three times the tolerance of them is seen between two others.
+ *
+ * False, with *refusal filled, for what has no end, for texels and what is not modelled; *out is then incomplete. */
 bool tessellate(const Object *object, const Transform *transform, const TessellateOptions *options,
                 Arena *arena, TriangleSoup *out, ShapeRefusal *refusal);
 

@@ -319,3 +319,19 @@ void tessellate_torus(const Object *object, double tolerance, int parts, Arena *
     const SoupGrid grid = {torus.around, torus.turns, torus.spindle, torus.spindle, true};
     soup_grid(arena, out, &grid, torus_point, &torus);
 }
+
+/* ---- plane ---- */
+
+void tessellate_plane(const Object *object, const Box3 *region, Arena *arena, TriangleSoup *out) {
+    Vec3 n = object->as.plane.normal, a, b, centre = vec3_lerp(region->min, region->max, 0.5);
+    double half = vec3_length(vec3_sub(region->max, region->min)) / 2;
+    uint32_t v[4];
+    shape_axis_frame(n, &a, &b);
+    centre = vec3_madd(centre, n, object->as.plane.distance - vec3_dot(n, centre));
+    for (int k = 0; k < 4; k++) {
+        Vec3 p = vec3_madd(vec3_madd(centre, a, k == 1 || k == 2 ? half : -half), b, k >= 2 ? half : -half);
+        v[k] = soup_vertex(arena, out, p, n, vec3_dot(p, a), vec3_dot(p, b));
+    }
+    soup_triangle(arena, out, v[0], v[1], v[2], false);
+    soup_triangle(arena, out, v[0], v[2], v[3], false);
+}

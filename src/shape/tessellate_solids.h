@@ -13,6 +13,8 @@ void tessellate_sphere(const Object *object, double tolerance, int parts, Arena 
 void tessellate_box(const Object *object, int parts, Arena *arena, TriangleSoup *out);
 void tessellate_cone(const Object *object, double tolerance, int parts, Arena *arena, TriangleSoup *out);
 void tessellate_disc(const Object *object, double tolerance, int parts, Arena *arena, TriangleSoup *out);
+/* As much of a plane as the box needs, as a square that reaches a little beyond it. */
+void tessellate_plane(const Object *object, const Box3 *region, Arena *arena, TriangleSoup *out);
 void tessellate_torus(const Object *object, double tolerance, int parts, Arena *arena, TriangleSoup *out);
 
 /* Sides of a regular polygon that has the perimeter or the area of a circle of this radius and stays within tolerance of

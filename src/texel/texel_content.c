@@ -27,9 +27,11 @@ bool texel_layer_mesh(const TexelDef *def, const TexelLayer *layer, double toler
                       ShapeRefusal *refusal) {
     TriangleSoup soup = {0};
     Transform space = texel_space(def);
-    TessellateOptions options = {.tolerance = tolerance, .particles = particles_tessellate};
+    ShapeRefusal doubt = {0};
+    TessellateOptions options = {.tolerance = tolerance, .particles = particles_tessellate, .doubt = &doubt};
     for (size_t i = 0; i < layer->content_count; i++)
         if (!tessellate(layer->contents[i], &space, &options, arena, &soup, refusal)) return false;
+    *refusal = doubt;
     Vec3f *vertices = arena_new_array(arena, Vec3f, soup.vertices.count);
     uint32_t(*triangles)[3] = arena_push_array_(arena, soup.triangles.count, sizeof *triangles);
     bool *solid = arena_new_array(arena, bool, soup.triangles.count);

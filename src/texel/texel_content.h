@@ -13,7 +13,8 @@ Vec3f texel_extent_of(Box3 bounds);
 Transform texel_space(const TexelDef *def);
 
 /* The contents of one layer as triangles in texel space, in `arena`; `tolerance` is the largest distance from the true
- * surface in texel space. False, with *refusal filled, for contents that have no finite boundary or are not modelled. */
+ * surface in texel space. False, with *refusal filled, for contents that have no finite boundary or are not modelled. True with a reason in
+ * *refusal (else NULL) where something is coarser than that. */
 bool texel_layer_mesh(const TexelDef *def, const TexelLayer *layer, double tolerance, Arena *arena, TexelMesh *out,
                       ShapeRefusal *refusal);
 

@@ -445,7 +445,12 @@ static void what_has_no_triangles_is_refused_with_its_place(void **state) {
         const Object *children[2] = {&good, &bad};
         TriangleSoup soup = {0};
         ShapeRefusal refusal = {0};
-        bad.span = (Span){1, 100, 110};
+        Object endless = object_of(OBJECT_PLANE);
+        const Object *only[1] = {&endless};
+        endless.as.plane.normal = vec3(0, 1, 0);
+        endless.span = bad.span = (Span){1, 100, 110};
+        const ObjectGroup alone = {.items = only, .count = 1};
+        if (object_has_group(&bad)) bad.as.group = &alone;
         tree.as.group = GROUP(children, 2);
         assert_false(tessellate(&tree, NULL, &options, test_arena(state), &soup, &refusal));
         assert_non_null(refusal.reason);

@@ -1,5 +1,5 @@
-/* A piece of a ray's way through texel space: a cubic, known by its ends and its rates there (Hermite). Its parameter s runs
- * from 0 to 1 and is linear along the ray. */
+/* A piece of a ray's way through texel space: a cubic, known by its ends and its rates there (Hermite). Its parameter s is linear
+ * along the ray and runs from 0 to 1; parts of a curve remember which parts they are. */
 #ifndef VTS_RENDER_CURVE_H
 #define VTS_RENDER_CURVE_H
 
@@ -8,6 +8,7 @@
 /* from + s·chord + s(1−s)·((1−s)·bow_from − s·bow_to): the bows are what the rates at the ends exceed the chord by. */
 typedef struct Curve {
     Vec3 from, chord, bow_from, bow_to;
+    double start, length; /* its s stands for start + length·s of the whole: 0 and 1 where it is the whole */
 } Curve;
 
 static inline Vec3 curve_point(const Curve *c, double s) {
@@ -23,7 +24,7 @@ static inline Vec3 curve_rate(const Curve *c, double s) {
 static inline Curve curve_part(const Curve *c, double s0, double s1) {
     Vec3 from = curve_point(c, s0), chord = vec3_sub(curve_point(c, s1), from);
     Vec3 rate_from = vec3_scale(curve_rate(c, s0), s1 - s0), rate_to = vec3_scale(curve_rate(c, s1), s1 - s0);
-    return (Curve){from, chord, vec3_sub(rate_from, chord), vec3_sub(rate_to, chord)};
+    return (Curve){from, chord, vec3_sub(rate_from, chord), vec3_sub(rate_to, chord), c->start + c->length * s0, c->length * (s1 - s0)};
 }
 
 /* How far it leaves its chord along each axis, at most: of s(1−s)((1−s)A − sB), a quarter of the larger bow. */

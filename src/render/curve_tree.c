@@ -169,12 +169,12 @@ typedef struct Slabs {
     bool backwards[3];
 } Slabs;
 
-static Slabs slabs_of(const Curve *curve, double s0) {
+static Slabs slabs_of(const Curve *curve, double margin, double s0) {
     Slabs slabs;
     Vec3 from = vec3_madd(curve->from, curve->chord, s0), spread = curve_spread(curve);
     for (int k = 0; k < 3; k++) {
         double d = vec3_get(curve->chord, k), x = vec3_get(from, k), least = 1e-18;
-        double grow = vec3_get(spread, k) + 1e-6 * (1 + fabs(x)); /* with what floats lose */
+        double grow = vec3_get(spread, k) + margin + 1e-6 * (1 + fabs(x)); /* with what floats lose */
         if (fabs(d) < least) d = least;
         slabs.backwards[k] = d < 0;
         slabs.inverse[k] = (float)(1 / d);
@@ -203,9 +203,9 @@ typedef struct Visit {
     uint32_t first, count;
 } Visit;
 
-void curve_tree_walk(const CurveTree *tree, const Curve *curve, double s0, const double *s1,
+void curve_tree_walk(const CurveTree *tree, const Curve *curve, double margin, double s0, const double *s1,
                      bool (*visit)(void *context, uint32_t first, uint32_t count), void *context) {
-    Slabs slabs = slabs_of(curve, s0);
+    Slabs slabs = slabs_of(curve, margin, s0);
     Visit stack[STACK] = {{0, 0, 0}};
     int depth = 1;
     while (depth > 0) {

@@ -11,9 +11,9 @@ typedef struct CurveTree CurveTree;
  * call places: neighbours in space are neighbours there. count < 2³¹. The tree lives in `arena`. */
 const CurveTree *curve_tree_build(const Box3 *boxes, size_t count, uint32_t *order, Arena *arena);
 
-/* Calls visit(context, first, count), with places in `order`, for what the curve may meet at an s between s0 and *s1, which the
- * visitor may lower; ends when it returns true. The curve's coordinates must be such as floats can hold. */
-void curve_tree_walk(const CurveTree *tree, const Curve *curve, double s0, const double *s1,
+/* Calls visit(context, first, count), with places in `order`, for what may be nearer than `margin` to the curve at an s between s0 and
+ * *s1, which the visitor may lower; ends when it returns true. The curve's coordinates must be such as floats can hold. */
+void curve_tree_walk(const CurveTree *tree, const Curve *curve, double margin, double s0, const double *s1,
                      bool (*visit)(void *context, uint32_t first, uint32_t count), void *context);
 
 #endif

@@ -24,13 +24,14 @@ struct ExactSkins {
     Vec3 origin; /* Embree's floats count from here */
 };
 
-/* Largest distance of a cubic from the curve, in tiles and heights of the texel, and of a cubic from its chord: the farther, the fewer cubics, but
- * the more triangles to look at. */
-static const double CURVE_ERROR = 1e-5, MOST_BOW = 0.02;
-/* From a hit, matter within this distance is the same triangle seen again: in texel space, several errors. */
-static const double CLEARANCE = 5e-5;
+/* Cubics are cut until they are as near to the ray's way as CURVE_ERROR, as far as their ends tell, in tiles and heights of the texel;
+ * what comes within MARGIN of one is looked at on the way itself. MOST_BOW: the farther a cubic may leave its chord, the fewer of them,
+ * but the more triangles to look at. */
+static const double CURVE_ERROR = 3e-4, MARGIN = 3e-3, MOST_BOW = 0.05;
+/* How near, in texel space, a hit lies to the plane of its triangle; and from where on other matter is told from it. */
+static const double HIT_ERROR = 1e-9, CLEARANCE = 1e-5;
 /* A ray that needs more is lost in absurd coordinates; it ends there. */
-enum { MOST_CUBICS = 1 << 16, MOST_TILES = 1 << 18, DEEPEST_CUT = 14, DEEPEST_REACH = 10, POLISHINGS = 3 };
+enum { MOST_CUBICS = 1 << 16, MOST_TILES = 1 << 18, DEEPEST_CUT = 14, DEEPEST_REACH = 10, MOST_SETTLING = 6 };
 static const double LARGEST_COORDINATE = 1e9;
 
 /* A place on the ray within a cell. */
@@ -95,7 +96,7 @@ static Vec3 coordinate_rate(const Walk *w, const Node *n) {
 static double largest_part(Vec3 v) { return double_max(fabs(v.x), double_max(fabs(v.y), fabs(v.z))); }
 
 static Curve straight(const Node *a, const Node *b) {
-    return (Curve){.from = coordinates(a), .chord = vec3_sub(coordinates(b), coordinates(a))};
+    return (Curve){.from = coordinates(a), .chord = vec3_sub(coordinates(b), coordinates(a)), .length = 1};
 }
 
 static Curve cubic_between(const Walk *w, const Node *a, const Node *b) {
@@ -106,24 +107,26 @@ static Curve cubic_between(const Walk *w, const Node *a, const Node *b) {
     return c;
 }
 
-/* Whether the cubic is as good as the curve. For a parabola the bows are opposite, their sum tells the third derivative; the error comes
- * from the fourth, taken to be as much smaller than the third as that is than the second: (6·sum)·(3·sum/bow)/384, and as much again for
- * safety. */
+/* Whether the cubic is good enough. Its error comes from the way's fourth derivative. For a parabola the bows are opposite, their sum tells
+ * the third, and each derivative is taken to be smaller than the one before as the third is than the second: (6·sum)·(3·sum/bow)/384, and as
+ * much again for safety. Where the sum happens to be small, the ratio of the second to the first says as much: bow³/chord². */
 static bool good_enough(const Curve *c) {
     double bow = double_max(largest_part(c->bow_from), largest_part(c->bow_to)), sum = largest_part(vec3_add(c->bow_from, c->bow_to));
-    return bow <= 4 * MOST_BOW && sum * sum <= 10 * CURVE_ERROR * bow;
+    double chord = largest_part(c->chord);
+    return bow <= 4 * MOST_BOW && sum * sum <= 10 * CURVE_ERROR * bow && bow * bow * bow <= CURVE_ERROR * chord * chord;
 }
 
 /* ---- cubics against copies ---- */
 
+/* A cubic from a to b, and the copy that it is shot against. */
 typedef struct Shot {
     Walk *walk;
+    const ExactCell *cell;
+    const Node *a, *b;
     const PlacedTexel *placed;
-    bool found;
-    double s; /* of the nearest hit so far, or the end */
-    TexelCopy copy;
-    ExactTexelHit hit;
-    const PlacedTexel *hit_placed;
+    const TexelCopy *copy;
+    double nearest; /* s of the nearest hit so far, or the end */
+    bool found, enough;
 } Shot;
 
 static Vec3 point_in_copy(const TexelCopy *copy, Vec3 x) {
@@ -139,104 +142,126 @@ static Vec3 way_in_copy(const TexelCopy *copy, Vec3 d) {
 }
 
 static Curve curve_in_copy(const TexelCopy *copy, const Curve *c) {
-    return (Curve){point_in_copy(copy, c->from), way_in_copy(copy, c->chord), way_in_copy(copy, c->bow_from), way_in_copy(copy, c->bow_to)};
+    return (Curve){point_in_copy(copy, c->from), way_in_copy(copy, c->chord), way_in_copy(copy, c->bow_from), way_in_copy(copy, c->bow_to),
+                   c->start, c->length};
 }
 
-/* Tries one copy between s0 and s1 of the curve, which is the piece of the shot's that begins at `from` and is `length` long. */
-static void shoot_copy(Shot *shot, const TexelCopy *copy, const Curve *curve, double from, double length, double s0, double s1, unsigned repeat) {
-    ExactTexelHit hit;
-    bool any = shot->walk->shadow;
-    Curve inside = curve_in_copy(copy, curve);
-    if (!exact_texel_shoot(copy->texel->exact, &inside, s0, s1, repeat, any ? NULL : &hit)) return;
+/* A node of an affine cell, without inverting. */
+static Node affine_node(const Walk *w, const ExactCell *c, double t) {
+    Node n = {t, {0, 0, 0, 0}, c->middle};
+    Vec3 way = vec3_sub(vec3_madd(w->ray->origin, w->ray->direction, t), c->middle_world);
+    n.place.u += vec3_dot(c->middle.grad_u, way);
+    n.place.v += vec3_dot(c->middle.grad_v, way);
+    n.place.w += vec3_dot(c->middle.grad_w, way);
+    double share = c->cell->triangle ? 1.0 / 3 : 0.5;
+    n.point.a = share + vec3_dot(c->middle.grad_a, way);
+    n.point.b = share + vec3_dot(c->middle.grad_b, way);
+    n.point.w = 0.5 + vec3_dot(c->middle.grad_layer, way);
+    return n;
+}
+
+/* The node at t, from one that is known nearby. */
+static bool node_near(const Shot *shot, const Node *known, double t, Node *out) {
+    if (!shot->cell->affine) return find_node(shot->walk, shot->cell, t, guess_from(shot->walk, known, t), out);
+    *out = affine_node(shot->walk, shot->cell, t);
+    return true;
+}
+
+/* Moves along the ray to the plane of the hit's triangle, as the curved mapping has it. False when it is not to be found there. */
+static bool settle_in_plane(const Shot *shot, const ExactTexelHit *hit, Node *at) {
+    double length = shot->b->t - shot->a->t, t = shot->a->t + hit->s * length, most = 0.1 * length;
+    *at = *(hit->s < 0.5 ? shot->a : shot->b);
+    for (int i = 0; i < MOST_SETTLING; i++) {
+        Node next;
+        if (!node_near(shot, at, t, &next)) return false;
+        *at = next;
+        double miss = vec3_dot(hit->normal, vec3_sub(point_in_copy(shot->copy, coordinates(at)), hit->corner));
+        if (fabs(miss) <= HIT_ERROR) return true;
+        double step = -miss / vec3_dot(hit->normal, way_in_copy(shot->copy, coordinate_rate(shot->walk, at)));
+        if (!(fabs(step) <= most)) return false; /* the triangle is seen edge-on */
+        t += step;
+        most = fabs(step) / 2;
+    }
+    return true;
+}
+
+static bool settle(void *context, ExactTexelHit *hit) {
+    Shot *shot = context;
+    Walk *w = shot->walk;
+    Node at;
+    if (!settle_in_plane(shot, hit, &at) || !(at.t > w->t_min && at.t < w->t)) return false;
+    Vec3 point = point_in_copy(shot->copy, coordinates(&at));
+    if (!exact_texel_covers(shot->copy->texel->exact, hit, point, 0)) return false;
     shot->found = true;
-    if (any) return;
-    shot->s = hit.s = from + length * hit.s;
-    shot->hit = hit;
-    shot->copy = *copy;
-    shot->hit_placed = shot->placed;
+    if (w->shadow) return shot->enough = true;
+    shot->nearest = (at.t - shot->a->t) / (shot->b->t - shot->a->t);
+    w->t = at.t;
+    w->at = at;
+    w->copy = *shot->copy;
+    w->hit = *hit;
+    w->placed = shot->placed;
+    return false;
+}
+
+/* Tries one copy from s0 on. */
+static void shoot_copy(Shot *shot, const TexelCopy *copy, const Curve *curve, double s0, unsigned repeat) {
+    ExactWay way = {shot->cell->affine ? 0 : MARGIN, &shot->nearest, settle, shot};
+    Curve inside = curve_in_copy(copy, curve);
+    shot->copy = copy;
+    exact_texel_shoot(copy->texel->exact, &inside, s0, repeat, &way);
 }
 
 /* Tries all copies around the tiles that the curve may be in. */
-static void shoot_tiles(Shot *shot, const Curve *curve, double from, double length, double s0) {
+static void shoot_tiles(Shot *shot, const Curve *curve, double s0) {
     const double hair = 1e-7;
     const PlacedTexel *placed = shot->placed;
     unsigned repeat = placed->cyclic ? TEXEL_CYCLIC_Y : 0;
     Box3 hull = curve_hull(curve);
-    int64_t u0 = (int64_t)floor(hull.min.x + hair), u1 = (int64_t)floor(hull.max.x - hair), v0 = (int64_t)floor(hull.min.y + hair),
-            v1 = (int64_t)floor(hull.max.y - hair);
+    int64_t u0 = (int64_t)floor(hull.min.x + hair), u1 = (int64_t)floor(hull.max.x - hair);
+    int64_t v0 = (int64_t)floor(hull.min.y + hair), v1 = (int64_t)floor(hull.max.y - hair);
     int side = 2 * placed->reach + 1;
     for (int64_t iu = u0; iu <= u1 || iu == u0; iu++)
         for (int64_t iv = v0; iv <= v1 || iv == v0; iv++)
-            for (int k = 0; k < side * side; k++) {
+            for (int k = 0; k < side * side && !shot->enough; k++) {
                 TexelCopy copy;
-                if (!texel_copy_near(placed, iu, iv, k, &copy)) continue;
-                unsigned axes = copy.texel->def->cyclic & repeat;
-                shoot_copy(shot, &copy, curve, from, length, s0, double_min(1, (shot->s - from) / length), axes);
-                if (shot->walk->shadow && shot->found) return;
+                if (texel_copy_near(placed, iu, iv, k, &copy)) shoot_copy(shot, &copy, curve, s0, copy.texel->def->cyclic & repeat);
             }
 }
 
 /* The same of a curve of any length: in halves, until they are no longer than a tile. */
-static void shoot_along(Shot *shot, const Curve *curve, double from, double length, double s0) {
-    if (shot->walk->tiles_left-- <= 0 || s0 > 1 || from > shot->s || (shot->walk->shadow && shot->found)) return;
+static void shoot_along(Shot *shot, const Curve *curve, double s0) {
+    if (s0 > 1 || curve->start > shot->nearest || shot->enough || shot->walk->tiles_left-- <= 0) return;
     if (fabs(curve->chord.x) <= 1.01 && fabs(curve->chord.y) <= 1.01) {
-        shoot_tiles(shot, curve, from, length, s0);
+        shoot_tiles(shot, curve, s0);
         return;
     }
     Curve half = curve_part(curve, 0, 0.5);
-    shoot_along(shot, &half, from, length / 2, 2 * s0);
+    shoot_along(shot, &half, 2 * s0);
     half = curve_part(curve, 0.5, 1);
-    shoot_along(shot, &half, from + length / 2, length / 2, double_max(0, 2 * s0 - 1));
+    shoot_along(shot, &half, double_max(0, 2 * s0 - 1));
 }
 
 static void shoot_texel(Shot *shot, const Curve *curve, double s0) {
     if (!shot->placed->alike) {
-        shoot_along(shot, curve, 0, 1, s0);
+        shoot_along(shot, curve, s0);
         return;
     }
     TexelCopy copy; /* one, endless */
     if (texel_copy_near(shot->placed, (int64_t)floor(curve->from.x), (int64_t)floor(curve->from.y), 0, &copy))
-        shoot_copy(shot, &copy, curve, 0, 1, s0, shot->s, copy.texel->def->cyclic);
-}
-
-/* Moves the cubic's hit along the ray until it lies in the plane of its triangle, as the curved mapping has it. */
-static void polish(const Walk *w, const ExactCell *c, const Shot *shot, const Node *a, const Node *b, Node *at) {
-    double length = b->t - a->t, t = a->t + shot->s * length, most = 0.05 * length;
-    *at = *(shot->s < 0.5 ? a : b);
-    for (int i = 0; i < POLISHINGS; i++) {
-        Node next;
-        if (!find_node(w, c, t, guess_from(w, at, t), &next)) return;
-        *at = next;
-        double miss = vec3_dot(shot->hit.normal, vec3_sub(point_in_copy(&shot->copy, coordinates(at)), shot->hit.corner));
-        if (fabs(miss) <= 1e-3 * CURVE_ERROR) return;
-        double rate = vec3_dot(shot->hit.normal, way_in_copy(&shot->copy, coordinate_rate(w, at)));
-        double step = -miss / rate;
-        if (!(fabs(step) <= most)) return; /* the triangle is seen edge-on */
-        t += step;
-        most = fabs(step) / 2;
-    }
+        shoot_copy(shot, &copy, curve, s0, copy.texel->def->cyclic);
 }
 
 static bool shoot_curve(Walk *w, const ExactCell *c, const Node *a, const Node *b, const Curve *curve) {
-    Shot shot = {.walk = w, .s = double_min(1, (w->t - a->t) / (b->t - a->t))};
-    double s0 = double_max(0, (w->t_min - a->t) / (b->t - a->t));
+    double length = b->t - a->t, s0 = double_max(0, (w->t_min - a->t) / length);
+    Shot shot = {.walk = w, .cell = c, .a = a, .b = b, .nearest = double_min(1, (w->t - a->t) / length)};
     if (!(largest_part(curve->from) < LARGEST_COORDINATE && largest_part(curve->chord) < LARGEST_COORDINATE)) return false;
     w->counters->steps++;
     w->cubics_left--;
-    for (size_t i = 0; i < c->skin->texel_count && !(w->shadow && shot.found); i++) {
+    for (size_t i = 0; i < c->skin->texel_count && !shot.enough; i++) {
         shot.placed = &c->skin->texels[i];
         if (shot.placed->family_size) shoot_texel(&shot, curve, s0);
     }
-    if (!shot.found || w->shadow) return shot.found;
-    Node at;
-    polish(w, c, &shot, a, b, &at);
-    if (at.t >= w->t || at.t <= w->t_min) return false;
-    w->t = at.t;
-    w->at = at;
-    w->copy = shot.copy;
-    w->hit = shot.hit;
-    w->placed = shot.hit_placed;
-    return true;
+    return shot.found;
 }
 
 static bool walk_curve(Walk *w, const ExactCell *c, const Node *a, const Node *b, int depth) {
@@ -293,20 +318,6 @@ static void keep_positive(double x, double d, double *t0, double *t1) {
     if (d > 0) *t0 = double_max(*t0, -x / d);
     else if (d < 0) *t1 = double_min(*t1, -x / d);
     else if (x < 0) *t1 = -VTS_INFINITY;
-}
-
-/* A node of an affine cell, without inverting. */
-static Node affine_node(const Walk *w, const ExactCell *c, double t) {
-    Node n = {t, {0, 0, 0, 0}, c->middle};
-    Vec3 way = vec3_sub(vec3_madd(w->ray->origin, w->ray->direction, t), c->middle_world);
-    n.place.u += vec3_dot(c->middle.grad_u, way);
-    n.place.v += vec3_dot(c->middle.grad_v, way);
-    n.place.w += vec3_dot(c->middle.grad_w, way);
-    double share = c->cell->triangle ? 1.0 / 3 : 0.5;
-    n.point.a = share + vec3_dot(c->middle.grad_a, way);
-    n.point.b = share + vec3_dot(c->middle.grad_b, way);
-    n.point.w = 0.5 + vec3_dot(c->middle.grad_layer, way);
-    return n;
 }
 
 static bool walk_straight(Walk *w, const ExactCell *c) {

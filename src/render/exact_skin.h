@@ -1,8 +1,8 @@
 /* Rays of no width through skins, against the geometry that their texels were made of: what voxels are measured by.
  *
  * The ray is cut where it passes through the walls of each cell that it meets. Within a cell its way through texture space is
- * a curve, which is cut into cubics (curve.h) until they are within a hundred-thousandth of a tile of it; each cubic is shot against the
- * copies of the texels around it (exact_texel.h), and the hit is then moved onto the curve itself. */
+ * a curve, which is cut into cubics (curve.h) until they are within a few thousandths of a tile of it; each cubic is shot against the
+ * copies of the texels around it (exact_texel.h), and what it comes near is looked at on the curve itself, where the hit is settled. */
 #ifndef VTS_RENDER_EXACT_SKIN_H
 #define VTS_RENDER_EXACT_SKIN_H
 

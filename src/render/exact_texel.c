@@ -134,22 +134,28 @@ void exact_texel_commit(ExactTexel *texel, Arena *arena, Arena *scratch) {
 
 typedef struct Shot {
     const ExactTexel *texel;
+    const ExactWay *way;
     Curve curve;   /* less the period */
-    double s0, s1; /* s1 comes down to the nearest hit */
+    double s0, s1; /* of the curve; s1 comes down with the nearest hit */
+    double hair;   /* the margin, in s */
     Vec3 period;
-    ExactTexelHit *hit; /* NULL: any will do */
-    bool found;
+    bool enough;
 } Shot;
 
-static bool within(double x, double size) { return x >= -WALL * size && x <= (1 + WALL) * size; }
+/* In the curve's own s. */
+static double end_of_search(const ExactWay *way, const Curve *curve) { return double_min(1, (*way->nearest - curve->start) / curve->length); }
 
-/* Whether the point of the plane lies in the triangle, and in the box. */
-static bool covers(const ExactTexel *texel, Vec3 a, Vec3 e1, Vec3 e2, Vec3 n, Vec3 point) {
+static bool within(double x, double size, double margin) { return x >= -WALL * size - margin && x <= (1 + WALL) * size + margin; }
+
+bool exact_texel_covers(const ExactTexel *texel, const ExactTexelHit *hit, Vec3 point, double margin) {
     const double hair = 1e-9; /* neighbours share their edges */
-    Vec3 p = vec3_sub(point, a);
+    Vec3 e1 = hit->edge[0], e2 = hit->edge[1], n = vec3_cross(e1, e2), p = vec3_sub(point, hit->corner), in = vec3_sub(point, hit->period);
     double nn = vec3_length_squared(n), u = vec3_dot(vec3_cross(p, e2), n), v = vec3_dot(vec3_cross(e1, p), n);
-    if (!(u >= -hair * nn && v >= -hair * nn && u + v <= (1 + hair) * nn)) return false;
-    return within(point.x, texel->extent.x) && within(point.y, texel->extent.y) && within(point.z, texel->extent.z);
+    double slack = hair * nn, wide = margin * sqrt(nn); /* a side's length times the margin, in these units */
+    if (u < -slack && u < -slack - wide * vec3_length(e2)) return false;
+    if (v < -slack && v < -slack - wide * vec3_length(e1)) return false;
+    if (!(u + v <= nn + slack || u + v <= nn + slack + wide * vec3_length(vec3_sub(e1, e2)))) return false;
+    return within(in.x, texel->extent.x, margin) && within(in.y, texel->extent.y, margin) && within(in.z, texel->extent.z, margin);
 }
 
 static void try_triangle(Shot *shot, const ExactTriangle *triangle) {
@@ -159,37 +165,34 @@ static void try_triangle(Shot *shot, const ExactTriangle *triangle) {
     if (curve_misses_plane(&plane)) return;
     double s[3];
     int count = curve_plane_roots(&plane, s);
-    for (int i = 0; i < count; i++) {
-        if (!(s[i] >= shot->s0 && s[i] <= shot->s1) || !covers(shot->texel, a, e1, e2, n, curve_point(&shot->curve, s[i]))) continue;
-        shot->found = true;
-        if (!shot->hit) return;
-        shot->s1 = s[i];
-        *shot->hit = (ExactTexelHit){s[i], triangle->layer, vec3_add(a, shot->period), shot->period, vec3_normalize(n)};
-        return;
+    for (int i = 0; i < count && !shot->enough; i++) {
+        if (!(s[i] >= shot->s0 - shot->hair && s[i] <= shot->s1 + shot->hair)) continue;
+        ExactTexelHit hit = {shot->curve.start + shot->curve.length * s[i], triangle->layer, vec3_add(a, shot->period), {e1, e2},
+                             shot->period, vec3_normalize(n)};
+        if (!exact_texel_covers(shot->texel, &hit, vec3_add(curve_point(&shot->curve, s[i]), shot->period), shot->way->margin)) continue;
+        shot->enough = shot->way->settle(shot->way->context, &hit);
+        shot->s1 = double_min(shot->s1, end_of_search(shot->way, &shot->curve));
     }
 }
 
 static bool try_triangles(void *context, uint32_t first, uint32_t count) {
     Shot *shot = context;
-    for (uint32_t i = 0; i < count; i++) {
-        try_triangle(shot, &shot->texel->triangles[first + i]);
-        if (shot->found && !shot->hit) return true;
-    }
-    return false;
+    for (uint32_t i = 0; i < count && !shot->enough; i++) try_triangle(shot, &shot->texel->triangles[first + i]);
+    return shot->enough;
 }
 
 /* Narrows [*s0, *s1] to where the curve may be in the box, but for the axes `free`. */
-static bool clip_to_box(const ExactTexel *texel, const Curve *curve, unsigned free, double *s0, double *s1) {
+static bool clip_to_box(const ExactTexel *texel, const Curve *curve, double margin, unsigned free, double *s0, double *s1) {
     Vec3 spread = curve_spread(curve);
     for (int k = 0; k < 3; k++) {
         if (free >> k & 1) continue;
         double p = vec3_get(curve->from, k), d = vec3_get(curve->chord, k), size = vec3_get(texel->extent, k);
-        double margin = WALL * size + vec3_get(spread, k);
+        double grow = WALL * size + vec3_get(spread, k) + margin;
         if (d == 0) {
-            if (p < -margin || p > size + margin) return false;
+            if (p < -grow || p > size + grow) return false;
             continue;
         }
-        double a = (-margin - p) / d, b = (size + margin - p) / d;
+        double a = (-grow - p) / d, b = (size + grow - p) / d;
         *s0 = double_max(*s0, double_min(a, b));
         *s1 = double_min(*s1, double_max(a, b));
     }
@@ -197,12 +200,12 @@ static bool clip_to_box(const ExactTexel *texel, const Curve *curve, unsigned fr
 }
 
 static void shoot_period(Shot *shot, const Curve *curve, Vec3 period) {
-    double s0 = shot->s0, s1 = shot->s1;
+    double from = shot->s0, to = shot->s1;
     shot->curve = *curve;
     shot->curve.from = vec3_sub(curve->from, period);
-    if (!clip_to_box(shot->texel, &shot->curve, 0, &s0, &s1)) return;
     shot->period = period;
-    curve_tree_walk(shot->texel->tree, &shot->curve, s0, &shot->s1, try_triangles, shot);
+    if (clip_to_box(shot->texel, &shot->curve, shot->way->margin, 0, &from, &to))
+        curve_tree_walk(shot->texel->tree, &shot->curve, shot->way->margin, from, &shot->s1, try_triangles, shot);
 }
 
 /* The periods along one axis that the hull reaches into. */
@@ -222,10 +225,8 @@ static void shoot_periods(Shot *shot, const Curve *curve, unsigned repeat) {
         periods_along(vec3_get(hull.min, k), vec3_get(hull.max, k), vec3_get(shot->texel->extent, k), repeat >> k & 1, &first[k], &last[k]);
     for (int64_t z = first[2]; z <= last[2]; z++)
         for (int64_t y = first[1]; y <= last[1]; y++)
-            for (int64_t x = first[0]; x <= last[0]; x++) {
+            for (int64_t x = first[0]; x <= last[0] && !shot->enough; x++)
                 shoot_period(shot, curve, vec3_mul(vec3((double)x, (double)y, (double)z), shot->texel->extent));
-                if (shot->found && !shot->hit) return;
-            }
 }
 
 static bool longer_than_a_period(const ExactTexel *texel, const Curve *curve, unsigned repeat) {
@@ -234,24 +235,23 @@ static bool longer_than_a_period(const ExactTexel *texel, const Curve *curve, un
     return false;
 }
 
-static bool shoot_piece(const ExactTexel *texel, const Curve *curve, double s0, double s1, unsigned repeat, int *pieces_left, ExactTexelHit *hit) {
-    if ((*pieces_left)-- <= 0 || !clip_to_box(texel, curve, repeat, &s0, &s1)) return false;
+/* In halves, until they are no longer than a period; the first before the second. */
+static bool shoot_piece(const ExactTexel *texel, const Curve *curve, double s0, unsigned repeat, const ExactWay *way, int *curves_left) {
+    double from = s0, to = end_of_search(way, curve);
+    if ((*curves_left)-- <= 0 || !clip_to_box(texel, curve, way->margin, repeat, &from, &to)) return false;
     if (!longer_than_a_period(texel, curve, repeat)) {
-        Shot shot = {.texel = texel, .s0 = s0, .s1 = s1, .hit = hit};
+        double chord = double_max(fabs(curve->chord.x), double_max(fabs(curve->chord.y), fabs(curve->chord.z)));
+        Shot shot = {.texel = texel, .way = way, .s0 = from, .s1 = to, .hair = chord > 0 ? double_min(1, way->margin / chord) : 0};
         shoot_periods(&shot, curve, repeat);
-        return shot.found;
+        return shot.enough;
     }
-    for (int half = 0; half < 2; half++) {
-        double from = double_max(0, 2 * s0 - half), to = double_min(1, 2 * s1 - half);
-        Curve part = curve_part(curve, 0.5 * half, 0.5 * half + 0.5);
-        if (!(from <= to) || !shoot_piece(texel, &part, from, to, repeat, pieces_left, hit)) continue;
-        if (hit) hit->s = (hit->s + half) / 2;
-        return true;
-    }
-    return false;
+    Curve half = curve_part(curve, 0, 0.5);
+    if (from < 0.5 && shoot_piece(texel, &half, 2 * from, repeat, way, curves_left)) return true;
+    half = curve_part(curve, 0.5, 1);
+    return to > 0.5 && shoot_piece(texel, &half, double_max(0, 2 * from - 1), repeat, way, curves_left);
 }
 
-bool exact_texel_shoot(const ExactTexel *texel, const Curve *curve, double s0, double s1, unsigned repeat, ExactTexelHit *hit) {
-    int pieces_left = MOST_CURVES;
-    return shoot_piece(texel, curve, s0, s1, repeat, &pieces_left, hit);
+bool exact_texel_shoot(const ExactTexel *texel, const Curve *curve, double s0, unsigned repeat, const ExactWay *way) {
+    int curves_left = MOST_CURVES;
+    return shoot_piece(texel, curve, s0, repeat, way, &curves_left);
 }

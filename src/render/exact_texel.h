@@ -10,12 +10,21 @@
 typedef struct ExactTexel ExactTexel;
 
 typedef struct ExactTexelHit {
-    double s;     /* of the curve */
+    double s;     /* of the whole curve */
     size_t layer; /* in the order in which they were added */
-    Vec3 corner;  /* of the triangle, where this curve meets it: period added */
+    Vec3 corner, edge[2]; /* of the triangle, where this curve meets it: period added */
     Vec3 period;  /* of texel space in which the hit lies: the hit − period is within the texel */
     Vec3 normal;  /* unit; which side is the front is not told */
 } ExactTexelHit;
+
+/* What a curve stands for: the way itself, which may be `margin` away from it, in texel space. settle() moves a hit from the curve to
+ * the way, and tells the nearest s so far by lowering *nearest when it accepts it; it returns true when nothing else is wanted. */
+typedef struct ExactWay {
+    double margin;
+    double *nearest; /* of the whole curve */
+    bool (*settle)(void *context, ExactTexelHit *hit);
+    void *context;
+} ExactWay;
 
 /* An empty texel in `arena`. `extent` and `cyclic` as for TexelBuildOptions. */
 ExactTexel *exact_texel_begin(Vec3f extent, unsigned cyclic, size_t layers, Arena *arena);
@@ -26,8 +35,10 @@ void exact_texel_commit(ExactTexel *texel, Arena *arena, Arena *scratch);
 /* How many triangles there are, repetitions included. */
 size_t exact_texel_triangles(const ExactTexel *texel);
 
-/* The first triangle on the curve at an s in [s0, s1], within the texel's box and its repetitions along the axes `repeat` (a
- * subset of the cyclic ones). `hit` NULL: whether there is any. */
-bool exact_texel_shoot(const ExactTexel *texel, const Curve *curve, double s0, double s1, unsigned repeat, ExactTexelHit *hit);
+/* Settles what the curve meets, at an s of its own from s0 on and at one of the whole below *way->nearest: triangles within the texel's
+ * box and its repetitions along the axes `repeat` (a subset of the cyclic ones), give or take the margin. True when settle() was. */
+bool exact_texel_shoot(const ExactTexel *texel, const Curve *curve, double s0, unsigned repeat, const ExactWay *way);
+/* Whether a point of the hit's plane, period included, is within `margin` of the triangle and of the texel's box. */
+bool exact_texel_covers(const ExactTexel *texel, const ExactTexelHit *hit, Vec3 point, double margin);
 
 #endif

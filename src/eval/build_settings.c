@@ -109,6 +109,7 @@ static const WordRule rules[] = {
     KNOB("opacity_model"),
     KNOB("ray_path"),
     KNOB("quadrature"),
+    KNOB("filtering"),
     KNOB("detail"),
     INERT("geo_origin"),
     INERT("radiosity"),

@@ -66,6 +66,10 @@ static OpacityModel opacity_of(const char *name) {
     return OPACITY_CORRELATED;
 }
 
+static TexelFiltering filtering_of(const char *name) {
+    return name && strcmp(name, "published") == 0 ? TEXEL_FILTER_PUBLISHED : TEXEL_FILTER_LINEAR;
+}
+
 static RayPath path_of(const char *name) {
     if (name && strcmp(name, "straight") == 0) return RAY_PATH_STRAIGHT;
     if (name && strcmp(name, "exact") == 0) return RAY_PATH_EXACT;
@@ -101,6 +105,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     *out = (CompiledScene){.scene = scene, .arena = arena, .view = {.camera = scene->camera, .width = options->width, .height = options->height}};
     arena_init(&out->scratch, options->memory, 0);
     out->quadrature = quadrature_of(scene->settings.quadrature);
+    out->filtering = filtering_of(scene->settings.filtering);
     out->shadow_aperture = scene->settings.shadow_aperture;
     OpacityModel opacity = opacity_of(scene->settings.opacity_model);
     choose_detail(scene->settings.max_error > 0 ? scene->settings.max_error : DEFAULT_MAX_ERROR, opacity,

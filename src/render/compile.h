@@ -41,6 +41,7 @@ typedef struct CompiledScene {
     size_t texel_count;
     MarchSettings march, shadow_march;
     Quadrature quadrature;
+    TexelFiltering filtering;
     double shadow_aperture;
     int split;            /* cones per pixel side where explicit edges cross the pixel */
     double build_seconds;

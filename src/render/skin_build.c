@@ -39,7 +39,7 @@ bool texel_mesh_layer(const BuiltTexel *texel, const TexelLayer *layer, double t
 static VoxelLayer *build_voxels(const BuiltTexel *texel, const TexelLayer *layer, const CompileOptions *options, CompiledScene *compiled,
                                 DiagList *diags) {
     const TexelDef *def = texel->def;
-    TexelBuildOptions build = {.resolution = texel->built, .extent = texel->extent, .cyclic = def->cyclic,
+    TexelBuildOptions build = {.resolution = texel->built, .extent = texel->extent, .cyclic = def->cyclic, .filtering = compiled->filtering,
                                .pool = options->pool, .memory = options->memory, .progress = options->progress,
                                .name = def->name};
     TexelMesh mesh;
@@ -70,7 +70,7 @@ static VoxelLayer *get_voxels(BuiltTexel *texel, size_t index, const CompileOpti
         if (!file) diag_error(diags, def->span, "the texel file '%s' is no longer there", def->file);
         return file ? voxel_layer_share(file->layers[index].voxels) : NULL;
     }
-    Hash128 key = texel_layer_key(def, layer, texel->built);
+    Hash128 key = texel_layer_key(def, layer, texel->built, compiled->filtering);
     VoxelLayer *voxels = options->texels ? texel_cache_find(options->texels, key, def, texel->built) : NULL;
     if (voxels) return voxels;
     texel->cached = false;

@@ -5,6 +5,7 @@
 const NamedKnob named_knobs[NAMED_KNOB_COUNT] = {
     {"opacity_model", offsetof(GlobalSettings, opacity_model), {"correlated", "exponential", "mean"}},
     {"quadrature", offsetof(GlobalSettings, quadrature), {"ring8", "ring16", "grid16", "lune"}},
+    {"filtering", offsetof(GlobalSettings, filtering), {"linear", "published"}},
     {"ray_path", offsetof(GlobalSettings, ray_path), {"box", "straight", "exact"}},
     {"detail", offsetof(GlobalSettings, detail), {"auto", "exact", "voxels", "slab"}},
 };

@@ -12,7 +12,7 @@ typedef struct NamedKnob {
     const char *values[KNOB_MOST_VALUES]; /* the default first; ended by NULL */
 } NamedKnob;
 
-enum { NAMED_KNOB_COUNT = 4 };
+enum { NAMED_KNOB_COUNT = 5 };
 extern const NamedKnob named_knobs[NAMED_KNOB_COUNT];
 
 /* NULL when there is none of this name. */

@@ -459,7 +459,8 @@ typedef struct GlobalSettings {
     double shadow_aperture;/* 2: shadow cones are this much wider (Neyret 1998 sec. IV-B) */
     const char *opacity_model; /* NULL: correlated */
     const char *quadrature;    /* NULL: ring8 */
-    const char *ray_path;      /* NULL: chosen by curvature */
+    const char *ray_path;      /* NULL: box */
+    const char *filtering;     /* NULL: linear */
     const char *detail;        /* NULL: auto */
 } GlobalSettings;
 

@@ -400,6 +400,7 @@ static void print_light(Printer *p, const Light *light) {
 static void print_settings(Printer *p, const GlobalSettings *s) {
     const char *const texts[][2] = {{"opacity_model", s->opacity_model},
                                     {"quadrature", s->quadrature},
+                                    {"filtering", s->filtering},
                                     {"ray_path", s->ray_path},
                                     {"detail", s->detail}};
     begin_line(p, "settings");

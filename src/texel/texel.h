@@ -49,10 +49,17 @@ typedef struct TexelBuildStats {
     double seconds;
 } TexelBuildStats;
 
+/* How the normal distributions of eight voxels become one. */
+typedef enum TexelFiltering {
+    TEXEL_FILTER_LINEAR,    /* the area-weighted mean of S: the default */
+    TEXEL_FILTER_PUBLISHED, /* the area-weighted sum of Q⁻¹, as Neyret 1998 sec. IV-C has it; S is still scaled to unit mean area */
+} TexelFiltering;
+
 typedef struct TexelBuildOptions {
     int resolution;      /* along the longest side, 1 … 1024; rounded up to a power of two */
     Vec3f extent;        /* > 0, the longest 1 */
     unsigned cyclic;     /* TEXEL_CYCLIC_… bits */
+    TexelFiltering filtering;
     Pool *pool;          /* may be NULL */
     MemoryBudget *memory;
     const Progress *progress; /* may be NULL */

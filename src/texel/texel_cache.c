@@ -70,7 +70,7 @@ void texel_cache_trim(TexelCache *cache) {
 
 enum { KIND_BUILT = 0x62756c74 };
 
-Hash128 texel_layer_key(const TexelDef *def, const TexelLayer *layer, int resolution) {
+Hash128 texel_layer_key(const TexelDef *def, const TexelLayer *layer, int resolution, TexelFiltering filtering) {
     Hash128 key = hash_begin(KIND_BUILT);
     hash_add(&key, VTS_VERSION, sizeof VTS_VERSION);
     hash_add_u64(&key, TEXEL_BUILDER_VERSION);
@@ -78,6 +78,7 @@ Hash128 texel_layer_key(const TexelDef *def, const TexelLayer *layer, int resolu
     hash_add_vec3(&key, def->bounds.max);
     hash_add_u64(&key, def->cyclic);
     hash_add_u64(&key, (uint64_t)resolution);
+    hash_add_u64(&key, (uint64_t)filtering);
     hash_add_hash(&key, layer->hash);
     return key;
 }

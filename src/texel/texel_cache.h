@@ -13,7 +13,7 @@ TexelCache *texel_cache_create(const char *folder, MemoryBudget *memory);
 void texel_cache_destroy(TexelCache *cache);
 
 /* The key of a layer's voxels at a resolution: all that they depend on, and not how they look. */
-Hash128 texel_layer_key(const TexelDef *def, const TexelLayer *layer, int resolution);
+Hash128 texel_layer_key(const TexelDef *def, const TexelLayer *layer, int resolution, TexelFiltering filtering);
 
 /* The voxels with this key, for one owner more; NULL when they are not there. */
 VoxelLayer *texel_cache_find(TexelCache *cache, Hash128 key, const TexelDef *def, int resolution);

@@ -142,7 +142,7 @@ static bool read_texel(FormatReader *r, TexelFile *out, FormatTexel *texel) {
     return true;
 }
 
-static bool read_look(FormatReader *r, size_t index, TexelFileLayer *layer) {
+static bool read_look(FormatReader *r, size_t index, TexelFileLayer *layer, TexelFiltering *filtering) {
     const unsigned char *at = open_section(r, SECTION_LOOK, index, 0);
     FormatLook look;
     double *numbers[LOOK_NUMBERS];
@@ -154,8 +154,9 @@ static bool read_look(FormatReader *r, size_t index, TexelFileLayer *layer) {
         if (!isfinite(look.numbers[i])) return refuse_section(r, "holds what is not a number");
         if (i < LOOK_NUMBERS - 1) *numbers[i] = look.numbers[i];
     }
-    if (look.averaged > 1 || look.zero) return refuse_section(r, "holds what it should not");
+    if (look.averaged > 1 || look.filtering > TEXEL_FILTER_PUBLISHED) return refuse_section(r, "holds what it should not");
     layer->averaged = look.averaged;
+    *filtering = (TexelFiltering)look.filtering;
     layer->finish.fresnel = look.numbers[LOOK_NUMBERS - 1] != 0;
     return true;
 }
@@ -265,7 +266,8 @@ static bool read_file(FormatReader *r, MemoryBudget *memory, TexelFile *out) {
                                  .memory = memory};
     for (size_t i = 0; i < texel.layer_count; i++) {
         out->layer_count = i + 1;
-        if (!read_look(r, i, &out->layers[i]) || !read_voxels(r, &texel, i, &options, &out->layers[i]))
+        if (!read_look(r, i, &out->layers[i], &options.filtering) ||
+            !read_voxels(r, &texel, i, &options, &out->layers[i]))
             return false;
     }
     if (r->next != r->header.section_count || r->end != r->size)

@@ -56,7 +56,7 @@ static void write_texel(Writer *w, const TexelFile *file) {
 static void write_look(Writer *w, const TexelFileLayer *layer, size_t index) {
     TexelFileLayer copy = *layer;
     double *numbers[LOOK_NUMBERS];
-    FormatLook look = {.averaged = layer->averaged};
+    FormatLook look = {.averaged = layer->averaged, .filtering = (uint32_t)layer->voxels->filtering};
     look_numbers(&copy, numbers);
     for (size_t i = 0; i < LOOK_NUMBERS - 1; i++) look.numbers[i] = *numbers[i];
     look.numbers[LOOK_NUMBERS - 1] = layer->finish.fresnel;

@@ -7,7 +7,7 @@
  *   header    64 bytes: magic, version of the format, byte order, size of the file, number of sections, key, checksum of header and table
  *   table     48 bytes a section: kind, layer, level, offset and size (64 bits), checksum
  *   TEXEL     bounds, resolution asked for and built, cyclic axes, number of layers, voxels along the axes, name
- *   for each layer:  LOOK   colour and finish
+ *   for each layer:  LOOK   colour and finish; how its levels were filtered
  *     for each level:  INDEX   the brick at each place, −1: none        SLICES  8 × 64 bits a brick: which voxels are occupied
  *                      CODES   8 bytes for each occupied voxel, brick by brick (voxel_code.h)
  *

@@ -46,7 +46,7 @@ static_assert(sizeof(FormatTexel) == 80, "the texel's section has no gaps");
 
 enum { LOOK_NUMBERS = 34 };
 typedef struct FormatLook {
-    uint32_t averaged, zero;
+    uint32_t averaged, filtering; /* TexelFiltering */
     double numbers[LOOK_NUMBERS]; /* look_numbers() */
 } FormatLook;
 

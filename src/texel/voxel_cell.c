@@ -45,37 +45,6 @@ static void merge_rays(VoxelCell *parent, const VoxelCell *child, const VoxelMer
     parent->inside[axis] ^= inside;
 }
 
-void voxel_cell_merge(VoxelCell *parent, const VoxelCell *child, const VoxelMerge *step,
-                      const int corner[3]) {
-    parent->fill += child->fill * step->share;
-    parent->sheet += child->sheet;
-    parent->solid += child->solid;
-    for (int i = 0; i < 6; i++) parent->normals[i] += child->normals[i];
-    parent->walls += child->walls;
-    parent->apart += child->single;
-    for (int axis = 0; axis < 3; axis++) merge_rays(parent, child, step, corner, axis);
-}
-
-void voxel_cell_close_finest(VoxelCell *cell) {
-    for (int axis = 0; axis < 3; axis++) cell->met[axis] /= 64;
-    for (int axis = 0; axis < 3; axis++) cell->single += (float)count_bits(cell->inside[axis]);
-    cell->apart = cell->walls;
-}
-
-void voxel_cell_close_merged(VoxelCell *cell) {
-    /* The share of rays that met their pair is applied to the exact count: few rays are kept at coarse levels. If none of
-     * them is left inside a solid, the walls here are slivers or very thin solids. */
-    cell->single = cell->odd > 0 ? cell->apart * (1 - cell->joined / cell->odd) : 0;
-}
-
-float voxel_cell_thinness(const VoxelCell *parent) {
-    if (!(parent->walls > 0)) return 1; /* met by no ray: very thin */
-    /* A pair at distance c is in the same cell of side h with probability 1 − c/h, in the same one of side 2h with
-     * 1 − c/2h: extrapolating gives 1 for all c < h. */
-    float small = 1 - parent->apart / parent->walls, large = 1 - parent->single / parent->walls;
-    return float_clamp(2 * large - small, 0, 1);
-}
-
 /* Eigenvalues of a symmetric matrix by the trigonometric solution of the cubic. */
 static void eigenvalues(const double m[6], double out[3]) {
     double q = (m[0] + m[1] + m[2]) / 3;
@@ -88,6 +57,86 @@ static void eigenvalues(const double m[6], double out[3]) {
     out[0] = q + 2 * p * cos(phi);
     out[2] = q + 2 * p * cos(phi + 2 * VTS_PI / 3);
     out[1] = 3 * q - out[0] - out[2];
+}
+
+/* S of a closed cell up to scale, floored so that it can be inverted, and the roots of its eigenvalues, largest first. */
+static void normal_matrix(const VoxelCell *cell, double m[6], double s[3]) {
+    double trace = (double)cell->normals[0] + (double)cell->normals[1] + (double)cell->normals[2];
+    for (int i = 0; i < 6; i++) m[i] = (double)cell->normals[i] / trace;
+    eigenvalues(m, s);
+    double floor = (double)(VOXEL_ROUGHNESS * VOXEL_ROUGHNESS) * s[0];
+    for (int i = 0; i < 3; i++) {
+        m[i] += floor;
+        s[i] = sqrt(double_max(s[i], 0) + floor);
+    }
+}
+
+/* ---- Neyret's filter ---- */
+
+/* The adjoint: det · m⁻¹. */
+static void adjoint(const double m[6], double out[6]) {
+    double xx = m[0], yy = m[1], zz = m[2], xy = m[3], xz = m[4], yz = m[5];
+    out[0] = yy * zz - yz * yz, out[1] = xx * zz - xz * xz, out[2] = xx * yy - xy * xy;
+    out[3] = xz * yz - xy * zz, out[4] = xy * yz - xz * yy, out[5] = xy * xz - xx * yz;
+}
+
+/* Q is proportional to S; its ellipsoid has unit size, that is, longest radius 1. */
+static void add_inverse(VoxelCell *parent, const VoxelCell *child) {
+    double m[6], s[3], inverse[6], area = (double)(child->sheet + child->solid);
+    if (!(area > 0)) return; /* the inside of a solid */
+    normal_matrix(child, m, s);
+    adjoint(m, inverse);
+    double longest = s[0] * s[1]; /* root of the largest eigenvalue of the adjoint */
+    for (int i = 0; i < 6; i++) parent->normals[i] += (float)(area * inverse[i] / (longest * longest));
+}
+
+/* From the sum of Q⁻¹ to a matrix like the sum of area · n nᵗ, whose trace is the area. */
+static void close_published(VoxelCell *cell) {
+    double sum[6], q[6];
+    for (int i = 0; i < 6; i++) sum[i] = (double)cell->normals[i];
+    adjoint(sum, q);
+    double trace = q[0] + q[1] + q[2], area = (double)(cell->sheet + cell->solid);
+    for (int i = 0; i < 6; i++) cell->normals[i] = i < 3 ? (float)(area / 3) : 0; /* where so little is there that it is lost */
+    if (!(trace > 0 && isfinite(trace))) return;
+    for (int i = 0; i < 6; i++) cell->normals[i] = (float)(area * q[i] / trace);
+}
+
+static void add_normals(VoxelCell *parent, const VoxelCell *child, TexelFiltering filtering) {
+    if (filtering == TEXEL_FILTER_PUBLISHED) add_inverse(parent, child);
+    else
+        for (int i = 0; i < 6; i++) parent->normals[i] += child->normals[i];
+}
+
+void voxel_cell_merge(VoxelCell *parent, const VoxelCell *child, const VoxelMerge *step,
+                      const int corner[3]) {
+    parent->fill += child->fill * step->share;
+    parent->sheet += child->sheet;
+    parent->solid += child->solid;
+    add_normals(parent, child, step->filtering);
+    parent->walls += child->walls;
+    parent->apart += child->single;
+    for (int axis = 0; axis < 3; axis++) merge_rays(parent, child, step, corner, axis);
+}
+
+void voxel_cell_close_finest(VoxelCell *cell) {
+    for (int axis = 0; axis < 3; axis++) cell->met[axis] /= 64;
+    for (int axis = 0; axis < 3; axis++) cell->single += (float)count_bits(cell->inside[axis]);
+    cell->apart = cell->walls;
+}
+
+void voxel_cell_close_merged(VoxelCell *cell, TexelFiltering filtering) {
+    if (filtering == TEXEL_FILTER_PUBLISHED) close_published(cell);
+    /* The share of rays that met their pair is applied to the exact count: few rays are kept at coarse levels. If none of
+     * them is left inside a solid, the walls here are slivers or very thin solids. */
+    cell->single = cell->odd > 0 ? cell->apart * (1 - cell->joined / cell->odd) : 0;
+}
+
+float voxel_cell_thinness(const VoxelCell *parent) {
+    if (!(parent->walls > 0)) return 1; /* met by no ray: very thin */
+    /* A pair at distance c is in the same cell of side h with probability 1 − c/h, in the same one of side 2h with
+     * 1 − c/2h: extrapolating gives 1 for all c < h. */
+    float small = 1 - parent->apart / parent->walls, large = 1 - parent->single / parent->walls;
+    return float_clamp(2 * large - small, 0, 1);
 }
 
 /* Mean over directions of sqrt(dᵗ S d), from the axis projections, largest first: Thomsen's formula (erratum E15 of Neyret
@@ -114,14 +163,8 @@ static Sym3f square_root(const double m[6], const double s[3], double scale) {
 }
 
 static Sym3f unit_root(const VoxelCell *cell) {
-    double m[6], s[3], trace = (double)cell->normals[0] + (double)cell->normals[1] + (double)cell->normals[2];
-    for (int i = 0; i < 6; i++) m[i] = (double)cell->normals[i] / trace;
-    eigenvalues(m, s);
-    double floor = (double)(VOXEL_ROUGHNESS * VOXEL_ROUGHNESS) * s[0];
-    for (int i = 0; i < 3; i++) {
-        m[i] += floor;
-        s[i] = sqrt(double_max(s[i], 0) + floor);
-    }
+    double m[6], s[3];
+    normal_matrix(cell, m, s);
     return square_root(m, s, 1 / mean_projection(s));
 }
 

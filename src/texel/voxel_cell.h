@@ -11,7 +11,7 @@
  * cells twice as large, tells thin solids from walls that stand alone. */
 typedef struct VoxelCell {
     float sheet, solid; /* area of open sheets; of walls of solids, both walls counted */
-    float normals[6];   /* sum of area · n nᵗ: xx yy zz xy xz yz */
+    float normals[6];   /* sum of area · n nᵗ: xx yy zz xy xz yz. With TEXEL_FILTER_PUBLISHED, in an open merged cell: sum of area · Q⁻¹ */
     float fill;         /* the share of it that lies within solids, of the finest voxels' middles */
     float met[3];       /* how often the rays along an axis met anything, on the mean over them */
     float walls;        /* walls that the finest level's rays met in the cell */
@@ -44,6 +44,7 @@ static inline bool voxel_cell_is_inside(const VoxelCell *cell) {
 typedef struct VoxelMerge {
     int level;      /* the parent's: chooses the rays kept */
     float share;    /* of the parent that a child is */
+    TexelFiltering filtering;
     bool halved[3]; /* whether there are two children along the axis */
     float rays[3];  /* per axis: rays of the finest level for which a ray of the parent stands */
 } VoxelMerge;
@@ -53,7 +54,7 @@ typedef struct VoxelMerge {
 void voxel_cell_merge(VoxelCell *parent, const VoxelCell *child, const VoxelMerge *step, const int corner[3]);
 /* To be called once all triangles or children are in. */
 void voxel_cell_close_finest(VoxelCell *cell);
-void voxel_cell_close_merged(VoxelCell *cell);
+void voxel_cell_close_merged(VoxelCell *cell, TexelFiltering filtering);
 
 /* How many of the walls in a closed cell's children are halves of solids thinner than a child, 0 … 1: all where solids are
  * thinner than one side of a child, falling to none at two. */

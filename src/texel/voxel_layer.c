@@ -55,6 +55,7 @@ VoxelLayer *voxel_layer_create(const TexelBuildOptions *options) {
     layer->owners = 1;
     layer->memory = options->memory;
     layer->bytes = sizeof *layer;
+    layer->filtering = options->filtering;
     for (int i = 0; i < 3; i++) layer->cyclic[i] = options->cyclic >> i & 1;
     set_sizes(layer, options);
     return layer;

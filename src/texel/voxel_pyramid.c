@@ -33,13 +33,13 @@ static void fill_finest(const Pyramid *p, const int at[3], VoxelCell *cells) {
         }
 }
 
-static void close_cells(VoxelCell *cells, int level) {
+static void close_cells(VoxelCell *cells, int level, TexelFiltering filtering) {
     for (int i = 0; i < BRICK_VOXELS; i++) {
         if (voxel_cell_is_empty(&cells[i])) continue;
         if (level == 0)
             voxel_cell_close_finest(&cells[i]);
         else
-            voxel_cell_close_merged(&cells[i]);
+            voxel_cell_close_merged(&cells[i], filtering);
     }
 }
 
@@ -57,7 +57,7 @@ static int index_in_parent(const bool halved[3], const int at[3], int i, int cor
 
 static VoxelMerge step_to(const VoxelLayer *layer, int level) {
     const int *finest = layer->level[0].size, *size = layer->level[level].size;
-    VoxelMerge step = {.level = level, .share = 1};
+    VoxelMerge step = {.level = level, .share = 1, .filtering = layer->filtering};
     for (int k = 0; k < 3; k++) {
         int u = (k + 1) % 3, v = (k + 2) % 3;
         step.halved[k] = voxel_layer_halves(layer, level - 1, k);
@@ -242,7 +242,7 @@ static void build_from_children(const Pyramid *p, int level, const int at[3], bo
         pyramid_build_brick(p, level - 1, children[i], from_top, child, deeper, out);
         merge_brick(p->layer, level, children[i], child, cells);
     }
-    close_cells(cells, level);
+    close_cells(cells, level, p->layer->filtering);
     code_children(p, level - 1, at, (const int(*)[3])children, count, scratch, cells, out);
 }
 
@@ -254,7 +254,7 @@ void pyramid_build_brick(const Pyramid *p, int level, const int at[3], bool from
     } else if (level == 0) {
         build_finest(p, at, cells);
         if (p->fill->start) fill_finest(p, at, cells);
-        close_cells(cells, 0);
+        close_cells(cells, 0, p->layer->filtering);
     } else {
         build_from_children(p, level, at, from_top, cells, scratch, out);
     }

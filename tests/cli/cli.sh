@@ -298,6 +298,13 @@ case_cache() {
   sed 's/, 0.3 }/, 0.31 }/' scene.vts >large.vts
   run render large.vts -s 64x48 -o large.pfm --cache kept --report large.json; want_status 0
   grep -q '"cached":true' large.json && fail "another radius came from the cache"
+  # Another filter is another texel, and both stay.
+  run render scene.vts -s 64x48 -o other.pfm --cache kept --report other.json --set filtering=published; want_status 0
+  grep -q '"cached":true' other.json && fail "another filtering came from the cache"
+  cmp -s other.pfm warm.pfm && fail "the filtering has no effect"
+  run render scene.vts -s 64x48 -o again.pfm --cache kept --report again.json --set filtering=published; want_status 0
+  grep -q '"cached":true' again.json || fail "the other filtering was not kept"
+  cmp -s other.pfm again.pfm || fail "the cache mixes filters"
   # Broken files are as good as none, and are written anew.
   local file
   for file in kept/*; do printf 'broken' >"$file"; done

@@ -70,9 +70,12 @@ static void test_what_is_written_comes_back(void **state) {
     for (size_t i = 0; i < VTS_ARRAY_COUNT(resolutions); i++) {
         TexelFile file = meadow(resolutions[i], i % 2 ? TEXEL_CYCLIC_X | TEXEL_CYCLIC_Z : 0), back;
         file.key = (Hash128){17, 42};
+        file.layers[1].voxels->filtering = TEXEL_FILTER_PUBLISHED;
         Bytes bytes = encode(&file);
         assert_int_equal(decode(bytes, &back, NULL), TEXEL_FILE_OK);
         assert_string_equal(back.name, "Meadow");
+        assert_int_equal(back.layers[0].voxels->filtering, TEXEL_FILTER_LINEAR);
+        assert_int_equal(back.layers[1].voxels->filtering, TEXEL_FILTER_PUBLISHED);
         assert_memory_equal(&back.bounds, &file.bounds, sizeof back.bounds);
         assert_int_equal(back.asked, file.asked);
         assert_int_equal(back.built, file.built);

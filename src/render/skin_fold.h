@@ -25,7 +25,7 @@ typedef struct SkinPiece {
 enum { MOST_PIECES = 24 };
 /* Of cell `number`, in no order; returns how many. What touches a fold in less than a sixty-fourth of the cell may be left out. */
 int skin_cell_pieces(const SkinCell *cell, int32_t number, const Ray *ray, double t_min, double t_max, SkinPiece out[MOST_PIECES]);
-/* The one that begins first, of all cells of a skin; false when the ray passes by. */
-bool skin_first_piece(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, SkinPiece *out);
+/* The first `most` to begin, of all cells of a skin, in the order of t0; returns how many there are. */
+int skin_first_pieces(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, SkinPiece *out, int most);
 
 #endif

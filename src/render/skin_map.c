@@ -147,15 +147,6 @@ bool skin_cell_holds(const SkinCell *cell, Vec3 world, double tolerance, SkinPoi
     return beyond <= 1e-7 && p->w >= -1e-7 && p->w <= 1 + 1e-7;
 }
 
-/* The piece of the ray within this cell that begins first. */
-static bool enter_cell(const SkinCell *cell, int32_t number, const Ray *ray, double t_min, double t_max, SkinPiece *first) {
-    SkinPiece pieces[MOST_PIECES];
-    int count = skin_cell_pieces(cell, number, ray, t_min, t_max, pieces);
-    for (int i = 0; i < count; i++)
-        if (i == 0 || pieces[i].t0 < first->t0) *first = pieces[i];
-    return count > 0;
-}
-
 /* Embree's hierarchy over the cells, each a user primitive. */
 struct CellTree {
     RTCScene scene;
@@ -166,8 +157,18 @@ typedef struct EnterQuery {
     const CompiledSkin *skin;
     const Ray *ray;
     double t_min, t_max;
-    SkinPiece piece; /* t0 = t_max: none yet */
+    SkinPiece *list; /* in the order of t0 */
+    int count, most;
 } EnterQuery;
+
+static void list_piece(EnterQuery *query, const SkinPiece *piece) {
+    int i = query->count;
+    if (i == query->most && piece->t0 >= query->list[i - 1].t0) return;
+    if (i < query->most) query->count++;
+    else i--;
+    for (; i > 0 && query->list[i - 1].t0 > piece->t0; i--) query->list[i] = query->list[i - 1];
+    query->list[i] = *piece;
+}
 
 void skin_bound_cell(const struct RTCBoundsFunctionArguments *args) {
     const CompiledSkin *skin = args->geometryUserPtr;
@@ -189,11 +190,11 @@ static void intersect_cell(const struct RTCIntersectFunctionNArguments *args) {
     if (!args->valid[0]) return;
     EnterQuery *query = (EnterQuery *)(void *)args->context;
     struct RTCRayHit *rayhit = (struct RTCRayHit *)(void *)args->rayhit;
-    SkinPiece piece;
-    if (!enter_cell(&query->skin->cells[args->primID], (int32_t)args->primID, query->ray, query->t_min, query->t_max, &piece)) return;
-    if (piece.t0 >= query->piece.t0) return;
-    query->piece = piece;
-    rayhit->ray.tfar = float_above(piece.t0);
+    SkinPiece pieces[MOST_PIECES];
+    int count = skin_cell_pieces(&query->skin->cells[args->primID], (int32_t)args->primID, query->ray, query->t_min, query->t_max, pieces);
+    for (int i = 0; i < count; i++) list_piece(query, &pieces[i]);
+    if (!count || query->count < query->most) return;
+    rayhit->ray.tfar = float_above(query->list[query->count - 1].t0); /* what begins later is not asked for */
     rayhit->hit.geomID = args->geomID;
     rayhit->hit.primID = args->primID;
 }
@@ -221,22 +222,21 @@ void cell_tree_destroy(CellTree *tree) {
     free(tree);
 }
 
-bool skin_first_piece(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, SkinPiece *out) {
-    EnterQuery query = {.skin = skin, .ray = ray, .t_min = t_min, .t_max = t_max, .piece = {.t0 = t_max, .middle.cell = -1}};
+int skin_first_pieces(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, SkinPiece *out, int most) {
+    EnterQuery query = {.skin = skin, .ray = ray, .t_min = t_min, .t_max = t_max, .list = out, .most = most};
     rtcInitIntersectContext(&query.context);
     struct RTCRayHit rayhit = {
         .ray = {.org_x = (float)ray->origin.x, .org_y = (float)ray->origin.y, .org_z = (float)ray->origin.z,
                 .dir_x = (float)ray->direction.x, .dir_y = (float)ray->direction.y, .dir_z = (float)ray->direction.z,
-                .tnear = float_below(t_min), .tfar = float_above(t_max), .mask = 0xFFFFFFFFu},
+                .tnear = float_below(double_max(t_min, 0)), .tfar = float_above(t_max), .mask = 0xFFFFFFFFu},
         .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
     rtcIntersect1(skin->tree->scene, &query.context, &rayhit);
-    *out = query.piece;
-    return query.piece.middle.cell >= 0;
+    return query.count;
 }
 
 bool skin_enter(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, SkinPoint *point, double *t) {
     SkinPiece piece;
-    if (!skin_first_piece(skin, ray, t_min, t_max, &piece)) return false;
+    if (!skin_first_pieces(skin, ray, t_min, t_max, &piece, 1)) return false;
     *point = piece.middle;
     *t = piece.t0;
     return true;

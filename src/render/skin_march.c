@@ -1,5 +1,7 @@
 #include "render/skin_march.h"
 
+#include "render/skin_sheets.h"
+
 /* A cone that takes more steps than this is lost in a mapping that no voxel fits; it ends there. */
 enum { MOST_STEPS = 1 << 14 };
 enum { MOST_ENTRIES = 1 << 10, MOST_HALVINGS = 7, SPAN_STEPS = 48 };
@@ -15,9 +17,17 @@ static const float NEAR_STEP = 0.5f;
 /* Empty way is looked for along the tangent as far as the path stays this near to it, in voxels. */
 static const double TANGENT_VOXELS = 1;
 
-void skin_march_init(SkinMarch *m, const CompiledSkin *skin, Arena *arena) {
+void skin_march_init_confined(SkinMarch *m, const CompiledSkin *skin, Arena *arena) {
     m->skin = skin;
     m->tiles = arena_new_array(arena, TileCopies, skin->texel_count * TILES_KEPT);
+    m->confined = true;
+    m->sheets = NULL;
+}
+
+void skin_march_init(SkinMarch *m, const CompiledSkin *skin, Arena *arena) {
+    skin_march_init_confined(m, skin, arena);
+    m->confined = false;
+    if (skin->overlaps) m->sheets = skin_sheets_new(skin, arena);
 }
 
 static void begin(SkinMarch *m, const Cone *cone, double t_min, double t_max, const MarchSettings *settings,
@@ -97,6 +107,8 @@ typedef struct SpanTrial {
     bool shortest;
 } SpanTrial;
 
+static bool goes_on(const SkinMarch *m, const SkinStretch *s) { return !m->confined && skin_stretch_goes_on(m->skin, s); }
+
 static Ray ray_of(const SkinMarch *m) { return (Ray){m->cone->origin, m->cone->direction}; }
 
 /* Newton's method in the cell of the guess. */
@@ -159,7 +171,7 @@ static bool try_span(SkinMarch *m, const SpanTrial *trial) {
     span->t1 = trial->t1;
     span->place = place_m;
     span->middle = middle;
-    span->leaves = trial->t1 >= trial->last.t1 && !skin_stretch_goes_on(m->skin, &trial->last);
+    span->leaves = trial->t1 >= trial->last.t1 && !goes_on(m, &trial->last);
     fit_span(m, &place_m, (t0 + trial->t1) / 2, span);
     /* The path leaves its tangent by |c2|·s². */
     double bending = vec3_length(span->c2), voxel = (double)span->voxel_world * vec3_length(span->c1);
@@ -179,7 +191,7 @@ static bool crosses_seam(const SkinMarch *m, const SkinStretch *s) {
 /* From the end of the stretch into the next that has a length. False where the layer ends. */
 static bool next_stretch(SkinMarch *m) {
     Ray ray = ray_of(m);
-    for (int i = 0; i < MOST_FAN && skin_stretch_goes_on(m->skin, &m->stretch); i++) {
+    for (int i = 0; i < MOST_FAN && goes_on(m, &m->stretch); i++) {
         m->stretch = skin_stretch_next(m->skin, &ray, &m->stretch, m->t_max);
         if (m->stretch.t1 - m->stretch.t0 <= skin_hair(&m->skin->cells[m->stretch.start.cell], &ray, m->stretch.t0)) continue;
         m->at = m->stretch.t0;
@@ -197,7 +209,7 @@ static void reach_through_cells(const SkinMarch *m, double least, SpanTrial *tri
     trial->last = m->stretch;
     trial->one_cell = true;
     for (int i = 0; i < MOST_CELLS && trial->last.t1 - m->at < least; i++) {
-        if (!skin_stretch_goes_on(m->skin, &trial->last) || crosses_seam(m, &trial->last)) return;
+        if (!goes_on(m, &trial->last) || crosses_seam(m, &trial->last)) return;
         SkinStretch next = skin_stretch_next(m->skin, &ray, &trial->last, m->t_max);
         if (next.t1 - next.t0 >= least) return;
         trial->last = next;
@@ -241,7 +253,7 @@ static void begin_stretch(SkinMarch *m, const SkinStretch *stretch) {
 static bool enter(SkinMarch *m) {
     Ray ray = ray_of(m);
     SkinStretch stretch;
-    if (m->t >= m->t_max || m->entries > MOST_ENTRIES) return false;
+    if (m->confined || m->t >= m->t_max || m->entries > MOST_ENTRIES) return false;
     bool again = m->entries > 0 && m->stretch.t1 >= m->t;
     if (!(again ? skin_stretch_again(m->skin, &ray, &m->stretch, m->t_max, &stretch)
                 : skin_stretch_first(m->skin, &ray, m->t, m->t_max, &stretch)))
@@ -254,6 +266,12 @@ static bool enter(SkinMarch *m) {
 void skin_march_begin(SkinMarch *m, const Cone *cone, double t_min, double t_max, const MarchSettings *settings,
                       TraceCounters *counters, bool shade) {
     begin(m, cone, t_min, t_max, settings, counters, shade);
+    if (m->sheets) skin_sheets_begin(m->sheets, m);
+}
+
+void skin_march_begin_stretch(SkinMarch *m, const SkinMarch *like, const SkinStretch *stretch) {
+    begin(m, like->cone, stretch->t0, stretch->t1, like->settings, like->counters, like->shade);
+    begin_stretch(m, stretch);
 }
 
 /* The point `back` before `point` along the cone, or where the layer begins when that is nearer: *back is then shortened. */
@@ -280,6 +298,10 @@ double skin_march_begin_around(SkinMarch *m, const Cone *cone, const SkinPoint *
     m->point = step_back(m, point, tolerance, &back);
     m->t = -back;
     m->fitted = true;
+    if (m->sheets) {
+        skin_sheets_begin(m->sheets, m);
+        return wanted;
+    }
     Ray ray = ray_of(m);
     SkinStretch stretch = skin_stretch_from(m->skin, &ray, m->point, m->t, t_max);
     if (stretch.t1 > m->t) begin_stretch(m, &stretch);
@@ -427,6 +449,7 @@ static double empty_way(SkinMarch *m, double t) {
 }
 
 SkinPoint skin_march_guess(const SkinMarch *m, double t) {
+    if (m->sheets) return skin_sheets_guess(m->sheets, t);
     const MarchSpan *span = &m->span;
     return guess(&span->middle, &span->place, m->cone->direction, t - (span->t0 + span->t1) / 2);
 }
@@ -505,6 +528,7 @@ static void sample(SkinMarch *m, double t0, double t1, SkinSegment *out) {
 }
 
 bool skin_march_next(SkinMarch *m, SkinSegment *segment) {
+    if (m->sheets) return skin_sheets_next(m->sheets, segment);
     while (m->steps_left-- > 0) {
         if (m->t >= m->span.t1) {
             if (!m->inside && !enter(m)) return false;

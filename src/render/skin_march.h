@@ -107,6 +107,8 @@ typedef struct SkinMarch {
     bool fitted;          /* span.step is of this cone */
     uint32_t number;      /* of the cone, counted up by each begin */
     TileCopies *tiles;    /* [texel][TILES_KEPT] */
+    bool confined;        /* to its stretch */
+    struct SkinSheets *sheets; /* of a skin that overlaps, else NULL: all else then only says where they begin */
 } SkinMarch;
 
 /* Gives the march its memory, once; the rest is set by each begin. */
@@ -119,6 +121,10 @@ void skin_march_begin(SkinMarch *march, const Cone *cone, double t_min, double t
  * if that is nearer; `tolerance` is that of finding places in the skin. Returns that length in scene units: the first t is its negative. */
 double skin_march_begin_around(SkinMarch *march, const Cone *cone, const SkinPoint *point, double reach, double tolerance, double t_max,
                                const MarchSettings *settings, TraceCounters *counters);
+/* One that follows single stretches only. */
+void skin_march_init_confined(SkinMarch *march, const CompiledSkin *skin, Arena *arena);
+/* Along one stretch only, with the cone and settings of another march of the same skin. */
+void skin_march_begin_stretch(SkinMarch *march, const SkinMarch *like, const SkinStretch *stretch);
 /* A guess of the place in the skin at t of the current segment, for skin_locate(): where shadows start. */
 SkinPoint skin_march_guess(const SkinMarch *march, double t);
 /* The next segment that holds matter, in order of t; false when there is none before t_max. */

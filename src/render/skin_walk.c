@@ -58,7 +58,7 @@ SkinStretch skin_stretch_next(const CompiledSkin *skin, const Ray *ray, const Sk
 
 bool skin_stretch_first(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, SkinStretch *out) {
     SkinPiece piece;
-    if (!skin_first_piece(skin, ray, double_max(t_min, 0), t_max, &piece)) return false; /* Embree's rays begin at 0 or later */
+    if (!skin_first_pieces(skin, ray, double_max(t_min, 0), t_max, &piece, 1)) return false; /* Embree's rays begin at 0 or later */
     const SkinCell *cell = &skin->cells[piece.middle.cell];
     SkinPoint start = piece.middle;
     double tolerance = 1e-9 * vec3_length(vec3_sub(cell->bounds.max, cell->bounds.min));

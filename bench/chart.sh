@@ -12,7 +12,7 @@ vts=${2:-$here/build/vts}
 size=${3:-160x120}
 rays=${4:-256}
 runs=${5:-3}
-sweep=max_error=8/255,4/255,2/255,1/255,0.5/255
+sweep=max_error=8/255,4/255,2/255,1/255
 mkdir -p "$folder"
 
 for scene in lawn meadow_ball; do

@@ -1,13 +1,25 @@
 #include "hooks.h"
 
 #include "pattern/pattern_function.h"
+#include "image/picture.h"
 #include "shape/extent.h"
 #include "shape/mesh_file.h"
+
+#include <string.h>
+
+/* One picture stands in many pigments. */
+typedef struct KnownPicture {
+    const char *path;
+    double gamma;
+    Picture picture;
+    struct KnownPicture *next;
+} KnownPicture;
 
 typedef struct Hooks {
     ShapeTracer *tracer;
     TexelCache *texels;
     MemoryBudget *memory;
+    KnownPicture *pictures;
 } Hooks;
 
 /* A ray that starts on a surface does not meet it there. */
@@ -65,9 +77,32 @@ static bool mesh_file(void *context, Arena *arena, const char *path, const EvalM
     return true;
 }
 
+static const KnownPicture *find_picture(const Hooks *hooks, const ImageMap *image) {
+    const KnownPicture *known = hooks->pictures;
+    while (known && !(known->gamma == image->gamma && strcmp(known->path, image->path) == 0)) known = known->next;
+    return known;
+}
+
+static bool picture_file(void *context, Arena *arena, ImageMap *image, StrBuf *error) {
+    Hooks *hooks = context;
+    const KnownPicture *known = find_picture(hooks, image);
+    if (!known) {
+        KnownPicture *loaded = arena_new(arena, KnownPicture);
+        PictureGamma curve = image->gamma > 0 ? PICTURE_GAMMA_POWER : image->gamma < 0 ? PICTURE_GAMMA_SRGB : PICTURE_GAMMA_FILE;
+        if (!picture_load(image->path, curve, image->gamma, arena, &loaded->picture, error)) return false;
+        loaded->path = image->path;
+        loaded->gamma = image->gamma;
+        loaded->next = hooks->pictures;
+        known = hooks->pictures = loaded;
+    }
+    image->picture = &known->picture;
+    hash_add_hash(&image->hash, known->picture.hash);
+    return true;
+}
+
 EvalGeometry hooks_geometry(Arena *arena, TexelCache *texels) {
     Hooks *hooks = arena_new(arena, Hooks);
-    *hooks = (Hooks){shape_tracer_create(arena), texels, arena->budget};
+    *hooks = (Hooks){.tracer = shape_tracer_create(arena), .texels = texels, .memory = arena->budget};
     return (EvalGeometry){
         .context = hooks,
         .trace = trace,
@@ -77,5 +112,6 @@ EvalGeometry hooks_geometry(Arena *arena, TexelCache *texels) {
         .pattern_function = pattern_function,
         .texel_file = texel_file,
         .mesh_file = mesh_file,
+        .picture_file = picture_file,
     };
 }

@@ -2,6 +2,7 @@
 #include "eval/build_parts.h"
 
 #include <string.h>
+#include <strings.h>
 
 typedef struct ImageDraft {
     ImageMap image;
@@ -9,12 +10,14 @@ typedef struct ImageDraft {
         double *items;
         size_t count, capacity;
     } palette;
+    Span file; /* where the text names it */
     bool made; /* by a function, not from a file */
 } ImageDraft;
 
 static void take_file(Reader *reader, ImageDraft *draft, const char *name, Span span) {
     if (draft->image.path || draft->made) reader_error(reader, span, "a second picture");
     draft->image.path = picture_find(reader->context, name, draft->image.format, span);
+    draft->file = span;
     reader->failed |= draft->image.path == NULL;
 }
 
@@ -90,7 +93,7 @@ static const WordRule rules[] = {
     {"use_index", WORD_MARK, FIELD(use_index), NULL, false},
     {"use_color", WORD_IGNORED, 0, NULL, false},
     {"use_colour", WORD_IGNORED, 0, NULL, false},
-    {"use_alpha", WORD_IGNORED, 0, NULL, false},
+    {"use_alpha", WORD_MARK, FIELD(use_alpha), NULL, false},
     {"premultiplied", WORD_CUSTOM, 0, read_premultiplied, false},
     {"gamma", WORD_CUSTOM, 0, read_gamma, false},
     {"filter", WORD_CUSTOM, 0, read_share, false},
@@ -120,9 +123,20 @@ static void rehash(ImageMap *image) {
     if (image->path) hash_add(h, image->path, strlen(image->path));
     double numbers[] = {image->map_type,   image->interpolate,   image->once,
                         image->use_index,  image->premultiplied, image->straight,
-                        image->filter_all, image->transmit_all,  image->gamma};
+                        image->filter_all, image->transmit_all,  image->gamma,
+                        image->use_alpha};
     hash_add(h, numbers, sizeof numbers);
     hash_add(h, image->palette_filter, 3 * image->palette_count * sizeof(double));
+}
+
+/* As POV-Ray: the numbers of a pattern are those of the file, and so are colours of formats whose gamma nothing tells. */
+static double usual_gamma(const ImageMap *image, const char *word) {
+    static const char *const plain[] = {"ppm", "pgm", "pnm", "tif", "tiff"};
+    const char *dot = image->path ? strrchr(image->path, '.') : NULL;
+    const char *format = image->format ? image->format : dot ? dot + 1 : "";
+    bool is_plain = strcmp(word, "image_map") != 0;
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(plain); i++) is_plain |= strcasecmp(format, plain[i]) == 0;
+    return is_plain ? 1 : 0;
 }
 
 const ImageMap *image_read(Reader *parent, const Word *word) {
@@ -143,6 +157,11 @@ const ImageMap *image_read(Reader *parent, const Word *word) {
     if (!reader_end_nested(parent, &reader)) return NULL;
     draft.image.palette_filter = draft.palette.items;
     draft.image.palette_count = draft.palette.count / 3;
+    if (draft.image.gamma == 0) draft.image.gamma = usual_gamma(&draft.image, word->text);
     rehash(&draft.image);
+    if (draft.image.path && !picture_file_load(parent->context, &draft.image, draft.file)) {
+        parent->failed = true;
+        return NULL;
+    }
     return arena_copy(parent->context->arena, &draft.image, sizeof draft.image);
 }

@@ -10,8 +10,11 @@ static void read_unmodelled(Reader *reader, const Word *word, void *target) {
 }
 
 static void read_image(Reader *reader, const Word *word, void *target) {
-    read_unmodelled(reader, word, target);
-    ((PigmentDraft *)target)->pigment.image = image_read(reader, word);
+    Pigment *pigment = &((PigmentDraft *)target)->pigment;
+    const ImageMap *image = image_read(reader, word);
+    if (!image || !image->picture) read_unmodelled(reader, word, target);
+    else pigment->kind = strcmp(word->text, "image_map") == 0 ? PATTERN_IMAGE_MAP : PATTERN_IMAGE;
+    pigment->image = image;
 }
 
 static void read_undrawn(Reader *reader, const Word *word, void *target) {

@@ -48,6 +48,8 @@ typedef struct EvalGeometry {
     /* The parts of a file of meshes, in `arena`: one for each colour in it, or (by_color false) one for all; `smooth`: normals where it
      * has none. False, with a line of text in `error` that says why the file is refused. */
     bool (*mesh_file)(void *context, Arena *arena, const char *path, const EvalMeshRequest *request, EvalMeshFile *out, StrBuf *error);
+    /* Loads the picture at image->path into `arena`, as image->gamma says, and adds its content to image->hash. False with a line of text in `error`. */
+    bool (*picture_file)(void *context, Arena *arena, ImageMap *image, StrBuf *error);
     /* A pattern as a function of place: 3 inputs, 1 output; otherwise the same. */
     bool (*pattern_function)(void *context, Arena *arena, const Pigment *pattern, TapeExternal *out);
 } EvalGeometry;

@@ -183,3 +183,11 @@ bool mesh_file_load(const BuildContext *context, const char *name, Span span, co
     refuse_file(context, "mesh file", path, span, &error);
     return false;
 }
+
+bool picture_file_load(const BuildContext *context, ImageMap *image, Span span) {
+    const EvalGeometry *geometry = geometry_of(context);
+    StrBuf error = {0};
+    if (!geometry || !geometry->picture_file || geometry->picture_file(geometry->context, context->arena, image, &error)) return true;
+    refuse_file(context, "picture", image->path, span, &error);
+    return false;
+}

@@ -1,6 +1,7 @@
 #include "pattern/blocks.h"
 #include "pattern/colormap.h"
 #include "pattern/pattern.h"
+#include "pattern/picture_map.h"
 #include "pattern/pigment.h"
 
 #include "tape/noise.h"
@@ -123,6 +124,8 @@ Color pigment_color_at(const Pigment *pigment, const Spot *outer) {
     if (pigment->kind == PATTERN_SOLID) return pigment->color;
     PatternTraits traits = pattern_traits(pigment->kind);
     Spot spot = spot_in_pattern(pigment, outer, traits.warps_itself);
+    if (pigment->kind == PATTERN_IMAGE_MAP)
+        return pigment->image ? picture_map_color(pigment->image, &spot) : pigment->color;
     if (traits.blocks) return block_color(pigment, &spot);
     if (pigment->kind == PATTERN_CELLS) return cells_color(pigment, &spot);
     if (pigment->kind == PATTERN_AVERAGE) return average_color(pigment, &spot);
@@ -136,7 +139,7 @@ Color pigment_color(const Pigment *pigment, Vec3 point, Vec3 normal, double foot
 }
 
 double pigment_value(const Pigment *pigment, Vec3 point, Vec3 normal) {
-    if (pigment->kind == PATTERN_SOLID) return 0;
+    if (pigment->kind == PATTERN_SOLID || pigment->kind == PATTERN_IMAGE_MAP) return 0;
     Spot outer = spot_make(point, normal, 0);
     PatternTraits traits = pattern_traits(pigment->kind);
     Spot spot = spot_in_pattern(pigment, &outer, traits.warps_itself);
@@ -154,6 +157,7 @@ static bool same_color(Color a, Color b) {
 }
 
 bool pigment_is_uniform(const Pigment *pigment, Color *color) {
+    if (pigment->kind == PATTERN_IMAGE_MAP) return false;
     if (pigment->kind == PATTERN_SOLID) return *color = pigment->color, true;
     ColorMap map = colormap_of(pigment);
     if (map.count < (size_t)pattern_traits(pigment->kind).blocks) return false;

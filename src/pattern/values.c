@@ -3,6 +3,7 @@
 #include "pattern/values.h"
 
 #include "pattern/numbers.h"
+#include "pattern/picture_map.h"
 #include "pattern/pigment.h"
 #include "tape/noise.h"
 
@@ -30,7 +31,8 @@ PatternTraits pattern_traits(PatternKind kind) {
     case PATTERN_JULIA:
     case PATTERN_MAGNET_MANDEL:
     case PATTERN_MAGNET_JULIA:
-    case PATTERN_PIGMENT:
+    case PATTERN_PIGMENT: return (PatternTraits){.sampled = true};
+    case PATTERN_IMAGE: return (PatternTraits){.bounded = true};
     case PATTERN_DENSITY:
     case PATTERN_TILING: return (PatternTraits){.sampled = true};
     default: return (PatternTraits){.bounded = true};
@@ -276,6 +278,7 @@ Spread pattern_value(const Pigment *pigment, const Spot *spot) {
     case PATTERN_MAGNET_JULIA: return exactly(fractal_number(pigment, spot->p));
     case PATTERN_PIGMENT: return exactly(source_gray(pigment, spot));
     case PATTERN_DENSITY: return exactly(density_number(pigment, spot->p));
+    case PATTERN_IMAGE: return exactly(pigment->image ? picture_map_value(pigment->image, spot) : 0);
     default: return exactly(0);
     }
 }

@@ -44,6 +44,8 @@ typedef enum PatternKind {
     PATTERN_AVERAGE,  /* no value: all entries, weighted by their positions */
     PATTERN_DENSITY,  /* a grid of numbers in the unit cube */
     PATTERN_TILING,
+    PATTERN_IMAGE_MAP, /* no value: the colours of `image` */
+    PATTERN_IMAGE,     /* its grey */
 } PatternKind;
 
 /* What becomes of a pattern's value, frequency and phase applied. */
@@ -102,10 +104,12 @@ typedef struct ImageMap {
     int map_type;                 /* 0 planar, 1 spherical, 2 cylindrical, 5 toroidal, 7 angular */
     int interpolate;              /* 0 nearest, 2 bilinear, 3 bicubic, 4 normalized distance */
     bool once;                    /* not repeated */
+    bool use_alpha;               /* of a pattern: alpha counts, not grey */
     bool use_index;               /* an index into the palette counts, not its colour */
     bool premultiplied, straight; /* alpha, if the text says so */
     double gamma;                 /* of the file; 0: the format's own; -1: sRGB */
     double filter_all, transmit_all;
+    const struct Picture *picture; /* image/picture.h; NULL: not drawn */
     const double *palette_filter; /* triples: index, filter, transmit */
     size_t palette_count;
 } ImageMap;
@@ -155,7 +159,7 @@ struct Pigment {
     const Pigment *source;           /* PATTERN_PIGMENT */
     const DensityGrid *density;      /* PATTERN_DENSITY */
     int interpolation;               /* density: 0, 1 linear, 2 cubic */
-    const ImageMap *image;           /* image_map: stored, not drawn yet; else NULL */
+    const ImageMap *image;           /* PATTERN_IMAGE_MAP, PATTERN_IMAGE; of others: not drawn, or NULL */
     const struct EvalBlock *text;    /* the evaluator's: its text, which changes the pigment of a declared texture; or NULL */
     const InertNote *inert;
     Transform transform;             /* pattern space → space of the textured object */

@@ -1,0 +1,13 @@
+/* image_map and image_pattern: pictures laid over pattern space. */
+#ifndef VTS_PATTERN_PICTURE_MAP_H
+#define VTS_PATTERN_PICTURE_MAP_H
+
+#include "pattern/spot.h"
+#include "scene/scene.h"
+
+/* The picture's colour at a spot of pattern space. */
+Color picture_map_color(const ImageMap *image, const Spot *spot);
+/* Its grey; 1 - alpha where the text asks for that and the picture has one. */
+double picture_map_value(const ImageMap *image, const Spot *spot);
+
+#endif

@@ -41,6 +41,15 @@ static Vec3 place_in_bounds(const MatterHit *hit) {
     return vec3_add(b.min, vec3_mul(size, vec3_from_f(hit->place)));
 }
 
+/* The colour of matter under the cone: a texel's own texture lives in its bounds, one laid over it by the skin in the scene. */
+static Vec3f matter_color(const MatterHit *hit, const Cone *cone, double t) {
+    if (hit->look->uniform) return hit->look->color;
+    if (hit->look != &hit->matter->look) return look_color(hit->look, cone_point(cone, t), vec3(0, 0, 0), cone_diameter(cone, t));
+    Vec3 size = vec3_sub(hit->texel->def->bounds.max, hit->texel->def->bounds.min);
+    double unit = fmax(size.x, fmax(size.y, size.z)); /* of texel space */
+    return look_color(hit->look, place_in_bounds(hit), vec3(0, 0, 0), unit * (double)hit->width);
+}
+
 /* Shades a segment for all lights; returns the light that needs no shadow test. */
 static Vec3f shade_segment(const Tracer *tr, const Cone *cone, const SkinSegment *segment, const LightRay *rays, Vec3f *direct) {
     size_t lights = tr->compiled->scene->light_count;
@@ -49,9 +58,7 @@ static Vec3f shade_segment(const Tracer *tr, const Cone *cone, const SkinSegment
     for (int i = 0; i < segment->hit_count; i++) {
         const MatterHit *hit = &segment->hits[i];
         const Look *look = hit->look;
-        /* A texel's own texture lives in its bounds, one laid over it by the skin in the scene. */
-        Vec3 place = look == &hit->matter->look ? place_in_bounds(hit) : cone_point(cone, (segment->t0 + segment->t1) / 2);
-        Vec3f color = look->uniform ? look->color : look_color(look, place, vec3(0, 0, 0), (double)segment->voxel_world);
+        Vec3f color = matter_color(hit, cone, (segment->t0 + segment->t1) / 2);
         color = vec3f_mul(color, hit->tint);
         ambient = vec3f_madd(ambient, vec3f_add(vec3f_mul(look->ambient, color), vec3f_mul(look->emission, color)), hit->share);
         for (size_t l = 0; l < lights; l++) {

@@ -57,7 +57,7 @@ static VoxelFit fit_voxels(const TexturePlace *place, Vec3f extent, float finest
     Vec3 area = vec3(vec3_dot(vec3_cross(row[1], row[2]), d), vec3_dot(vec3_cross(row[2], row[0]), d),
                      vec3_dot(vec3_cross(row[0], row[1]), d));
     float side = (float)(width * sqrt(vec3_length(area)));
-    return (VoxelFit){.lod = side > finest_voxel ? log2f(side / finest_voxel) : 0, .voxel = float_max(side, finest_voxel)};
+    return (VoxelFit){.lod = side > finest_voxel ? log2f(side / finest_voxel) : 0, .voxel = float_max(side, finest_voxel), .width = side};
 }
 
 /* Chooses voxels and the length of steps for all texels at `place`. */
@@ -69,6 +69,7 @@ static void fit_span(const SkinMarch *m, const TexturePlace *place, double t, Ma
         const PlacedTexel *placed = &m->skin->texels[i];
         float speed;
         span->fits[i] = fit_voxels(place, placed->finest_extent, placed->finest_voxel, d, width, &speed);
+        span->fits[i].width *= 1 / m->settings->voxel_width;
         span->fits[i].coarsening = exp2f(float_min(span->fits[i].lod, (float)(placed->levels - 1)));
         if (!(speed > 0)) continue;
         side = float_min(side, span->fits[i].voxel / speed);
@@ -501,6 +502,7 @@ static void sample_copy(SkinMarch *m, size_t i, const CopyOnWay *on_way, StepSam
         MatterHit *hit = &out->hits[out->hit_count++];
         *hit = (MatterHit){.matter = &texel->matter[k], .look = placed->look ? placed->look : &texel->matter[k].look,
                            .tint = copy->tint, .share = tau, .texel = texel,
+                           .width = fit->width,
                            .place = {at.x / texel->extent.x, at.y / texel->extent.y, at.z / texel->extent.z}};
         hit->s = to_world(&v.s, copy, &m->span.place);
     }

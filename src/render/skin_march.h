@@ -39,6 +39,7 @@ typedef struct MatterHit {
     float share;          /* of the step's optical depth */
     Sym3f s;              /* world space, any scale */
     Vec3f place;          /* in the texel's bounds, for its pigment: fractions of the box */
+    float width;          /* of the cone there, texel space */
     const BuiltTexel *texel;
 } MatterHit;
 
@@ -73,6 +74,7 @@ enum { TILES_KEPT = 16 }; /* by the low bits of iu and iv; they stay from cone t
 typedef struct VoxelFit {
     float lod;   /* not clamped above */
     float voxel; /* side of the voxels wanted, texel space */
+    float width; /* of the cone, texel space */
     float coarsening; /* 2^lod, of lod clamped to the levels there are */
 } VoxelFit;
 

@@ -99,6 +99,30 @@ static void warn_idle_settings(const GlobalSettings *s, DiagList *diags) {
         diag_warning(diags, (Span){0}, "global_settings: 'detail' has no effect in this version");
 }
 
+static const BoxTree *tree_over_skins(const CompiledScene *compiled) {
+    Box3 *bounds = arena_new_array(compiled->arena, Box3, compiled->skin_count);
+    for (size_t i = 0; i < compiled->skin_count; i++) bounds[i] = compiled->skins[i].bounds;
+    return box_tree_build(bounds, compiled->skin_count, compiled->arena);
+}
+
+typedef struct SkinsMet {
+    uint32_t *skins;
+    size_t count;
+} SkinsMet;
+
+static void meet_skin(void *context, uint32_t skin) {
+    SkinsMet *met = context;
+    size_t i = met->count++;
+    for (; i > 0 && met->skins[i - 1] > skin; i--) met->skins[i] = met->skins[i - 1];
+    met->skins[i] = skin;
+}
+
+size_t compiled_skins_met(const CompiledScene *compiled, const Ray *ray, double t_max, uint32_t *skins) {
+    SkinsMet met = {skins, 0};
+    box_tree_ray(compiled->skin_tree, ray, 0, &t_max, meet_skin, &met);
+    return met.count;
+}
+
 CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, Arena *arena, DiagList *diags, CompiledScene *out) {
     double start = stopwatch_wall();
     size_t errors = diags->error_count;
@@ -123,6 +147,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
         if (ok) out->skin_count++; /* also when interrupted: to be destroyed */
         if (options->interrupted && *options->interrupted) return COMPILE_INTERRUPTED;
     }
+    out->skin_tree = tree_over_skins(out);
     if (options->exact && out->skin_count) out->exact = exact_skins_build(out->skins, out->skin_count, hierarchy_device(out->hierarchy));
     if (options->exact && out->skin_count && !out->exact) memory_budget_fail(options->memory);
     out->build_seconds = stopwatch_wall() - start;

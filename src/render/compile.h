@@ -8,6 +8,7 @@
 #include "render/hierarchy.h"
 #include "render/skin.h"
 #include "render/skin_march.h"
+#include "shape/box_tree.h"
 #include "texel/texel_cache.h"
 
 /* What one frame asks of the compiled scene: its camera as cones. */
@@ -36,6 +37,7 @@ typedef struct CompiledScene {
     Hierarchy *hierarchy; /* explicit objects */
     CompiledSkin *skins;
     size_t skin_count;
+    const BoxTree *skin_tree; /* over the bounds of the skins */
     ExactSkins *exact;    /* the skins' geometry, for the reference; else NULL */
     BuiltTexel **texels;  /* every texel built, for the report */
     size_t texel_count;
@@ -52,6 +54,8 @@ typedef enum CompileStatus { COMPILE_OK, COMPILE_FAILED /* see diags */, COMPILE
 /* `arena` owns the result but for the voxels and hierarchies: compiled_scene_destroy() releases those. */
 CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, Arena *arena, DiagList *diags, CompiledScene *out);
 void compiled_scene_destroy(CompiledScene *compiled);
+/* The skins whose bounds the ray meets between t = 0 and t_max, by number, ascending. `met` has room for all skins; returns how many. */
+size_t compiled_skins_met(const CompiledScene *compiled, const Ray *ray, double t_max, uint32_t *met);
 void compiled_scene_print(const CompiledScene *compiled, StrBuf *out);
 
 /* The cone through the picture's point (x, y), in pixels from the upper left corner; `width_px` is its width in pixels. */

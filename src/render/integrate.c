@@ -26,6 +26,7 @@ void tracer_init(Tracer *tracer, const CompiledScene *compiled, Arena *arena) {
                        .marches = arena_new_array(arena, SkinMarch, skins),
                        .segments = arena_new_array(arena, SkinSegment, skins),
                        .has_segment = arena_new_array(arena, bool, skins),
+                       .met = arena_new_array(arena, uint32_t, skins),
                        .records = arena_new_array(arena, ShadeRecord, MOST_SHADE_RECORDS),
                        .direct = arena_new_array(arena, Vec3f, MOST_SHADE_RECORDS * (compiled->scene->light_count + 1)),
                        .light_rays = arena_new_array(arena, LightRay, compiled->scene->light_count)};
@@ -74,15 +75,20 @@ static size_t gather(Tracer *tr, const Cone *cone, double t_max, float *transmit
     const CompiledScene *scene = tr->compiled;
     size_t lights = scene->scene->light_count, count = 0;
     LightRay *rays = tr->light_rays;
-    for (size_t i = 0; i < scene->skin_count; i++) {
+    const Ray axis = {cone->origin, cone->direction};
+    size_t met = compiled_skins_met(scene, &axis, t_max, tr->met);
+    for (size_t k = 0; k < met; k++) {
+        size_t i = tr->met[k];
         skin_march_begin(&tr->marches[i], cone, 0, t_max, &scene->march, &tr->counters, true);
         tr->has_segment[i] = skin_march_next(&tr->marches[i], &tr->segments[i]);
     }
     *transmittance = 1;
     while (count < MOST_SHADE_RECORDS && *transmittance > OPAQUE_BELOW) {
         int nearest = -1;
-        for (size_t i = 0; i < scene->skin_count; i++)
+        for (size_t k = 0; k < met; k++) {
+            size_t i = tr->met[k];
             if (tr->has_segment[i] && (nearest < 0 || tr->segments[i].t0 < tr->segments[nearest].t0)) nearest = (int)i;
+        }
         if (nearest < 0) break;
         const SkinSegment *segment = &tr->segments[nearest];
         ShadeRecord *record = &tr->records[count];

@@ -18,6 +18,7 @@ typedef struct Tracer {
     SkinLight light;
     SkinSegment *segments;     /* likewise: the next of each */
     bool *has_segment;
+    uint32_t *met;             /* the skins that the cone meets */
     ShadeRecord *records;
     Vec3f *direct;             /* [record][light] */
     LightRay *light_rays;      /* [light], at the segment that is being shaded */

@@ -6,7 +6,8 @@ static const float DARK_BELOW = 1.0f / 64;
 static const double SURROUNDINGS = 1.5;
 
 void skin_light_init(SkinLight *light, const CompiledScene *compiled, TraceCounters *counters, Arena *arena) {
-    *light = (SkinLight){compiled, arena_new_array(arena, SkinMarch, compiled->skin_count + 1), counters};
+    *light = (SkinLight){compiled, arena_new_array(arena, SkinMarch, compiled->skin_count + 1),
+                         arena_new_array(arena, uint32_t, compiled->skin_count + 1), counters};
     for (size_t i = 0; i < compiled->skin_count; i++) skin_march_init(&light->marches[i], &compiled->skins[i], arena);
 }
 
@@ -19,7 +20,10 @@ static float rest_of_march(SkinMarch *march, float transmittance) {
 float skin_light_through(SkinLight *light, const Cone *cone, double t_max, int but) {
     const CompiledScene *scene = light->compiled;
     float transmittance = 1;
-    for (size_t i = 0; i < scene->skin_count && transmittance > 0; i++) {
+    const Ray axis = {cone->origin, cone->direction};
+    size_t met = compiled_skins_met(scene, &axis, t_max, light->met);
+    for (size_t k = 0; k < met && transmittance > 0; k++) {
+        uint32_t i = light->met[k];
         if ((int)i == but) continue;
         SkinMarch *march = &light->marches[i];
         skin_march_begin(march, cone, 0, t_max, &scene->shadow_march, light->counters, false);

@@ -8,6 +8,7 @@
 typedef struct SkinLight {
     const CompiledScene *compiled;
     SkinMarch *marches; /* one for each skin */
+    uint32_t *met;      /* the skins that a cone meets */
     TraceCounters *counters;
 } SkinLight;
 

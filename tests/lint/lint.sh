@@ -82,7 +82,7 @@ rule_calls() {
 }
 
 rule_names() {
-  find src tests cmake bench -name '*.[ch]' -o -name '*.cpp' -o -name '*.sh' -o -name '*.cmake' 2>/dev/null |
+  find src tests cmake bench \( -name '*.[ch]' -o -name '*.cpp' -o -name '*.sh' -o -name '*.cmake' \) ! -path 'bench/*/run.sh' 2>/dev/null |
     awk -F/ '{ if ($NF in first) print $0 " and " first[$NF] " have one name"; else first[$NF] = $0 }'
 }
 

@@ -113,12 +113,22 @@ static bool starts_curve(const Chart *chart, size_t i) {
     return curve && (i == 0 || !chart->points[i - 1].curve || strcmp(curve, chart->points[i - 1].curve) != 0);
 }
 
+/* One past the last point of the curve that starts at i; *drawn tells whether any of them is. */
+static size_t end_of_curve(const Chart *chart, size_t i, bool *drawn) {
+    size_t k = i;
+    *drawn = false;
+    for (; k < chart->count && (k == i || !starts_curve(chart, k)); k++) *drawn |= is_drawn(&chart->points[k]);
+    return k;
+}
+
+/* Each under the number of its first point; gnuplot complains of empty ones. */
 static void put_curves(FILE *out, const Chart *chart) {
-    size_t number = 0;
-    for (size_t i = 0; i < chart->count; i++) {
-        if (!starts_curve(chart, i)) continue;
-        fprintf(out, "$curve%zu << EOD\n", ++number);
-        for (size_t k = i; k < chart->count && (k == i || !starts_curve(chart, k)); k++)
+    bool drawn;
+    for (size_t i = 1, end; i < chart->count; i = end) { /* the scene as it is has no curve */
+        end = end_of_curve(chart, i, &drawn);
+        if (!drawn) continue;
+        fprintf(out, "$curve%zu << EOD\n", i);
+        for (size_t k = i; k < end; k++)
             if (is_drawn(&chart->points[k])) put_point(out, &chart->points[k]);
         fputs("EOD\n", out);
     }
@@ -138,9 +148,12 @@ static bool put_front(FILE *out, const Chart *chart) {
     qsort(front, count, sizeof *front, by_time);
     fputs("$front << EOD\n", out);
     for (size_t i = 0; i < count; i++) put_point(out, front[i]);
-    fputs("EOD\n$plain << EOD\n", out);
-    if (is_drawn(&chart->points[0])) put_point(out, &chart->points[0]);
     fputs("EOD\n", out);
+    if (is_drawn(&chart->points[0])) {
+        fputs("$plain << EOD\n", out);
+        put_point(out, &chart->points[0]);
+        fputs("EOD\n", out);
+    }
     free(front);
     return true;
 }
@@ -163,7 +176,7 @@ static void put_axis(FILE *out, char axis, double least, double most) {
 
 /* A margin of a factor on both sides, which gnuplot does not leave on logarithmic axes. */
 static void put_ranges(FILE *out, const Chart *chart) {
-    double t0 = INFINITY, t1 = 0, e0 = INFINITY, e1 = 0;
+    double t0 = HUGE_VAL, t1 = 0, e0 = HUGE_VAL, e1 = 0;
     for (size_t i = 0; i < chart->count; i++) {
         const ChartPoint *p = &chart->points[i];
         if (!is_drawn(p)) continue;
@@ -198,16 +211,19 @@ static void put_caption(FILE *out, const Chart *chart, const Settings *settings)
 
 static void put_plot(FILE *out, const Chart *chart) {
     size_t number = 0;
+    bool drawn;
     fputs("plot $front using 1:2 with lines dashtype 2 linewidth 2 linecolor rgb '#a0a0a0' title 'Pareto front'", out);
-    for (size_t i = 0; i < chart->count; i++) {
-        if (!starts_curve(chart, i)) continue;
-        number++;
-        fprintf(out, ", \\\n  $curve%zu using 1:2 with linespoints linetype %zu pointtype 7 pointsize 0.7 title ", number, number);
+    for (size_t i = 1, end; i < chart->count; i = end) {
+        end = end_of_curve(chart, i, &drawn);
+        if (!drawn) continue;
+        fprintf(out, ", \\\n  $curve%zu using 1:2 with linespoints linetype %zu pointtype 7 pointsize 0.7 title ", i, ++number);
         put_quoted(out, chart->points[i].curve);
-        fprintf(out, ", \\\n  $curve%zu using 1:2:3 with labels left offset 0.8, 0.5 font ',9' notitle", number);
+        fprintf(out, ", \\\n  $curve%zu using 1:2:3 with labels left offset 0.8, 0.5 font ',9' notitle", i);
     }
     fputs(", \\\n  $front using 1:2 with points pointtype 6 pointsize 1.6 linecolor rgb '#606060' title 'on the front'", out);
-    fputs(", \\\n  $plain using 1:2 with points pointtype 12 pointsize 2.4 linewidth 2 linecolor rgb '#c00000' title 'as the scene has it'\n", out);
+    if (is_drawn(&chart->points[0]))
+        fputs(", \\\n  $plain using 1:2 with points pointtype 12 pointsize 2.4 linewidth 2 linecolor rgb '#c00000' title 'as the scene has it'", out);
+    fputc('\n', out);
 }
 
 char *chart_script(const Chart *chart, const Settings *settings, const char *terminal) {

@@ -181,7 +181,7 @@ static void judge_noise(const Work *w) {
 static int write_results(const Work *w) {
     char *csv = chart_csv(&w->chart, w->settings), *script = chart_script(&w->chart, w->settings, chart_terminal(w->plot));
     int status = !csv || !script ? VTS_ERROR_MEMORY : report_file_write(w->settings, w->csv, csv) ? VTS_OK : VTS_ERROR_FILE;
-    if (status == VTS_OK) {
+    if (status == VTS_OK && chart_least_error(&w->chart) > 0) { /* a logarithm has room for something */
         PlotStatus plot = chart_plot(w->settings, script, w->plot);
         if (plot == PLOT_FAILED) status = VTS_ERROR_FILE;
         if (plot == PLOT_NO_PROGRAM) fprintf(stderr, "%s: note: gnuplot, which draws the plot, was not found; the numbers are in '%s'\n", w->settings->program, w->csv);

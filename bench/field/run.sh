@@ -97,8 +97,8 @@ point() {
 knob_works() { ! "$vts" render "$out/scenes/near.vts" -s 16x12 --set "$1" -o "$out/pictures/knob.pfm" --progress none 2>&1 | grep -qE "no effect|error"; }
 
 echo "scene,program,setting,cpu_s,rmse_to_straight,rmse_to_bent" >"$csv"
+for scene in lawn near mid far; do make_scene $scene; done
 for scene in lawn near mid far; do
-  make_scene $scene
   make_truth $scene
   t=$out/truth/$scene-$size
   echo "# $scene: facets $(awk "BEGIN {a = $(error "$t-peer1.pfm" "$t-vts"); b = $(rmse "$t-peer1.pfm" "$t-peer2.pfm"); e = a * a - b * b / 2; printf \"%.5f\", (e > 0 ? sqrt(e) : 0)}")," \

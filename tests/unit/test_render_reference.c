@@ -21,7 +21,10 @@ typedef struct Bed {
     double tiles;       /* along u and v */
     Vec3 (*foot)(double u, double v);
     Vec3 (*height)(double u, double v);
+    double w_foot, w_tip; /* heights of the texel at foot and top; both 0: 0 and 1 */
 } Bed;
+
+static double bed_tip(const Bed *bed) { return bed->w_foot == bed->w_tip ? 1 : bed->w_tip; }
 
 static Vec3 between_corners(const Bed *bed, Vec3 (*f)(double u, double v), int i, int j, double s, double t) {
     double u0 = (double)i / bed->nu, v0 = (double)j / bed->nv, u1 = (i + 1.0) / bed->nu, v1 = (j + 1.0) / bed->nv;
@@ -32,13 +35,17 @@ static Vec3 between_corners(const Bed *bed, Vec3 (*f)(double u, double v), int i
 static Vec3 bed_place(const Bed *bed, Vec3 x) {
     double u = x.x / bed->tiles * bed->nu, v = x.z / bed->tiles * bed->nv;
     int i = int_clamp((int)floor(u), 0, bed->nu - 1), j = int_clamp((int)floor(v), 0, bed->nv - 1);
-    return vec3_madd(between_corners(bed, bed->foot, i, j, u - i, v - j), between_corners(bed, bed->height, i, j, u - i, v - j), x.y);
+    return vec3_madd(between_corners(bed, bed->foot, i, j, u - i, v - j), between_corners(bed, bed->height, i, j, u - i, v - j),
+                     (x.y - bed->w_foot) / (bed_tip(bed) - bed->w_foot));
 }
 
 static Vec3 flat_foot(double u, double v) { return vec3(4 * u - 2, 0, 4 * v - 2); }
 static Vec3 flat_height(double u, double v) { return (void)u, (void)v, vec3(0, 0.8, 0); }
 static Vec3 hill_foot(double u, double v) { return vec3(4 * u - 2, 0.9 * sin(3 * u) * sin(2.6 * v) + 0.2 * u, 4 * v - 2); }
 static Vec3 hill_height(double u, double v) { return vec3(0.25 * sin(4 * v), 0.7 + 0.2 * u, 0.3 * u - 0.1); }
+
+static Vec3 mirrored_foot(double u, double v) { return hill_foot(1 - u, v); }
+static Vec3 mirrored_height(double u, double v) { return hill_height(1 - u, v); }
 
 /* ---- content ---- */
 
@@ -98,8 +105,8 @@ static Vec3 out_of_copy(const TexelCopy *copy, Vec3 p) {
 }
 
 /* All copies of tiles [from, to)², as the compiled skin chooses them. */
-static const MeshData *write_out(SkinScene *s, const Bed *bed, const Content *content, int from, int to, int cuts) {
-    const PlacedTexel *placed = &s->compiled.skins[0].texels[0];
+static const MeshData *write_out(SkinScene *s, size_t texel, const Bed *bed, const Content *content, int from, int to, int cuts) {
+    const PlacedTexel *placed = &s->compiled.skins[0].texels[texel];
     size_t most = (size_t)((to - from) * (to - from)) * CONTENT * (size_t)(cuts * cuts);
     Explicit e = {arena_new_array(&s->arena, Vec3, 3 * most), arena_push(&s->arena, most * sizeof *e.triangles), 0, 0, most};
     int own = ((2 * placed->reach + 1) * (2 * placed->reach + 1)) / 2;
@@ -168,7 +175,31 @@ typedef struct Trial {
     Vec3 eye;
     double angle;        /* of the view: narrow where copies beyond the border are missing from the skin */
     double most;         /* RMSE */
+    bool superimposed;   /* two texels in one layer */
 } Trial;
+
+/* Another texel in the same layer, of other content. */
+static void superimpose(SkinScene *s, RandomStream *r, Content *content, const Trial *trial) {
+    MeshData *mesh = arena_new(&s->arena, MeshData);
+    Object *leaves = arena_new(&s->arena, Object);
+    const Object **list = arena_new_array(&s->arena, const Object *, 1);
+    TexelLayer *layer = arena_new(&s->arena, TexelLayer);
+    TexelDef *texel = arena_new(&s->arena, TexelDef);
+    SkinTexel *both = arena_new_array(&s->arena, SkinTexel, 2);
+    content_make(content, r, trial->lo, trial->hi);
+    *mesh = s->leaf_mesh;
+    mesh->vertices = arena_copy(&s->arena, content->corner, sizeof content->corner);
+    *leaves = (Object){.kind = OBJECT_TRIANGLES, .as.mesh = mesh};
+    *list = leaves;
+    *layer = (TexelLayer){.contents = list, .content_count = 1};
+    *texel = s->texel;
+    texel->name = "more leaves";
+    texel->layers = layer;
+    both[0] = s->placed;
+    both[1] = (SkinTexel){.texel = texel, .density = 1};
+    s->skin.texels = both;
+    s->skin.texel_count = 2;
+}
 
 /* The skin's picture and that of its copies written out; a ground below for the shadows. */
 static void compare_pictures(const Trial *trial) {
@@ -183,19 +214,23 @@ static void compare_pictures(const Trial *trial) {
     scene_content(&s, &content, trial->cyclic);
     skin_scene_grid(&s, trial->bed.nu, trial->bed.nv, trial->bed.foot, trial->bed.height);
     s.skin.mapping.repeat_u = s.skin.mapping.repeat_v = trial->bed.tiles;
+    s.skin.mapping.w_foot = trial->bed.w_foot, s.skin.mapping.w_tip = bed_tip(&trial->bed);
     s.skin.jitter.instance = trial->jitter;
-    Object ground = {.kind = OBJECT_PLANE, .as.plane = {{0, 1, 0}, -0.4}}, copies = {.kind = OBJECT_TRIANGLES};
-    const Object *objects[2] = {&ground, &copies};
+    Object ground = {.kind = OBJECT_PLANE, .as.plane = {{0, 1, 0}, -0.4}}, copies = {.kind = OBJECT_TRIANGLES}, more = copies;
+    const Object *objects[3] = {&ground, &copies, &more};
+    Content second;
+    if (trial->superimposed) superimpose(&s, &r, &second, trial);
     s.scene.objects = objects;
     s.scene.object_count = 1;
     s.scene.skins = s.skins;
     s.scene.skin_count = 1;
     compile(&s);
     picture(&s, &skin);
-    copies.as.mesh = write_out(&s, &trial->bed, &content, trial->from, trial->to, trial->cuts);
+    if (trial->superimposed) more.as.mesh = write_out(&s, 1, &trial->bed, &second, trial->from, trial->to, trial->cuts);
+    copies.as.mesh = write_out(&s, 0, &trial->bed, &content, trial->from, trial->to, trial->cuts);
     compiled_scene_destroy(&s.compiled);
     s.scene.skin_count = 0;
-    s.scene.object_count = 2;
+    s.scene.object_count = trial->superimposed ? 3 : 2;
     compile(&s);
     picture(&s, &plain);
     assert_true(image_compare(&plain, &skin, &difference, NULL));
@@ -208,31 +243,99 @@ static void compare_pictures(const Trial *trial) {
 }
 
 static const Vec3 NEAR_EYE = {0.6, 3.5, -4.5};
-static const Bed FLAT = {1, 1, 5, flat_foot, flat_height}, HILL = {4, 3, 6, hill_foot, hill_height};
+static const Bed FLAT = {1, 1, 5, flat_foot, flat_height, 0, 0}, HILL = {4, 3, 6, hill_foot, hill_height, 0, 0};
 
 static void flat_tiles_are_the_objects_they_repeat(void **state) {
     (void)state;
-    compare_pictures(&(Trial){"flat", FLAT, 0, 0.25, 0.75, 0, 5, 1, {0}, NEAR_EYE, 50, 0.0025});
-    compare_pictures(&(Trial){"flat, edge-on", FLAT, 0, 0.25, 0.75, 0, 5, 1, {0}, {0.1, 0.4, -6}, 40, 0.0025});
+    compare_pictures(&(Trial){"flat", FLAT, 0, 0.25, 0.75, 0, 5, 1, {0}, NEAR_EYE, 50, 0.0025, false});
+    compare_pictures(&(Trial){"flat, edge-on", FLAT, 0, 0.25, 0.75, 0, 5, 1, {0}, {0.1, 0.4, -6}, 40, 0.0025, false});
 }
 
 static void bent_tiles_are_the_objects_bent(void **state) {
     (void)state;
-    compare_pictures(&(Trial){"hill", HILL, 0, 0.25, 0.75, 0, 6, 12, {0}, NEAR_EYE, 50, 0.0025});
+    compare_pictures(&(Trial){"hill", HILL, 0, 0.25, 0.75, 0, 6, 12, {0}, NEAR_EYE, 50, 0.0025, false});
 }
 
 static void content_goes_on_across_borders_of_tiles(void **state) {
     (void)state;
     const unsigned both = TEXEL_CYCLIC_X | TEXEL_CYCLIC_Z;
-    compare_pictures(&(Trial){"cyclic", {1, 1, 7, flat_foot, flat_height}, both, -0.3, 1.3, -1, 8, 1, {0}, {0, 4, -0.6}, 24, 0.0025});
-    compare_pictures(&(Trial){"cyclic hill", {4, 3, 7, hill_foot, hill_height}, both, -0.3, 1.3, -1, 8, 12, {0}, {0, 4, -0.6}, 24, 0.0025});
+    compare_pictures(&(Trial){"cyclic", {1, 1, 7, flat_foot, flat_height, 0, 0}, both, -0.3, 1.3, -1, 8, 1, {0}, {0, 4, -0.6}, 24, 0.0025, false});
+    compare_pictures(&(Trial){"cyclic hill", {4, 3, 7, hill_foot, hill_height, 0, 0}, both, -0.3, 1.3, -1, 8, 12, {0}, {0, 4, -0.6}, 24, 0.0025, false});
 }
 
 static void jittered_copies_lie_where_the_placing_says(void **state) {
     (void)state;
     InstanceJitter jitter = {.present = true, .displace = 0.8, .rotate = 360, .scale = 0.5, .mirror = true, .density = 0.8};
-    compare_pictures(&(Trial){"jittered", {1, 1, 9, flat_foot, flat_height}, 0, 0.3, 0.7, -2, 11, 1, jitter, {0, 4, -0.6}, 24, 0.0025});
-    compare_pictures(&(Trial){"jittered hill", {4, 3, 9, hill_foot, hill_height}, 0, 0.3, 0.7, -2, 11, 10, jitter, {0, 4, -0.6}, 24, 0.0025});
+    compare_pictures(&(Trial){"jittered", {1, 1, 9, flat_foot, flat_height, 0, 0}, 0, 0.3, 0.7, -2, 11, 1, jitter, {0, 4, -0.6}, 24, 0.0025, false});
+    compare_pictures(&(Trial){"jittered hill", {4, 3, 9, hill_foot, hill_height, 0, 0}, 0, 0.3, 0.7, -2, 11, 10, jitter, {0, 4, -0.6}, 24, 0.0025, false});
+}
+
+static void mirrored_skins_are_the_objects_mirrored(void **state) {
+    (void)state;
+    compare_pictures(&(Trial){"mirrored hill", {4, 3, 6, mirrored_foot, mirrored_height, 0, 0}, 0, 0.25, 0.75, 0, 6, 12, {0}, NEAR_EYE, 50, 0.0025, false});
+}
+
+static void heights_of_the_texel_may_be_shifted_and_stretched(void **state) {
+    (void)state;
+    compare_pictures(&(Trial){"w from -0.4 to 1.7", {4, 3, 6, hill_foot, hill_height, -0.4, 1.7}, 0, 0.25, 0.75, 0, 6, 12, {0}, NEAR_EYE, 50, 0.0025, false});
+    compare_pictures(&(Trial){"w from 1.2 to -0.3", {4, 3, 6, hill_foot, hill_height, 1.2, -0.3}, 0, 0.25, 0.75, 0, 6, 12, {0}, NEAR_EYE, 50, 0.0025, false});
+}
+
+static void superimposed_texels_are_both_there(void **state) {
+    (void)state;
+    InstanceJitter jitter = {.present = true, .displace = 0.8, .rotate = 360, .scale = 0.5, .mirror = true, .density = 0.8};
+    compare_pictures(&(Trial){"two texels", HILL, 0, 0.25, 0.75, 0, 6, 12, {0}, NEAR_EYE, 50, 0.0025, true});
+    compare_pictures(&(Trial){"two texels, jittered", {4, 3, 9, hill_foot, hill_height, 0, 0}, 0, 0.3, 0.7, -2, 11, 10, jitter, {0, 4, -0.6}, 24, 0.0025, true});
+}
+
+/* ---- texels placed as objects ---- */
+
+enum { PLACED = 60 };
+
+/* Turned, sheared, stretched and, every other one, mirrored. */
+static Affine any_place(RandomStream *r, int number) {
+    Affine place = {.offset = {between(r, -2, 1.5), between(r, -0.3, 0.5), between(r, -2, 1.5)}};
+    for (int k = 0; k < 3; k++)
+        place.linear.c[k] = vec3(between(r, -0.3, 0.3) + 0.7 * (k == 0), between(r, -0.3, 0.3) + 0.7 * (k == 1), between(r, -0.3, 0.3) + 0.7 * (k == 2));
+    if (number & 1) place.linear.c[0] = vec3_negate(place.linear.c[0]);
+    return place;
+}
+
+static void texels_placed_as_objects_are_their_contents(void **state) {
+    (void)state;
+    SkinScene s;
+    Light light;
+    Content content;
+    RandomStream r = {13};
+    Affine places[PLACED];
+    Object placed[2][PLACED];
+    const Object *objects[PLACED];
+    Image pictures[2];
+    ImageDifference difference;
+    stage(&s, &light, NEAR_EYE, 28);
+    content_make(&content, &r, 0.25, 0.75);
+    scene_content(&s, &content, 0);
+    for (int i = 0; i < PLACED; i++) {
+        places[i] = any_place(&r, i);
+        placed[0][i] = (Object){.kind = OBJECT_TEXEL, .place = &places[i], .as.texel = &s.texel};
+        placed[1][i] = (Object){.kind = OBJECT_TRIANGLES, .place = &places[i], .as.mesh = &s.leaf_mesh};
+    }
+    s.scene.objects = objects;
+    s.scene.object_count = PLACED;
+    for (int k = 0; k < 2; k++) {
+        for (int i = 0; i < PLACED; i++) objects[i] = &placed[k][i];
+        compile(&s);
+        assert_int_equal(s.compiled.skin_count, k == 0 ? PLACED : 0);
+        picture(&s, &pictures[k]);
+        if (k == 0) compiled_scene_destroy(&s.compiled);
+    }
+    assert_true(image_compare(&pictures[1], &pictures[0], &difference, NULL));
+    printf("placed as objects: rmse %.5f, largest %.3f, deviation within the picture %.3f\n", difference.rmse, difference.largest, variation(&pictures[1]));
+    assert_true(variation(&pictures[1]) > 0.05);
+    assert_true(difference.rmse < 0.0025);
+    image_free(&pictures[0]);
+    image_free(&pictures[1]);
+    skin_scene_end(&s);
 }
 
 /* ---- single rays ---- */
@@ -255,7 +358,7 @@ static void rays_meet_the_bent_triangles(void **state) {
     SkinScene plain = {0};
     plain.scene = s.scene;
     plain.scene.skin_count = 0;
-    Object copies = {.kind = OBJECT_TRIANGLES, .as.mesh = write_out(&s, &HILL, &content, 0, 6, 24)};
+    Object copies = {.kind = OBJECT_TRIANGLES, .as.mesh = write_out(&s, 0, &HILL, &content, 0, 6, 24)};
     const Object *objects[1] = {&copies};
     plain.scene.objects = objects;
     plain.scene.object_count = 1;
@@ -379,6 +482,10 @@ int main(void) {
                                        cmocka_unit_test(bent_tiles_are_the_objects_bent),
                                        cmocka_unit_test(content_goes_on_across_borders_of_tiles),
                                        cmocka_unit_test(jittered_copies_lie_where_the_placing_says),
+                                       cmocka_unit_test(mirrored_skins_are_the_objects_mirrored),
+                                       cmocka_unit_test(heights_of_the_texel_may_be_shifted_and_stretched),
+                                       cmocka_unit_test(superimposed_texels_are_both_there),
+                                       cmocka_unit_test(texels_placed_as_objects_are_their_contents),
                                        cmocka_unit_test(rays_meet_the_bent_triangles),
                                        cmocka_unit_test(absurd_skins_end),
                                        cmocka_unit_test(samples_cover_the_pixel_evenly)};

@@ -114,6 +114,9 @@ Mat3 mat3_transpose(const Mat3 *m);
 bool mat3_invert(const Mat3 *m, Mat3 *out);
 
 /* vᵗ S v */
+static inline Sym3f sym3f_madd(const Sym3f *a, const Sym3f *b, float f) {
+    return (Sym3f){a->xx + f * b->xx, a->yy + f * b->yy, a->zz + f * b->zz, a->xy + f * b->xy, a->xz + f * b->xz, a->yz + f * b->yz};
+}
 static inline float sym3f_quadratic(const Sym3f *s, Vec3f v) {
     return s->xx * v.x * v.x + s->yy * v.y * v.y + s->zz * v.z * v.z +
            2 * (s->xy * v.x * v.y + s->xz * v.x * v.z + s->yz * v.y * v.z);

@@ -4,15 +4,37 @@
 
 #include <string.h>
 
-/* Matter met along the cone, shaded but for shadows. */
+/* Matter of one look in some segments on end. Sums over what is met, weighted by its share of the pixel. */
+typedef struct MatterSum {
+    const Look *look;
+    float weight;
+    Vec3f color; /* pigment */
+    Sym3f s;
+} MatterSum;
+enum { MOST_MATTER_SUMS = MOST_MATTER_HITS };
+
+/* Segments on end, which are shaded as one. */
+typedef struct Group {
+    float weight;
+    double t, voxel_world; /* sums, weighted */
+    MatterSum sums[MOST_MATTER_SUMS];
+    int sum_count;
+} Group;
+
+/* A group, shaded but for shadows. */
 struct ShadeRecord {
-    float weight;     /* transmittance before × opacity of the segment */
+    float weight;     /* of its segments: transmittance before × opacity */
     double t;
     double tolerance; /* of finding the place in the skin again */
     uint32_t skin;
     SkinPoint point;  /* where shadows start: a guess */
-    Vec3f ambient;    /* light that no shadow takes away */
+    Vec3f ambient;    /* light that no shadow takes away; as that of lights it includes the weight */
 };
+/* Groups of less weight than this go on growing: where little is seen, little is shaded. */
+static const float GROUP_WEIGHT = 1.0f / 24;
+/* Each level coarser from here on: what is seen through much matter needs less. Voxels twice as wide where a quarter of the light comes
+ * from, and again. */
+static const float COARSER_BELOW[] = {0.3f, 0.08f};
 
 /* A segment that lets less than this through ends the march: a step of 8-bit pictures at most. */
 static const float OPAQUE_BELOW = 1.0f / 256;
@@ -51,32 +73,78 @@ static Vec3f matter_color(const MatterHit *hit, const Cone *cone, double t) {
     return look_color(hit->look, place_in_bounds(hit), vec3(0, 0, 0), unit * (double)hit->width);
 }
 
-/* Shades a segment for all lights; returns the light that needs no shadow test. */
-static Vec3f shade_segment(const Tracer *tr, const Cone *cone, const SkinSegment *segment, const LightRay *rays, Vec3f *direct) {
+static MatterSum *sum_of(Group *group, const Look *look) {
+    for (int i = 0; i < group->sum_count; i++)
+        if (group->sums[i].look == look) return &group->sums[i];
+    if (group->sum_count == MOST_MATTER_SUMS) return &group->sums[MOST_MATTER_SUMS - 1];
+    MatterSum *sum = &group->sums[group->sum_count++];
+    *sum = (MatterSum){.look = look};
+    return sum;
+}
+
+static void group_add(Group *group, const Cone *cone, const SkinSegment *segment, float weight) {
+    double middle = (segment->t0 + segment->t1) / 2;
+    group->weight += weight;
+    group->t += (double)weight * middle;
+    group->voxel_world += (double)(weight * segment->voxel_world);
+    for (int i = 0; i < segment->hit_count; i++) {
+        const MatterHit *hit = &segment->hits[i];
+        MatterSum *sum = sum_of(group, hit->look);
+        float share = weight * hit->share;
+        sum->weight += share;
+        sum->color = vec3f_madd(sum->color, vec3f_mul(matter_color(hit, cone, middle), hit->tint), share);
+        sum->s = sym3f_madd(&sum->s, &hit->s, share);
+    }
+}
+
+/* Shades a group for all lights: `direct`. Returns the light that needs no shadow test. */
+static Vec3f shade_group(const Tracer *tr, const Cone *cone, const Group *group, const LightRay *rays, Vec3f *direct) {
     size_t lights = tr->compiled->scene->light_count;
     Vec3f ambient = {0, 0, 0}, view = vec3f_from(vec3_negate(cone->direction));
     memset(direct, 0, lights * sizeof *direct);
-    for (int i = 0; i < segment->hit_count; i++) {
-        const MatterHit *hit = &segment->hits[i];
-        const Look *look = hit->look;
-        Vec3f color = matter_color(hit, cone, (segment->t0 + segment->t1) / 2);
-        color = vec3f_mul(color, hit->tint);
-        ambient = vec3f_madd(ambient, vec3f_add(vec3f_mul(look->ambient, color), vec3f_mul(look->emission, color)), hit->share);
+    for (int i = 0; i < group->sum_count; i++) {
+        const MatterSum *sum = &group->sums[i];
+        const Look *look = sum->look;
+        if (!(sum->weight > 0)) continue;
+        Vec3f color = vec3f_scale(sum->color, 1 / sum->weight);
+        ambient = vec3f_madd(ambient, vec3f_mul(vec3f_add(look->ambient, look->emission), color), sum->weight);
         for (size_t l = 0; l < lights; l++) {
-            NdfShade shade = ndf_shade(tr->compiled->quadrature, &hit->s, view, vec3f_from(rays[l].direction), &look->sheet);
-            direct[l] = vec3f_madd(direct[l], vec3f_mul(shade_tone(&shade, look, color), rays[l].color), hit->share);
+            NdfShade shade = ndf_shade(tr->compiled->quadrature, &sum->s, view, vec3f_from(rays[l].direction), &look->sheet);
+            direct[l] = vec3f_madd(direct[l], vec3f_mul(shade_tone(&shade, look, color), rays[l].color), sum->weight);
         }
     }
     return ambient;
 }
 
+/* Makes a record of the group, whose last segment is in skin `nearest`, and empties it. */
+static void close_group(Tracer *tr, const Cone *cone, Group *group, int nearest, ShadeRecord *record, Vec3f *direct) {
+    const Scene *scene = tr->compiled->scene;
+    double t = group->t / (double)group->weight;
+    Vec3 point = cone_point(cone, t);
+    for (size_t l = 0; l < scene->light_count; l++) tr->light_rays[l] = light_ray(&scene->lights[l], point);
+    *record = (ShadeRecord){.weight = group->weight, .t = t, .tolerance = 0.02 * group->voxel_world / (double)group->weight,
+                            .skin = (uint32_t)nearest, .point = skin_march_guess(&tr->marches[nearest], t)};
+    record->ambient = shade_group(tr, cone, group, tr->light_rays, direct);
+    *group = (Group){0};
+}
+
+/* Of the first `met` in tr->met. */
+static int nearest_segment(const Tracer *tr, size_t met) {
+    int nearest = -1;
+    for (size_t k = 0; k < met; k++) {
+        size_t i = tr->met[k];
+        if (tr->has_segment[i] && (nearest < 0 || tr->segments[i].t0 < tr->segments[nearest].t0)) nearest = (int)i;
+    }
+    return nearest;
+}
+
 /* Follows the cone through all skins at once, nearest segment first; returns how many records were made. */
 static size_t gather(Tracer *tr, const Cone *cone, double t_max, float *transmittance) {
     const CompiledScene *scene = tr->compiled;
-    size_t lights = scene->scene->light_count, count = 0;
-    LightRay *rays = tr->light_rays;
     const Ray axis = {cone->origin, cone->direction};
-    size_t met = compiled_skins_met(scene, &axis, t_max, tr->met);
+    size_t stride = scene->scene->light_count + 1, count = 0, met = compiled_skins_met(scene, &axis, t_max, tr->met);
+    Group group = {0};
+    int coarser = 0, last = -1;
     for (size_t k = 0; k < met; k++) {
         size_t i = tr->met[k];
         skin_march_begin(&tr->marches[i], cone, 0, t_max, &scene->march, &tr->counters, true);
@@ -84,23 +152,25 @@ static size_t gather(Tracer *tr, const Cone *cone, double t_max, float *transmit
     }
     *transmittance = 1;
     while (count < MOST_SHADE_RECORDS && *transmittance > OPAQUE_BELOW) {
-        int nearest = -1;
-        for (size_t k = 0; k < met; k++) {
-            size_t i = tr->met[k];
-            if (tr->has_segment[i] && (nearest < 0 || tr->segments[i].t0 < tr->segments[nearest].t0)) nearest = (int)i;
-        }
+        int nearest = nearest_segment(tr, met);
         if (nearest < 0) break;
         const SkinSegment *segment = &tr->segments[nearest];
-        ShadeRecord *record = &tr->records[count];
-        double t = (segment->t0 + segment->t1) / 2;
-        Vec3 point = cone_point(cone, t);
-        for (size_t l = 0; l < lights; l++) rays[l] = light_ray(&scene->scene->lights[l], point);
-        *record = (ShadeRecord){.weight = *transmittance * (1 - segment->transmittance), .t = t,  .tolerance = 0.02 * (double)segment->voxel_world, .skin = (uint32_t)nearest,
-                                .point = skin_march_guess(&tr->marches[nearest], t)};
-        record->ambient = shade_segment(tr, cone, segment, rays, &tr->direct[count * (lights + 1)]);
+        if (last >= 0 && group.weight > 0 && (nearest != last || group.weight > GROUP_WEIGHT)) {
+            close_group(tr, cone, &group, last, &tr->records[count], &tr->direct[count * stride]);
+            count++;
+        }
+        last = nearest;
+        group_add(&group, cone, segment, *transmittance * (1 - segment->transmittance));
         *transmittance *= segment->transmittance;
+        if (coarser < (int)VTS_ARRAY_COUNT(COARSER_BELOW) && *transmittance < COARSER_BELOW[coarser]) {
+            coarser++;
+            for (size_t k = 0; k < met; k++) skin_march_coarsen(&tr->marches[tr->met[k]], coarser);
+        }
+        tr->has_segment[last] = skin_march_next(&tr->marches[last], &tr->segments[last]);
+    }
+    if (group.weight > 0 && count < MOST_SHADE_RECORDS) {
+        close_group(tr, cone, &group, last, &tr->records[count], &tr->direct[count * stride]);
         count++;
-        tr->has_segment[nearest] = skin_march_next(&tr->marches[nearest], &tr->segments[nearest]);
     }
     if (*transmittance <= OPAQUE_BELOW) *transmittance = 0;
     return count;
@@ -134,7 +204,7 @@ static Vec3f add_shadowed(Tracer *tr, const Cone *cone, size_t count, size_t lig
     size_t stride = tr->compiled->scene->light_count + 1;
     const Vec3f *direct = tr->direct + light_index;
     float total = 0;
-    for (size_t i = 0; i < count; i++) total += tr->records[i].weight * luminance(direct[i * stride]);
+    for (size_t i = 0; i < count; i++) total += luminance(direct[i * stride]);
     Vec3f sum = {0, 0, 0};
     if (total <= 0) return sum;
     bool worth = total > SHADOW_WORTH && !light->shadowless;
@@ -145,7 +215,7 @@ static Vec3f add_shadowed(Tracer *tr, const Cone *cone, size_t count, size_t lig
     int next = 0;
     for (size_t i = 0; i < count && next < points; i++) {
         const ShadeRecord *r = &tr->records[i];
-        float light_here = r->weight * luminance(direct[i * stride]);
+        float light_here = luminance(direct[i * stride]);
         float target = total * ((float)next + 0.5f) / (float)points;
         if (passed + light_here >= target) {
             at[next] = passed + light_here / 2;
@@ -163,7 +233,7 @@ static Vec3f add_shadowed(Tracer *tr, const Cone *cone, size_t count, size_t lig
     passed = 0;
     int k = 0;
     for (size_t i = 0; i < count; i++) {
-        float light_here = tr->records[i].weight * luminance(direct[i * stride]), middle = passed + light_here / 2;
+        float light_here = luminance(direct[i * stride]), middle = passed + light_here / 2;
         float visible = 1;
         if (points) {
             while (k + 1 < points && at[k + 1] <= middle) k++;
@@ -171,7 +241,7 @@ static Vec3f add_shadowed(Tracer *tr, const Cone *cone, size_t count, size_t lig
             if (middle > at[k] && k + 1 < points && at[k + 1] > at[k])
                 visible += (seen[k + 1] - seen[k]) * (middle - at[k]) / (at[k + 1] - at[k]);
         }
-        sum = vec3f_madd(sum, direct[i * stride], tr->records[i].weight * visible);
+        sum = vec3f_madd(sum, direct[i * stride], visible);
         passed += light_here;
     }
     return sum;
@@ -243,7 +313,7 @@ Radiance trace_cone(Tracer *tr, const Cone *cone, const SurfaceHit *hit, float *
     Vec3f color = {0, 0, 0};
     double mean_t = 0;
     for (size_t i = 0; i < count; i++) {
-        color = vec3f_madd(color, tr->records[i].ambient, tr->records[i].weight);
+        color = vec3f_add(color, tr->records[i].ambient);
         mean_t += (double)tr->records[i].weight * tr->records[i].t;
     }
     for (size_t l = 0; l < scene->light_count; l++) color = vec3f_add(color, add_shadowed(tr, cone, count, l));

@@ -7,7 +7,7 @@
 #include "render/lighting.h"
 #include "render/skin_light.h"
 
-enum { MOST_SHADE_RECORDS = 1024 };
+enum { MOST_SHADE_RECORDS = 256 };
 
 typedef struct ShadeRecord ShadeRecord;
 

@@ -35,31 +35,38 @@ float skin_light_through(SkinLight *light, const Cone *cone, double t_max, int b
 /* Blur spreads a blade over the voxels around it, and it must not shadow itself; but where many blades share a voxel they
  * shadow each other. What decides is that light is neither lost nor gained: what the beam loses, 1 − exp(−depth), falls on the
  * matter that is there. Its share of light is taken to fall as A·exp(−B·area passed), with A from that balance. B = 1 for matter at
- * random, depth = area; less where it hides itself in clumps, and nearing 0 as it comes to be one sheet, which loses
- * the most that its area can, is lit all alike and has but been blurred. */
-float skin_light_share(float depth, float area, float before) {
+ * random, depth = area; less where it hides itself in clumps; 0 for one sheet, which is lit all alike and has but been blurred: its area
+ * is 1 at most, whatever is behind it, and what it hides. */
+float skin_light_share(const LightSurroundings *s) {
+    float depth = s->depth, area = s->area, single = s->sheet * float_min(area, 1);
     if (!(area > 0.01f)) return area > 0 ? float_clamp(depth / area, 0, 1) : 1; /* too thin to shadow itself */
-    float lost = 1 - expf(-depth), random = 1 - expf(-area), sheet = float_min(area, 1);
-    float fall = depth < area ? depth / area : 1 - float_clamp((lost - random) / (sheet - random), 0, 1);
-    float along = fall * area;
-    float share = along > 1e-3f ? lost * fall * expf(-fall * before) / (1 - expf(-along)) : lost / area;
+    float lost = float_max(1 - expf(-depth), single);
+    float shrink = (single + (1 - s->sheet) * area) / area;
+    float fall = (1 - s->sheet) * float_min(depth / area, 1), along = fall * area * shrink;
+    float share = along > 1e-3f ? lost * fall * expf(-fall * shrink * s->before) / (1 - expf(-along)) : lost / (area * shrink);
     return float_clamp(share, 0, 1);
 }
+
+/* From this mean gamma on, matter is one sheet, or the wall of a solid (whose two walls have less). */
+static const float SHEET_GAMMA = 0.6f;
 
 float skin_light_on_matter(SkinLight *light, const Cone *cone, double t_max, uint32_t own, const SkinPoint *at, double tolerance) {
     SkinMarch *march = &light->marches[own];
     double reach = skin_march_begin_around(march, cone, at, SURROUNDINGS, tolerance, t_max, &light->compiled->shadow_march, light->counters);
-    float depth = 0, area = 0, before = 0, transmittance = 1;
+    LightSurroundings around = {0};
+    float transmittance = 1, gamma_area = 0;
     SkinSegment s;
     while (skin_march_next(march, &s)) {
         double length = s.t1 - s.t0, within = double_max(0, double_min(s.t1, reach) - s.t0);
-        depth += s.depth * (float)(within / length);
-        area += s.area * (float)(within / length);
-        if (s.t1 > 0) before += s.area * (float)(double_max(0, within - double_max(-s.t0, 0)) / length);
+        around.depth += s.depth * (float)(within / length);
+        around.area += s.area * (float)(within / length);
+        gamma_area += s.gamma_area * (float)(within / length);
+        if (s.t1 > 0) around.before += s.area * (float)(double_max(0, within - double_max(-s.t0, 0)) / length);
         if (s.t1 > reach) {
             transmittance = rest_of_march(march, expf(-s.depth * (float)(1 - within / length)));
             break;
         }
     }
-    return skin_light_share(depth, area, before) * transmittance;
+    around.sheet = around.area > 0 ? float_clamp(gamma_area / (SHEET_GAMMA * around.area), 0, 1) : 0;
+    return skin_light_share(&around) * transmittance;
 }

@@ -21,9 +21,15 @@ float skin_light_through(SkinLight *light, const Cone *cone, double t_max, int b
  * take away is left out. `tolerance` (scene units) is that of finding places in the skin. In [0, 1]. */
 float skin_light_on_matter(SkinLight *light, const Cone *cone, double t_max, uint32_t own, const SkinPoint *at, double tolerance);
 
-/* What skin_light_on_matter() makes of the surroundings of a place, a beam's way with the place in its middle: the optical
- * depth of that way, the area of matter along it (for each unit of area across the beam), and how much of that area the beam meets before the
- * place. The share of the light at the beginning of that way that the matter gets. */
-float skin_light_share(float depth, float area, float before);
+/* The surroundings of a place: a way along a beam with the place in its middle. */
+typedef struct LightSurroundings {
+    float depth;  /* optical */
+    float area;   /* of matter, for each unit of area across the beam; >= 0 */
+    float before; /* of it, what the beam meets before the place */
+    float sheet;  /* how much of it is one sheet and not many pieces: 0 to 1 */
+} LightSurroundings;
+
+/* The share of the light at the beginning of that way that the matter at the place gets. In [0, 1]. */
+float skin_light_share(const LightSurroundings *around);
 
 #endif

@@ -42,6 +42,7 @@ static void begin(SkinMarch *m, const Cone *cone, double t_min, double t_max, co
     m->entries = 0;
     m->steps_left = MOST_STEPS;
     m->number++;
+    m->coarser = 0;
     m->fitted = false;
     m->span.t1 = -VTS_INFINITY;
     m->span.leaves = true;
@@ -63,7 +64,7 @@ static VoxelFit fit_voxels(const TexturePlace *place, Vec3f extent, float finest
 /* Chooses voxels and the length of steps for all texels at `place`. */
 static void fit_span(const SkinMarch *m, const TexturePlace *place, double t, MarchSpan *span) {
     Vec3 d = m->cone->direction;
-    double width = cone_diameter(m->cone, t) * (double)m->settings->voxel_width;
+    double width = ldexp(cone_diameter(m->cone, t) * (double)m->settings->voxel_width, m->coarser);
     float side = INFINITY, finest = INFINITY, stride = INFINITY;
     for (size_t i = 0; i < m->skin->texel_count; i++) {
         const PlacedTexel *placed = &m->skin->texels[i];
@@ -470,7 +471,7 @@ static Sym3f to_world(const Sym3f *s, const TexelCopy *copy, const TexturePlace 
 typedef struct StepSample {
     double t0, t1;
     Vec3 middle, difference; /* texture coordinates */
-    float depth, area;
+    float depth, area, gamma_area;
 } StepSample;
 
 static void sample_copy(SkinMarch *m, size_t i, const CopyOnWay *on_way, StepSample *step, SkinSegment *out) {
@@ -497,7 +498,9 @@ static void sample_copy(SkinMarch *m, size_t i, const CopyOnWay *on_way, StepSam
                                                          : opacity_depth(m->settings->opacity, &v, h, along);
         if (!(tau > 0)) continue;
         step->depth += tau;
-        step->area += opacity_area(&v, along);
+        float area = opacity_area(&v, along);
+        step->area += area;
+        step->gamma_area += area * v.gamma;
         if (!m->shade || out->hit_count == MOST_MATTER_HITS) continue;
         MatterHit *hit = &out->hits[out->hit_count++];
         *hit = (MatterHit){.matter = &texel->matter[k], .look = placed->look ? placed->look : &texel->matter[k].look,
@@ -525,8 +528,16 @@ static void sample(SkinMarch *m, double t0, double t1, SkinSegment *out) {
     out->t1 = t1;
     out->depth = step.depth;
     out->area = step.area;
+    out->gamma_area = step.gamma_area;
     out->transmittance = step.depth > 0 ? expf(-step.depth) : 1;
     out->voxel_world = span->voxel_world;
+}
+
+void skin_march_coarsen(SkinMarch *m, int levels) {
+    if (levels == m->coarser) return;
+    m->coarser = levels;
+    m->number++; /* what was known to be empty need not be with wider voxels */
+    if (m->inside || m->t < m->span.t1) fit_span(m, &m->span.place, (m->span.t0 + m->span.t1) / 2, &m->span);
 }
 
 bool skin_march_next(SkinMarch *m, SkinSegment *segment) {

@@ -48,6 +48,7 @@ typedef struct SkinSegment {
     float transmittance;  /* of the whole segment, < 1 */
     float depth;          /* −ln of it */
     float area;           /* of matter as seen along the cone, for each unit of area across it; some of it hides behind other */
+    float gamma_area;     /* area weighted by gamma, texel.h's: whether it is one sheet or many pieces */
     float voxel_world;    /* side of the voxels used, in scene units, along the cone */
     MatterHit hits[MOST_MATTER_HITS];
     int hit_count;
@@ -107,7 +108,8 @@ typedef struct SkinMarch {
     MarchSpan span;       /* holds for t in [span.t0, span.t1] */
     int entries, steps_left;
     bool fitted;          /* span.step is of this cone */
-    uint32_t number;      /* of the cone, counted up by each begin */
+    int coarser;          /* levels above what fits */
+    uint32_t number;      /* of the cone and its levels, counted up by each begin */
     TileCopies *tiles;    /* [texel][TILES_KEPT] */
     bool confined;        /* to its stretch */
     struct SkinSheets *sheets; /* of a skin that overlaps, else NULL: all else then only says where they begin */
@@ -129,6 +131,8 @@ void skin_march_init_confined(SkinMarch *march, const CompiledSkin *skin, Arena 
 void skin_march_begin_stretch(SkinMarch *march, const SkinMarch *like, const SkinStretch *stretch);
 /* A guess of the place in the skin at t of the current segment, for skin_locate(): where shadows start. */
 SkinPoint skin_march_guess(const SkinMarch *march, double t);
+/* From here on voxels are so many levels coarser than fits the cone, and steps as much longer. */
+void skin_march_coarsen(SkinMarch *march, int levels);
 /* The next segment that holds matter, in order of t; false when there is none before t_max. */
 bool skin_march_next(SkinMarch *march, SkinSegment *segment);
 

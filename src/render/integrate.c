@@ -32,8 +32,7 @@ struct ShadeRecord {
 };
 /* Groups of less weight than this go on growing: where little is seen, little is shaded. */
 static const float GROUP_WEIGHT = 1.0f / 24;
-/* Each level coarser from here on: what is seen through much matter needs less. Voxels twice as wide where a quarter of the light comes
- * from, and again. */
+/* Below these transmittances voxels are one level coarser, and another: what is seen through much matter needs less. */
 static const float COARSER_BELOW[] = {0.3f, 0.08f};
 
 /* A segment that lets less than this through ends the march: a step of 8-bit pictures at most. */

@@ -32,18 +32,21 @@ float skin_light_through(SkinLight *light, const Cone *cone, double t_max, int b
     return transmittance;
 }
 
+/* More hides nothing more. */
+static const float MOST_AREA = 1e4f;
+
 /* Blur spreads a blade over the voxels around it, and it must not shadow itself; but where many blades share a voxel they
  * shadow each other. What decides is that light is neither lost nor gained: what the beam loses, 1 − exp(−depth), falls on the
  * matter that is there. Its share of light is taken to fall as A·exp(−B·area passed), with A from that balance. B = 1 for matter at
  * random, depth = area; less where it hides itself in clumps; 0 for one sheet, which is lit all alike and has but been blurred: its area
  * is 1 at most, whatever is behind it, and what it hides. */
 float skin_light_share(const LightSurroundings *s) {
-    float depth = s->depth, area = s->area, single = s->sheet * float_min(area, 1);
+    float depth = float_min(s->depth, MOST_AREA), area = float_min(s->area, MOST_AREA), before = float_min(s->before, area), single = s->sheet * float_min(area, 1);
     if (!(area > 0.01f)) return area > 0 ? float_clamp(depth / area, 0, 1) : 1; /* too thin to shadow itself */
     float lost = float_max(1 - expf(-depth), single);
     float shrink = (single + (1 - s->sheet) * area) / area;
     float fall = (1 - s->sheet) * float_min(depth / area, 1), along = fall * area * shrink;
-    float share = along > 1e-3f ? lost * fall * expf(-fall * shrink * s->before) / (1 - expf(-along)) : lost / (area * shrink);
+    float share = along > 1e-3f ? lost * fall * expf(-fall * shrink * before) / (1 - expf(-along)) : lost / (area * shrink);
     return float_clamp(share, 0, 1);
 }
 

@@ -154,7 +154,7 @@ static void build_top(Build *b) {
     VoxelCell *cells = b->scratch[0];
     memset(cells, 0, BRICK_VOXELS * sizeof *cells);
     pyramid_build_brick(&b->pyramid, top, origin, true, cells, cells + BRICK_VOXELS, &b->outputs[b->jobs]);
-    pyramid_code_top(b->layer, cells, &b->outputs[b->jobs]);
+    pyramid_code_top(&b->pyramid, cells, &b->outputs[b->jobs]);
 }
 
 static bool allocate_level(VoxelLayer *layer, VoxelLevel *level) {

@@ -112,6 +112,7 @@ typedef struct BrickBlock {
     const VoxelCell *cells; /* BRICK_VOXELS for each */
     int count;
     const VoxelLevel *level;
+    const uint8_t *marks; /* of the level's bricks */
     bool cyclic[3];
     int first[3], end[3]; /* voxels of the block: outside nothing is known */
 } BrickBlock;
@@ -152,11 +153,18 @@ static VoxelSurround look_around(const BrickBlock *block, const int brick[3], co
     return around;
 }
 
-/* Deep within a solid nothing is stored: no ray comes there. */
-static bool may_be_beside_walls(const VoxelSurround *around) {
-    for (int k = 0; k < 6; k++) {
-        const VoxelCell *near = around->near[k >> 1][k & 1];
-        if (!near || !voxel_cell_is_empty(near)) return true;
+/* Deep within a solid nothing is stored: no ray comes there. Where a voxel is not known, its brick may have walls. */
+static bool is_beside_walls(const BrickBlock *block, const int brick[3], int i) {
+    const int first[3] = {brick[0] * BRICK_SIDE + (i & 7), brick[1] * BRICK_SIDE + (i >> 3 & 7),
+                          brick[2] * BRICK_SIDE + (i >> 6)};
+    for (int side = 0; side < 27; side++) {
+        int at[3] = {first[0] + side % 3 - 1, first[1] + side / 3 % 3 - 1, first[2] + side / 9 - 1};
+        const VoxelCell *near = block_cell(block, at);
+        if (near && !voxel_cell_is_empty(near)) return true;
+        if (near) continue;
+        for (int k = 0; k < 3; k++)
+            at[k] = (at[k] + block->level->size[k]) % block->level->size[k] / BRICK_SIDE;
+        if (block->marks[voxel_level_brick_at(block->level, at[0], at[1], at[2])] & BRICK_AREA) return true;
     }
     return false;
 }
@@ -187,7 +195,7 @@ static void code_brick(const BrickBlock *block, int level, const bool halved[3],
         int corner[3];
         const VoxelCell *above = parent ? &parent[index_in_parent(halved, at, i, corner)] : &cells[i];
         VoxelSurround around = look_around(block, at, cells, i);
-        if (inside && voxel_cell_is_empty(above) && !may_be_beside_walls(&around)) continue;
+        if (inside && voxel_cell_is_empty(above) && !is_beside_walls(block, at, i)) continue;
         VoxelCode *code = grow_buffer_add(&out->codes, 1, sizeof *code);
         if (!code) return;
         *code = inside ? code_inside(above) : code_matter(&cells[i], &around, l, voxel_cell_thinness(above));
@@ -199,17 +207,21 @@ static void code_brick(const BrickBlock *block, int level, const bool halved[3],
     if (place) *place = brick;
 }
 
-static BrickBlock make_block(const VoxelLayer *layer, int level, const int (*bricks)[3], int count,
+static BrickBlock make_block(const Pyramid *p, int level, const int (*bricks)[3], int count,
                              const VoxelCell *cells) {
-    BrickBlock block = {.bricks = bricks, .cells = cells, .count = count, .level = &layer->level[level]};
-    memcpy(block.cyclic, layer->cyclic, sizeof block.cyclic);
+    BrickBlock block = {.bricks = bricks,
+                        .cells = cells,
+                        .count = count,
+                        .level = &p->layer->level[level],
+                        .marks = p->marks[level]};
+    memcpy(block.cyclic, p->layer->cyclic, sizeof block.cyclic);
     return block;
 }
 
 /* Codes the bricks under brick `at` of level + 1, whose cells are `parent`. */
 static void code_children(const Pyramid *p, int level, const int at[3], const int (*bricks)[3], int count,
                           const VoxelCell *cells, const VoxelCell *parent, PyramidOutput *out) {
-    BrickBlock block = make_block(p->layer, level, bricks, count, cells);
+    BrickBlock block = make_block(p, level, bricks, count, cells);
     bool halved[3];
     for (int k = 0; k < 3; k++) {
         halved[k] = voxel_layer_halves(p->layer, level, k);
@@ -220,10 +232,10 @@ static void code_children(const Pyramid *p, int level, const int at[3], const in
     for (int i = 0; i < count; i++) code_brick(&block, level, halved, i, parent, out);
 }
 
-void pyramid_code_top(const VoxelLayer *layer, const VoxelCell *cells, PyramidOutput *out) {
+void pyramid_code_top(const Pyramid *p, const VoxelCell *cells, PyramidOutput *out) {
     static const int origin[1][3] = {{0, 0, 0}};
-    int top = layer->levels - 1;
-    BrickBlock block = make_block(layer, top, origin, 1, cells);
+    int top = p->layer->levels - 1;
+    BrickBlock block = make_block(p, top, origin, 1, cells);
     const bool halved[3] = {false, false, false};
     for (int k = 0; k < 3; k++) block.end[k] = block.level->size[k];
     code_brick(&block, top, halved, 0, NULL, out);

@@ -47,6 +47,6 @@ void pyramid_build_brick(const Pyramid *pyramid, int level, const int at[3], boo
                          VoxelCell *scratch, PyramidOutput *out);
 
 /* Codes the topmost brick, which has no parent. */
-void pyramid_code_top(const VoxelLayer *layer, const VoxelCell *cells, PyramidOutput *out);
+void pyramid_code_top(const Pyramid *pyramid, const VoxelCell *cells, PyramidOutput *out);
 
 #endif

@@ -1,5 +1,5 @@
 /* Building voxels: area and projected area against the exact surface, determinism, degenerate content. */
-#include "texel_scenes.h"
+#include "texel_measures.h"
 
 #include "texel/voxel_layer.h"
 
@@ -8,53 +8,10 @@
 #include <stdio.h>
 #include <cmocka.h>
 
-enum { DIRECTIONS = 64 };
-
 static VoxelLayer *build(const TestMesh *mesh, TexelBuildOptions options, TexelBuildStats *stats) {
     TexelMesh view = scene_view(mesh);
     if (!(options.extent.x > 0)) options.extent = vec3f(1, 1, 1);
     return voxel_layer_build(&view, &options, stats);
-}
-
-/* Area seen from each of the spread directions, and half the total area, over all voxels of a level. */
-static double voxel_area(const VoxelLayer *layer, int index, double seen[DIRECTIONS]) {
-    const VoxelLevel *level = &layer->level[index];
-    double volume = (double)level->sides[0] * (double)level->sides[1] * (double)level->sides[2], sum = 0;
-    for (int d = 0; d < DIRECTIONS; d++) seen[d] = 0;
-    for (size_t i = 0; i < level->code_count; i++) {
-        VoxelSample v;
-        if (voxel_code_is_inside(level->codes[i])) continue; /* what stops light within a solid has no area */
-        voxel_code_unpack(level->codes[i], &v);
-        double area = (double)v.density * (double)level->density_unit * volume;
-        sum += area;
-        for (int d = 0; d < DIRECTIONS; d++) {
-            Vec3f w = vec3f_from(scene_spread_direction(d, DIRECTIONS));
-            seen[d] += area * sqrt((double)sym3f_quadratic(&v.s, w));
-        }
-    }
-    return sum;
-}
-
-typedef struct AreaError {
-    double total, rms, worst; /* relative to the mean over directions */
-} AreaError;
-
-/* walls: how often each wall of a solid is expected to count: 1 where they stand alone, ½ where solids are thin. */
-static AreaError area_error(const VoxelLayer *layer, int level, const TestMesh *mesh, double walls) {
-    double seen[DIRECTIONS], truth[DIRECTIONS], mean = 0;
-    AreaError e = {.total = voxel_area(layer, level, seen)};
-    for (int d = 0; d < DIRECTIONS; d++) {
-        truth[d] = scene_projected_area(mesh, scene_spread_direction(d, DIRECTIONS)) * 2 * walls;
-        mean += truth[d] / DIRECTIONS;
-    }
-    for (int d = 0; d < DIRECTIONS; d++) {
-        double error = (seen[d] - truth[d]) / mean;
-        e.rms += error * error / DIRECTIONS;
-        e.worst = fmax(e.worst, fabs(error));
-    }
-    e.rms = sqrt(e.rms);
-    e.total = e.total / mean - 1;
-    return e;
 }
 
 /* Largest rms error allowed at the finest level and at any, and of any single direction at the finest. */
@@ -64,7 +21,7 @@ static void check_areas(const char *name, TestMesh mesh, int resolution, double 
     VoxelLayer *layer = build(&mesh, (TexelBuildOptions){.resolution = resolution}, &stats);
     assert_non_null(layer);
     for (int level = 0; level < stats.levels; level++) {
-        AreaError e = area_error(layer, level, &mesh, walls);
+        AreaError e = measure_area_error(layer, level, &mesh, walls);
         print_message("%-16s %4d³ total %+.4f, directions rms %.4f worst %.4f\n", name,
                       stats.size[0] >> level, e.total, e.rms, e.worst);
         assert_true(e.rms < (level == 0 ? finest : any));
@@ -98,14 +55,14 @@ static void test_walls_of_thick_solids_stand_alone(void **state) {
     for (size_t i = 0; i < VTS_ARRAY_COUNT(meshes); i++) {
         VoxelLayer *layer = build(&meshes[i], (TexelBuildOptions){.resolution = 64}, NULL);
         for (int level = 0; level < 4; level++) {
-            AreaError e = area_error(layer, level, &meshes[i], 1);
+            AreaError e = measure_area_error(layer, level, &meshes[i], 1);
             print_message("solid %zu level %d: total %+.4f, directions rms %.4f worst %.4f\n", i, level,
                           e.total, e.rms, e.worst);
             assert_true(fabs(e.total) < .01);
             assert_true(e.rms < limits[i]);
         }
         /* And as a whole, in one voxel, the silhouette counts once. */
-        AreaError e = area_error(layer, 6, &meshes[i], .5);
+        AreaError e = measure_area_error(layer, 6, &meshes[i], .5);
         print_message("solid %zu in one voxel: total %+.4f, directions rms %.4f\n", i, e.total, e.rms);
         assert_true(fabs(e.total) < .02);
         assert_true(e.rms < .105); /* a box is no ellipsoid */
@@ -123,7 +80,7 @@ static void test_thin_solids_count_once(void **state) {
         TestMesh mesh = scene_cylinder(vec3(.2, .1, .3), vec3(.7, .9, .6), radius[i], 12);
         VoxelLayer *layer = build(&mesh, (TexelBuildOptions){.resolution = 64}, NULL);
         for (int level = 0; level < 7; level++) {
-            AreaError e = area_error(layer, level, &mesh, .5);
+            AreaError e = measure_area_error(layer, level, &mesh, .5);
             print_message("cylinder of %.2f voxels, level %d: total %+.4f, directions rms %.4f worst %.4f\n",
                           radius[i] * 128, level, e.total, e.rms, e.worst);
             assert_true(e.rms < (level < 2 ? limits[i] : .05));
@@ -134,8 +91,8 @@ static void test_thin_solids_count_once(void **state) {
 }
 
 static double total_area(const VoxelLayer *layer, int level) {
-    double seen[DIRECTIONS];
-    return voxel_area(layer, level, seen);
+    double seen[MEASURE_DIRECTIONS];
+    return measure_area(layer, level, seen);
 }
 
 static void test_area_is_conserved_and_cut(void **state) {

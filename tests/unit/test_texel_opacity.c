@@ -1,12 +1,9 @@
 /* Opacity: its laws, and what marched voxels cover against the exact geometry, for oblique bundles of rays. */
-#include "texel_scenes.h"
+#include "texel_measures.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
 #include <cmocka.h>
-
-static const OpacityModel models[] = {OPACITY_MEAN, OPACITY_EXPONENTIAL, OPACITY_CORRELATED,
-                                      OPACITY_CROSSING};
 
 static VoxelSample random_voxel(RandomStream *r) {
     Vec3 n = scene_direction(r), s, t;
@@ -28,7 +25,7 @@ static void test_steps_compose(void **state) {
     (void)state;
     RandomStream r = {31};
     for (int i = 0; i < 40000; i++) {
-        OpacityModel model = models[i % 4];
+        OpacityModel model = measure_models[i % 4];
         VoxelSample v = random_voxel(&r);
         float h = exp2f(-(float)(i % 7)), a = h * (float)random_next_unit(&r),
               b = h * (float)random_next_unit(&r);
@@ -67,86 +64,19 @@ static void test_limits_of_the_laws(void **state) {
         thin.gamma = 1;
         float expected = expf(-thin.density * sqrtf(sym3f_quadratic(&thin.s, step)));
         for (int m = 0; m < 4; m++)
-            assert_true(fabsf(opacity_transmittance(models[m], &thin, h, step) - expected) < 2e-5f);
+            assert_true(fabsf(opacity_transmittance(measure_models[m], &thin, h, step) - expected) < 2e-5f);
     }
     for (float enhancement = .5f; enhancement < 8; enhancement += .5f) {
         float gamma = opacity_gamma_for(enhancement, 2);
         assert_true(fabsf(opacity_enhancement(gamma, 2) - enhancement) < 1e-4f);
     }
     VoxelSample none = {0};
-    for (int m = 0; m < 4; m++) assert_true(opacity_transmittance(models[m], &none, 1, vec3f(1, 2, 3)) == 1);
+    for (int m = 0; m < 4; m++) assert_true(opacity_transmittance(measure_models[m], &none, 1, vec3f(1, 2, 3)) == 1);
 }
 
 /* ---- coverage ---- */
 
-enum { LEVELS = 4, BUNDLES = 6, SUPERSAMPLES = 8 };
-
-typedef struct Coverage {
-    double truth, mean[4];     /* mean over all pixels, per model */
-    double single[4], quad[4]; /* rms per pixel of one voxel's side, one ray each; per bundle of 2 × 2 such */
-} Coverage;
-
-static double truth_of_pixel(const ScenePicture *p, int pixels, int x, int y) {
-    int sum = 0;
-    for (int j = 0; j < SUPERSAMPLES; j++)
-        for (int i = 0; i < SUPERSAMPLES; i++)
-            sum += p->hit[(y * SUPERSAMPLES + j) * pixels * SUPERSAMPLES + x * SUPERSAMPLES + i];
-    return sum / (double)(SUPERSAMPLES * SUPERSAMPLES);
-}
-
-static bool meets_cube(Vec3 at, Vec3 d) {
-    double t0 = -1e9, t1 = 1e9;
-    Ray ray = {at, d};
-    return box3_clip_ray((Box3){{.02, .02, .02}, {.98, .98, .98}}, &ray, &t0, &t1);
-}
-
-/* One direction: a random choice of 2 × 2 pixels of the size of the level's voxels. */
-static int cover_direction(const VoxelLayer *layer, const TestMesh *mesh, int level, Vec3 d, RandomStream *r,
-                           Coverage *sums) {
-    int size[3], count = 0;
-    voxel_layer_size(layer, level, size);
-    double h = 1.0 / size[0];
-    int pixels = (int)(1.75 / h) / 2 * 2;
-    ScenePicture p = scene_picture(mesh, d, pixels * h, pixels * SUPERSAMPLES);
-    double share = fmin(1, 500.0 / (pixels * pixels / 4));
-    for (int block = 0; block < pixels * pixels / 4; block++) {
-        int bx = block % (pixels / 2) * 2, by = block / (pixels / 2) * 2;
-        Vec3 middle = vec3_madd(vec3_madd(vec3(.5, .5, .5), p.s, (bx + 1 - pixels * .5) * h), p.t,
-                                (by + 1 - pixels * .5) * h);
-        if (random_next_unit(r) > share || !meets_cube(middle, d)) continue;
-        double whole[4] = {0};
-        for (int q = 0; q < 4; q++) {
-            Vec3 at = vec3_madd(vec3_madd(middle, p.s, ((q & 1) - .5) * h), p.t, ((q >> 1) - .5) * h);
-            double truth = truth_of_pixel(&p, pixels, bx + (q & 1), by + (q >> 1));
-            sums->truth += truth / 4;
-            for (int m = 0; m < 4; m++) {
-                double cover = 1 - scene_march(layer, (float)level, models[m], (float)h, at, d, h / 2);
-                sums->mean[m] += cover / 4;
-                sums->single[m] += (cover - truth) * (cover - truth) / 4;
-                whole[m] += (cover - truth) / 4;
-            }
-        }
-        for (int m = 0; m < 4; m++) sums->quad[m] += whole[m] * whole[m];
-        count++;
-    }
-    free(p.hit);
-    return count;
-}
-
-static Coverage cover(const VoxelLayer *layer, const TestMesh *mesh, int level) {
-    Coverage c = {0};
-    RandomStream r = {33};
-    int count = 0;
-    for (int i = 0; i < BUNDLES; i++)
-        count += cover_direction(layer, mesh, level, scene_direction(&r), &r, &c);
-    c.truth /= count;
-    for (int m = 0; m < 4; m++) {
-        c.mean[m] /= count;
-        c.single[m] = sqrt(c.single[m] / count);
-        c.quad[m] = sqrt(c.quad[m] / count);
-    }
-    return c;
-}
+enum { LEVELS = 4 };
 
 /* limits: of the correlated model, at voxels 1, 2, 4 and 8 times coarser: rms per bundle of two voxels' width. */
 static void check_coverage(const char *name, TestMesh mesh, const double limits[LEVELS], double mean_limit) {
@@ -154,7 +84,7 @@ static void check_coverage(const char *name, TestMesh mesh, const double limits[
     TexelBuildOptions options = {.resolution = 64, .extent = {1, 1, 1}};
     VoxelLayer *layer = voxel_layer_build(&view, &options, NULL);
     for (int level = 0; level < LEVELS; level++) {
-        Coverage c = cover(layer, &mesh, level);
+        Coverage c = measure_coverage(layer, &mesh, level);
         print_message("%-13s %dx: true %.3f | mean, rms per voxel, per 2x2: exp %.3f %.3f %.3f | crossing "
                       "%.3f %.3f %.3f | "
                       "correlated %.3f %.3f %.3f\n",

@@ -54,8 +54,10 @@ static void eigenvalues(const double m[6], double out[3]) {
         a * (b * c - m[5] * m[5]) - m[3] * (m[3] * c - m[5] * m[4]) + m[4] * (m[3] * m[5] - b * m[4]);
     double r = p > 0 ? double_clamp(det / (2 * p2 * p), -1, 1) : 1;
     double phi = acos(r) / 3;
-    out[0] = q + 2 * p * cos(phi);
-    out[2] = q + 2 * p * cos(phi + 2 * VTS_PI / 3);
+    /* cos(φ + 2π/3) of an angle whose sine is not negative */
+    double cosine = cos(phi), sine = sqrt(double_max(0, 1 - cosine * cosine));
+    out[0] = q + 2 * p * cosine;
+    out[2] = q - p * (cosine + sqrt(3.0) * sine);
     out[1] = 3 * q - out[0] - out[2];
 }
 
@@ -143,8 +145,10 @@ float voxel_cell_thinness(const VoxelCell *parent) {
  * 1998 sec. IV-B), whose exponent 1.6075 we let go from ln 3 / ln 2, exact for discs, to ln 1.5 / ln(4/π), exact for
  * needles: at most 0.54 % wrong instead of 1.06 %. */
 static double mean_projection(const double s[3]) {
-    double middle = s[1] / s[0], p = 1.58496 + 0.0935 * middle * middle;
-    return pow((pow(s[0], p) + pow(s[1], p) + pow(s[2], p)) / 3, 1 / p);
+    double middle = s[1] / s[0];
+    float p = (float)(1.58496 + 0.0935 * middle * middle),
+          sum = 1 + powf((float)middle, p) + powf((float)(s[2] / s[0]), p);
+    return s[0] * (double)powf(sum / 3, 1 / p);
 }
 
 /* The square root of m, whose eigenvalues' roots are s: by Cayley and Hamilton, (I₁I₂ − I₃)·√m = I₁I₃·1 + (I₁² − I₂)·m − m². */

@@ -35,11 +35,11 @@ static void meet_column(const FillPass *pass, int x, int z, double depth, bool u
 }
 
 /* Lines of one row that the triangle crosses. */
-static void meet_row(const FillPass *pass, const double t[3][3], const ScanEdge edges[3],
+static void meet_row(const FillPass *pass, const double t[3][3], const ScanOutline *outline,
                      const double slopes[2], int row, bool up) {
     double at = row + 0.5, lo, hi;
     int width = pass->fill->size[0], z = wrap_index(row, pass->fill->size[2]);
-    if (!scan_outline(edges, at, &lo, &hi)) return;
+    scan_row(outline, at, &lo, &hi);
     int begin = (int)ceil(lo - 0.5), end = (int)ceil(hi - 0.5);
     if (!pass->cyclic[0]) begin = int_max(begin, 0), end = int_min(end, width);
     for (int column = begin; column < end; column++) {
@@ -67,11 +67,10 @@ static void meet_triangle(const FillPass *pass, const double t[3][3]) {
     for (int k = 0; k < 3; k++) n[k] = ab[(k + 1) % 3] * ac[(k + 2) % 3] - ab[(k + 2) % 3] * ac[(k + 1) % 3];
     if (n[1] == 0) return;
     const double slopes[2] = {-n[0] / n[1], -n[2] / n[1]};
-    ScanEdge edges[3];
-    for (int i = 0; i < 3; i++) edges[i] = scan_edge(t[i], t[(i + 1) % 3], 0, 2);
-    int begin = (int)ceil(smallest(t, 2) - 0.5), end = (int)ceil(largest(t, 2) - 0.5);
+    ScanOutline outline = scan_outline(t[0], t[1], t[2], 0, 2);
+    int begin = (int)ceil(outline.lowest - 0.5), end = (int)ceil(outline.highest - 0.5);
     if (!pass->cyclic[2]) begin = int_max(begin, 0), end = int_min(end, pass->fill->size[2]);
-    for (int row = begin; row < end; row++) meet_row(pass, t, edges, slopes, row, n[1] > 0);
+    for (int row = begin; row < end; row++) meet_row(pass, t, &outline, slopes, row, n[1] > 0);
 }
 
 static void run_pass(const FillPass *pass, const TexelMesh *mesh, const VoxelLevel *finest) {

@@ -90,23 +90,22 @@ static void add_rays(VoxelCell *cells, const ClipPolygon *t, bool solid, const i
     double facing = clip_projected_area(t, axis);
     if (facing == 0) return;
     double slope_u = -clip_projected_area(t, u) / facing, slope_v = -clip_projected_area(t, v) / facing;
-    double v_lo = double_min(t->at[0][v], double_min(t->at[1][v], t->at[2][v]));
-    double v_hi = double_max(t->at[0][v], double_max(t->at[1][v], t->at[2][v]));
     bool flat = slope_u == 0 && slope_v == 0;
     if (!fits_depth(slope_u)) return;
-    ScanEdge edges[3];
-    for (int i = 0; i < 3; i++) edges[i] = scan_edge(t->at[i], t->at[(i + 1) % 3], u, v);
-    int row_end = (int)ceil(double_min(8 * v_hi - 0.5, 8 * size[v]));
-    for (int row = (int)ceil(double_max(8 * v_lo - 0.5, 0)); row < row_end; row++) {
+    ScanOutline outline = scan_outline(t->at[0], t->at[1], t->at[2], u, v);
+    double width = 8 * size[u];
+    int row_end = scan_ceil(double_clamp(8 * outline.highest - 0.5, 0, 8 * size[v]));
+    for (int row = scan_ceil(double_clamp(8 * outline.lowest - 0.5, 0, 8 * size[v])); row < row_end; row++) {
         double at = (row + 0.5) / 8, lo, hi, offset = ray_offset(row);
-        if (!scan_outline(edges, at, &lo, &hi)) continue;
+        scan_row(&outline, at, &lo, &hi);
         RayRow r = {.row = row,
-                    .begin = (int)ceil(double_clamp(8 * lo - offset, 0, 8 * size[u])),
-                    .end = (int)ceil(double_clamp(8 * hi - offset, 0, 8 * size[u]))};
+                    .begin = scan_ceil(double_clamp(8 * lo - offset, 0, width)),
+                    .end = scan_ceil(double_clamp(8 * hi - offset, 0, width))};
+        if (r.begin >= r.end) continue;
         double depth =
             t->at[0][axis] + slope_v * (at - t->at[0][v]) + slope_u * ((r.begin + offset) / 8 - t->at[0][u]);
         if (flat && depth == size[axis]) depth -= 0x1p-30; /* the very last plane belongs to the last cell */
-        if (r.begin >= r.end || !fits_depth(depth)) continue;
+        if (!fits_depth(depth)) continue;
         r.depth = (int64_t)(depth * 0x1p32);
         r.step = (int64_t)(slope_u * 0x1p29);
         add_row(cells, &r, solid, size, axis);

@@ -6,29 +6,40 @@
 
 /* An edge as a function of v, from its lower end, so that two triangles that share it agree. */
 typedef struct ScanEdge {
-    double v0, v1, u0, slope;
+    double u0, v0, slope;
 } ScanEdge;
 
+/* A triangle's outline: one edge from its lowest corner to its highest, two on the other side that meet at v = middle. */
+typedef struct ScanOutline {
+    ScanEdge whole, low, high;
+    double lowest, middle, highest;
+} ScanOutline;
+
 static inline ScanEdge scan_edge(const double *a, const double *b, int u, int v) {
-    if (a[v] > b[v]) {
-        const double *swap = a;
-        a = b;
-        b = swap;
-    }
-    return (ScanEdge){a[v], b[v], a[u], a[v] < b[v] ? (b[u] - a[u]) / (b[v] - a[v]) : 0};
+    return (ScanEdge){a[u], a[v], a[v] < b[v] ? (b[u] - a[u]) / (b[v] - a[v]) : 0};
 }
 
-/* Where the line v = at meets the triangle's outline. */
-static inline bool scan_outline(const ScanEdge edges[3], double at, double *lo, double *hi) {
-    int crossings = 0;
-    double x[3];
-    for (int i = 0; i < 3; i++)
-        if (edges[i].v0 <= at && at < edges[i].v1)
-            x[crossings++] = edges[i].u0 + (at - edges[i].v0) * edges[i].slope;
-    if (crossings != 2) return false;
-    *lo = double_min(x[0], x[1]);
-    *hi = double_max(x[0], x[1]);
-    return true;
+static inline ScanOutline scan_outline(const double *a, const double *b, const double *c, int u, int v) {
+    const double *swap;
+    if (a[v] > b[v]) swap = a, a = b, b = swap;
+    if (b[v] > c[v]) swap = b, b = c, c = swap;
+    if (a[v] > b[v]) swap = a, a = b, b = swap;
+    return (ScanOutline){
+        scan_edge(a, c, u, v), scan_edge(a, b, u, v), scan_edge(b, c, u, v), a[v], b[v], c[v]};
+}
+
+/* Where the line v = at, lowest <= at < highest, meets the outline. */
+static inline void scan_row(const ScanOutline *outline, double at, double *lo, double *hi) {
+    const ScanEdge *e = at < outline->middle ? &outline->low : &outline->high, *w = &outline->whole;
+    double x = e->u0 + (at - e->v0) * e->slope, y = w->u0 + (at - w->v0) * w->slope;
+    *lo = double_min(x, y);
+    *hi = double_max(x, y);
+}
+
+/* The least whole number that is not below x; |x| < 2³¹. */
+static inline int scan_ceil(double x) {
+    int whole = (int)x;
+    return whole + ((double)whole < x);
 }
 
 #endif

@@ -153,6 +153,23 @@ static VoxelSurround look_around(const BrickBlock *block, const int brick[3], co
     return around;
 }
 
+/* Where a solid is so thin that no voxel lies within it as a whole, those that nearly do stand for its inside; their little area is
+ * left out. At fine levels the share that is inside is known too roughly for that. */
+static bool is_inside(const BrickBlock *block, int level, const int brick[3], const VoxelCell *cells, int i) {
+    enum { LEAST_LEVEL = 2 };
+    static const float NEARLY_INSIDE = 0.95f;
+    if (voxel_cell_is_empty(&cells[i])) return voxel_cell_is_inside(&cells[i]);
+    if (level < LEAST_LEVEL || cells[i].fill < NEARLY_INSIDE) return false;
+    for (int side = 0; side < 27; side++) {
+        const int at[3] = {brick[0] * BRICK_SIDE + (i & 7) + side % 3 - 1,
+                           brick[1] * BRICK_SIDE + (i >> 3 & 7) + side / 3 % 3 - 1,
+                           brick[2] * BRICK_SIDE + (i >> 6) + side / 9 - 1};
+        const VoxelCell *near = block_cell(block, at);
+        if (near && voxel_cell_is_inside(near)) return false;
+    }
+    return true;
+}
+
 /* Deep within a solid nothing is stored: no ray comes there. Where a voxel is not known, its brick may have walls. */
 static bool is_beside_walls(const BrickBlock *block, const int brick[3], int i) {
     const int first[3] = {brick[0] * BRICK_SIDE + (i & 7), brick[1] * BRICK_SIDE + (i >> 3 & 7),
@@ -167,6 +184,23 @@ static bool is_beside_walls(const BrickBlock *block, const int brick[3], int i) 
         if (block->marks[voxel_level_brick_at(block->level, at[0], at[1], at[2])] & BRICK_AREA) return true;
     }
     return false;
+}
+
+/* Thinness around a parent: over its neighbours too, as far as they are in its brick, since few pairs of walls are a bad sample. */
+static float thinness_around(const VoxelCell *parents, int i) {
+    VoxelCell sum = {.walls = 0};
+    const int first[3] = {i & 7, i >> 3 & 7, i >> 6};
+    if (!(parents[i].walls > 0)) return 1;
+    for (int side = 0; side < 27; side++) {
+        const int at[3] = {first[0] + side % 3 - 1, first[1] + side / 3 % 3 - 1, first[2] + side / 9 - 1};
+        if ((unsigned)at[0] >= BRICK_SIDE || (unsigned)at[1] >= BRICK_SIDE || (unsigned)at[2] >= BRICK_SIDE)
+            continue;
+        const VoxelCell *near = &parents[(at[2] * BRICK_SIDE + at[1]) * BRICK_SIDE + at[0]];
+        sum.walls += near->walls;
+        sum.apart += near->apart;
+        sum.single += near->single;
+    }
+    return voxel_cell_thinness(&sum);
 }
 
 static VoxelCode code_inside(const VoxelCell *parent) {
@@ -189,16 +223,21 @@ static void code_brick(const BrickBlock *block, int level, const bool halved[3],
     BuiltBrick brick = {.level = level,
                         .place = (uint32_t)voxel_level_brick_at(l, at[0], at[1], at[2]),
                         .first = out->codes.count};
+    if (!parent) parent = cells;
+    float thin[BRICK_VOXELS]; /* of parents, once known */
+    for (int i = 0; i < BRICK_VOXELS; i++) thin[i] = -1;
     for (int i = 0; i < BRICK_VOXELS; i++) {
-        bool inside = voxel_cell_is_inside(&cells[i]);
+        bool inside = is_inside(block, level, at, cells, i);
         if (voxel_cell_is_empty(&cells[i]) && !inside) continue;
-        int corner[3];
-        const VoxelCell *above = parent ? &parent[index_in_parent(halved, at, i, corner)] : &cells[i];
+        int corner[3], above = index_in_parent(halved, at, i, corner);
         VoxelSurround around = look_around(block, at, cells, i);
-        if (inside && voxel_cell_is_empty(above) && !is_beside_walls(block, at, i)) continue;
+        if (inside && voxel_cell_is_empty(&cells[i]) && voxel_cell_is_empty(&parent[above]) &&
+            !is_beside_walls(block, at, i))
+            continue;
         VoxelCode *code = grow_buffer_add(&out->codes, 1, sizeof *code);
         if (!code) return;
-        *code = inside ? code_inside(above) : code_matter(&cells[i], &around, l, voxel_cell_thinness(above));
+        if (!inside && thin[above] < 0) thin[above] = thinness_around(parent, above);
+        *code = inside ? code_inside(&parent[above]) : code_matter(&cells[i], &around, l, thin[above]);
         brick.slice[i >> 6] |= (uint64_t)1 << (i & 63);
     }
     brick.count = out->codes.count - brick.first;

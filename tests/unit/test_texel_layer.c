@@ -75,7 +75,7 @@ static void test_walls_of_thick_solids_stand_alone(void **state) {
 static void test_thin_solids_count_once(void **state) {
     (void)state;
     const double radius[] = {.004, .0008}; /* 0.5 and 0.1 voxels across at 64³ */
-    const double limits[] = {.15, .05};
+    const double limits[] = {.04, .035};
     for (int i = 0; i < 2; i++) {
         TestMesh mesh = scene_cylinder(vec3(.2, .1, .3), vec3(.7, .9, .6), radius[i], 12);
         VoxelLayer *layer = build(&mesh, (TexelBuildOptions){.resolution = 64}, NULL);
@@ -83,7 +83,7 @@ static void test_thin_solids_count_once(void **state) {
             AreaError e = measure_area_error(layer, level, &mesh, .5);
             print_message("cylinder of %.2f voxels, level %d: total %+.4f, directions rms %.4f worst %.4f\n",
                           radius[i] * 128, level, e.total, e.rms, e.worst);
-            assert_true(e.rms < (level < 2 ? limits[i] : .05));
+            assert_true(e.rms < (level < 2 ? limits[i] : .025));
         }
         voxel_layer_destroy(layer);
         scene_free(&mesh);

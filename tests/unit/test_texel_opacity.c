@@ -119,7 +119,7 @@ static void test_coverage_of_solids(void **state) {
     check_coverage("box", scene_box(vec3(.23, .31, .17), vec3(.71, .77, .83)),
                    (double[]){.025, .04, .045, .065}, .02);
     check_coverage("cylinder", scene_cylinder(vec3(.2, .1, .3), vec3(.7, .9, .6), .04, 24),
-                   (double[]){.015, .025, .035, .02}, .006);
+                   (double[]){.015, .03, .035, .023}, .006);
     check_coverage("thin cylinder", scene_cylinder(vec3(.2, .1, .3), vec3(.7, .9, .6), .004, 12),
                    (double[]){.01, .01, .01, .01}, .003);
 }

@@ -346,7 +346,7 @@ static double mixture_error(MixtureKind kind, TexelFiltering filtering) {
     for (int i = 0; i < MIXTURES; i++) {
         TestMesh mesh = random_mixture(kind, &r);
         VoxelLayer *layer = build(&mesh, (TexelBuildOptions){.resolution = 2, .filtering = filtering}, NULL);
-        AreaError e = area_error(layer, 1, &mesh, .5);
+        AreaError e = measure_area_error(layer, 1, &mesh, .5);
         assert_true(fabs(e.total) < .03); /* area is conserved by both */
         sum += e.rms * e.rms / MIXTURES;
         voxel_layer_destroy(layer);

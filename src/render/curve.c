@@ -22,7 +22,7 @@ static double only_root(const double b[4]) {
         else hi = s;
         double next = s - f / bernstein_slope(b, s);
         if (!(next >= lo && next <= hi)) next = (lo + hi) / 2;
-        if (fabs(next - s) <= 1e-15) return next;
+        if (fabs(next - s) <= 1e-10) return next; /* the step has squared it */
         s = next;
     }
     return s;

@@ -46,6 +46,12 @@ static int solve_quadratic(double c0, double c1, double c2, double roots[2]) {
     return count;
 }
 
+/* Whether c0 + c1·s + c2·s² is surely not 0 in the unit interval with its margin: its Bernstein coefficients. Most walls pass by this. */
+static bool keeps_its_sign(double c0, double c1, double c2) {
+    double half = c0 + 0.5 * c1, end = c0 + c1 + c2, hair = 4 * MARGIN * (fabs(c0) + fabs(c1) + fabs(c2));
+    return (c0 > hair && half > hair && end > hair) || (c0 < -hair && half < -hair && end < -hair);
+}
+
 /* The places (s, r) at which the ray meets the patch, in the unit square with its margin: the quadratic of Reshetov 2019 in s, from
  * the coplanarity of the ray and the patch's ruling at s. */
 typedef struct PatchHit {
@@ -57,6 +63,7 @@ static int meet_patch(const Ray *ray, const Patch *p, PatchHit hits[2]) {
     Vec3 base = vec3_sub(p->q0, ray->origin), d = ray->direction;
     double c0 = vec3_dot(vec3_cross(base, p->q2), d), c2 = vec3_dot(vec3_cross(p->q1, p->q3), d);
     double c1 = vec3_dot(vec3_add(vec3_cross(base, p->q3), vec3_cross(p->q1, p->q2)), d), roots[2];
+    if (keeps_its_sign(c0, c1, c2)) return 0;
     int found = solve_quadratic(c0, c1, c2, roots), count = 0;
     for (int i = 0; i < found; i++) {
         double s = roots[i];

@@ -76,6 +76,13 @@ static RayPath path_of(const char *name) {
     return RAY_PATH_BOX;
 }
 
+static Detail detail_of(const char *name) {
+    if (name && strcmp(name, "exact") == 0) return DETAIL_EXACT;
+    if (name && strcmp(name, "voxels") == 0) return DETAIL_VOXELS;
+    if (name && strcmp(name, "slab") == 0) return DETAIL_SLAB;
+    return DETAIL_AUTO;
+}
+
 static const double DEFAULT_MAX_ERROR = 1.0 / 255;
 
 /* What the error that a user accepts buys. At 1/255: voxels half as wide as the cone (with linear interpolation between their
@@ -90,13 +97,37 @@ static void choose_detail(double max_error, OpacityModel opacity, RayPath path, 
     out->shadow_march = out->march;
     out->shadow_march.voxel_width *= 1.4f; /* shadows are parts of pixels (Neyret 1998 sec. IV-B: "a rougher level") */
     out->shadow_march.step = (float)double_clamp(2 * root, 1, 2.5);
+    out->samples = (int)double_clamp(round(16 * pow(e, -1.2)), 2, 64);
     out->split = (int)double_clamp(round(4 * pow(e, -0.35)), 2, 12);
 }
 
-/* Settings that parse and have no effect yet are said to. */
-static void warn_idle_settings(const GlobalSettings *s, DiagList *diags) {
-    if (s->detail && strcmp(s->detail, "auto") != 0)
-        diag_warning(diags, (Span){0}, "global_settings: 'detail' has no effect in this version");
+static bool interrupted(const CompileOptions *options) { return options->interrupted && *options->interrupted; }
+
+/* Exact geometry where it may be seen, and voxels where the rest is; none of either that nothing needs. */
+static CompileStatus build_texels(const CompileOptions *options, Detail detail, DiagList *diags, CompiledScene *out) {
+    bool beams = !options->exact && !options->texel_resolution && (detail == DETAIL_AUTO || detail == DETAIL_EXACT), voxels = !beams;
+    out->exact_bounds = box3_empty();
+    out->all_exact_to = out->nearest = VTS_INFINITY;
+    for (size_t i = 0; i < out->texel_count && beams; i++) {
+        if (!beam_build_texel(out->texels[i], out, diags)) return COMPILE_FAILED;
+        if (interrupted(options)) return COMPILE_INTERRUPTED;
+    }
+    for (size_t i = 0; i < out->skin_count && beams; i++) {
+        beam_plan_skin(&out->skins[i], detail == DETAIL_EXACT, out);
+        voxels |= !out->skins[i].boxes || isfinite(out->skins[i].exact_to);
+        out->all_exact_to = fmin(out->all_exact_to, out->skins[i].boxes ? out->skins[i].exact_to : 0);
+        if (out->skins[i].boxes) out->nearest = fmin(out->nearest, 1e-6 * out->skins[i].tile_size);
+        if (out->skins[i].boxes) out->exact_bounds = box3_union(out->exact_bounds, out->skins[i].bounds);
+    }
+    if (!voxels) return COMPILE_OK;
+    for (size_t i = 0; i < out->skin_count && !options->exact; i++) skin_ask_voxels(&out->skins[i], options, out);
+    for (size_t i = 0; i < out->texel_count; i++) {
+        if (!texel_build(out->texels[i], options, out, diags)) return interrupted(options) ? COMPILE_INTERRUPTED : COMPILE_FAILED;
+        if (interrupted(options)) return COMPILE_INTERRUPTED;
+    }
+    for (size_t i = 0; i < out->skin_count; i++)
+        if (!skin_finish(&out->skins[i], options, out)) memory_budget_fail(options->memory);
+    return COMPILE_OK;
 }
 
 static const BoxTree *tree_over_skins(const CompiledScene *compiled) {
@@ -134,7 +165,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     OpacityModel opacity = opacity_of(scene->settings.opacity_model);
     choose_detail(scene->settings.max_error > 0 ? scene->settings.max_error : DEFAULT_MAX_ERROR, opacity,
                   path_of(scene->settings.ray_path), out);
-    warn_idle_settings(&scene->settings, diags);
+    out->march.slab = out->shadow_march.slab = detail_of(scene->settings.detail) == DETAIL_SLAB;
     out->hierarchy = hierarchy_build(scene, arena, diags);
     if (!out->hierarchy) return COMPILE_FAILED;
     SkinList skins = {0};
@@ -142,11 +173,11 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     Transform identity = transform_identity();
     for (size_t i = 0; i < scene->object_count; i++) find_placed_texels(scene->objects[i], &identity, NULL, arena, &skins);
     out->skins = arena_new_array(arena, CompiledSkin, skins.count);
-    for (size_t i = 0; i < skins.count; i++) {
-        bool ok = skin_compile(skins.items[i], options, out, diags, &out->skins[out->skin_count]);
-        if (ok) out->skin_count++; /* also when interrupted: to be destroyed */
-        if (options->interrupted && *options->interrupted) return COMPILE_INTERRUPTED;
-    }
+    for (size_t i = 0; i < skins.count; i++)
+        if (skin_compile(skins.items[i], out, diags, &out->skins[out->skin_count])) out->skin_count++;
+    if (diags->error_count > errors) return COMPILE_FAILED;
+    CompileStatus status = build_texels(options, detail_of(scene->settings.detail), diags, out);
+    if (status != COMPILE_OK) return status;
     out->skin_tree = tree_over_skins(out);
     if (options->exact && out->skin_count) out->exact = exact_skins_build(out->skins, out->skin_count, hierarchy_device(out->hierarchy));
     if (options->exact && out->skin_count && !out->exact) memory_budget_fail(options->memory);

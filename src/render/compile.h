@@ -45,8 +45,12 @@ typedef struct CompiledScene {
     Quadrature quadrature;
     TexelFiltering filtering;
     double shadow_aperture;
+    int samples;          /* a pixel, of what is drawn by beams */
     int split;            /* cones per pixel side where explicit edges cross the pixel */
     double build_seconds;
+    Box3 exact_bounds;    /* of the skins that beams draw */
+    double all_exact_to;  /* the least exact_to of all skins, 0 of those that are voxels alone */
+    double nearest;       /* nearer to the eye than this nothing is drawn by beams */
 } CompiledScene;
 
 typedef enum CompileStatus { COMPILE_OK, COMPILE_FAILED /* see diags */, COMPILE_INTERRUPTED } CompileStatus;
@@ -61,17 +65,30 @@ void compiled_scene_print(const CompiledScene *compiled, StrBuf *out);
 /* The cone through the picture's point (x, y), in pixels from the upper left corner; `width_px` is its width in pixels. */
 Cone view_cone(const View *view, double x, double y, double width_px);
 
+/* Whether the box certainly is out of a perspective picture. */
+bool view_misses(const View *view, Box3 box);
+
 /* ---- parts, for compile.c ---- */
 
-/* Builds the texels that a skin uses, as finely as the view can see them. skin_build.c */
-bool skin_compile(const Skin *skin, const CompileOptions *options, CompiledScene *compiled, DiagList *diags, CompiledSkin *out);
-/* The built texel of a definition: from those already built for this scene when one is fine enough. */
-BuiltTexel *texel_build(const TexelDef *def, int needed, const CompileOptions *options, CompiledScene *compiled, DiagList *diags);
+/* Cells, and what lies on them; of the texels only their looks. skin_build.c */
+bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, CompiledSkin *out);
+/* Asks the skin's texels for the resolution that the view can see where voxels are drawn. */
+void skin_ask_voxels(CompiledSkin *skin, const CompileOptions *options, const CompiledScene *compiled);
+/* When the texels are built: what only they tell, and the hierarchy over the cells. False when Embree is out of memory. */
+bool skin_finish(CompiledSkin *skin, const CompileOptions *options, CompiledScene *compiled);
+/* The texel of a definition, made known at the first time; looks alone. */
+BuiltTexel *texel_ask(const TexelDef *def, CompiledScene *compiled);
+/* Its voxels, as fine as was asked for; or its exact geometry, for the reference. */
+bool texel_build(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags);
+/* Triangles for beams, where there are any; false after a diagnostic. beam_plan.c */
+bool beam_build_texel(BuiltTexel *texel, CompiledScene *compiled, DiagList *diags);
+/* Up to which distance the skin is drawn as exact geometry; `everything`: to the last. beam_plan.c */
+void beam_plan_skin(CompiledSkin *skin, bool everything, CompiledScene *compiled);
+/* Of the scene's knob `detail`. */
+typedef enum Detail { DETAIL_AUTO, DETAIL_EXACT, DETAIL_VOXELS, DETAIL_SLAB } Detail;
 /* A layer's triangles in compiled->scratch; false after a diagnostic. */
 bool texel_mesh_layer(const BuiltTexel *texel, const TexelLayer *layer, double tolerance, CompiledScene *compiled, DiagList *diags,
                       TexelMesh *mesh);
-/* The next matter of a texel. `voxels` NULL: exact. */
-void texel_add_matter(BuiltTexel *texel, const TexelLayer *layer, VoxelLayer *voxels, const CompiledScene *compiled);
 /* All matter of a texel as its source triangles, for the reference. exact_build.c */
 bool exact_build_texel(BuiltTexel *texel, CompiledScene *compiled, DiagList *diags);
 

@@ -11,7 +11,6 @@ static void add_layer(BuiltTexel *texel, const TexelLayer *layer, const TexelMes
     exact_texel_add_layer(texel->exact, mesh, compiled->arena);
     if (mesh->triangle_count && exact_texel_triangles(texel->exact) == before)
         diag_warning(diags, layer->span, "nothing of this layer of the texel '%s' lies within its bounds", texel->def->name);
-    texel_add_matter(texel, layer, NULL, compiled);
 }
 
 bool exact_build_texel(BuiltTexel *texel, CompiledScene *compiled, DiagList *diags) {

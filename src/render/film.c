@@ -3,12 +3,10 @@
 #include <math.h>
 #include <pthread.h>
 
-enum { TILE = 16 };
-
 typedef struct Film {
     const RenderOptions *options;
     const char *stage;
-    FilmPixel *pixel;
+    FilmTile *tile;
     void *context;
     Image *image;
     int tiles_x, tiles_y;
@@ -22,11 +20,15 @@ static void expose_tile(void *context, size_t index, int worker) {
     const RenderOptions *options = film->options;
     if (options->interrupted && *options->interrupted) return;
     int tx = (int)(index % (size_t)film->tiles_x), ty = (int)(index / (size_t)film->tiles_x);
-    int x0 = options->region[0] + tx * TILE, y0 = options->region[1] + ty * TILE;
-    int x1 = int_min(x0 + TILE, options->region[2]), y1 = int_min(y0 + TILE, options->region[3]);
+    /* Tiles lie at multiples of their size, whatever the region. */
+    int x0 = (options->region[0] / FILM_TILE + tx) * FILM_TILE, y0 = (options->region[1] / FILM_TILE + ty) * FILM_TILE;
+    int x1 = int_min(x0 + FILM_TILE, options->region[2]), y1 = int_min(y0 + FILM_TILE, options->region[3]);
+    x0 = int_max(x0, options->region[0]), y0 = int_max(y0, options->region[1]);
+    Radiance seen[FILM_TILE * FILM_TILE];
+    film->tile(film->context, worker, x0, y0, x1, y1, seen);
     for (int y = y0; y < y1; y++)
-        for (int x = x0; x < x1 && !(options->interrupted && *options->interrupted); x++) {
-            Radiance r = film->pixel(film->context, worker, x, y);
+        for (int x = x0; x < x1; x++) {
+            Radiance r = seen[(y - y0) * (x1 - x0) + x - x0];
             float *sample = image_pixel(film->image, x - options->region[0], y - options->region[1]);
             sample[0] = r.color.x * film->gain;
             sample[1] = r.color.y * film->gain;
@@ -39,12 +41,13 @@ static void expose_tile(void *context, size_t index, int worker) {
     pthread_mutex_unlock(&film->progress_lock);
 }
 
-bool film_expose(const RenderOptions *options, const char *stage, FilmPixel *pixel, void *context, MemoryBudget *memory, Image *out,
+bool film_expose(const RenderOptions *options, const char *stage, FilmTile *tile, void *context, MemoryBudget *memory, Image *out,
                  StrBuf *error) {
     int width = options->region[2] - options->region[0], height = options->region[3] - options->region[1];
     if (!image_init(out, width, height, options->alpha ? 4 : 3, NULL, memory, error)) return false;
-    Film film = {.options = options, .stage = stage, .pixel = pixel, .context = context, .image = out, .gain = (float)exp2(options->exposure),
-                 .tiles_x = (width + TILE - 1) / TILE, .tiles_y = (height + TILE - 1) / TILE};
+    Film film = {.options = options, .stage = stage, .tile = tile, .context = context, .image = out, .gain = (float)exp2(options->exposure),
+                 .tiles_x = (options->region[2] - 1) / FILM_TILE - options->region[0] / FILM_TILE + 1,
+                 .tiles_y = (options->region[3] - 1) / FILM_TILE - options->region[1] / FILM_TILE + 1};
     pthread_mutex_init(&film.progress_lock, NULL);
     bool done = pool_run(options->pool, (size_t)film.tiles_x * (size_t)film.tiles_y, expose_tile, &film);
     pthread_mutex_destroy(&film.progress_lock);

@@ -25,12 +25,15 @@ typedef struct RenderOptions {
     bool alpha;      /* keep the background transparent */
 } RenderOptions;
 
-/* What the pixel with its upper left corner at (px, py) sees. Called by worker `worker` of the pool; must not depend on it. */
-typedef Radiance FilmPixel(void *context, int worker, int px, int py);
+enum { FILM_TILE = 32 };
+
+/* What the pixels of [x0, x1) × [y0, y1), at most FILM_TILE each way, see: rows of x1 − x0 in `out`. Called by worker `worker` of the
+ * pool; must not depend on it. */
+typedef void FilmTile(void *context, int worker, int x0, int y0, int x1, int y1, Radiance *out);
 
 /* Exposes the region (R G B, or R G B A with alpha; `out` is initialised here). False when cancelled or out of memory (text
  * in `error`, which may be NULL); `out` then holds nothing. */
-bool film_expose(const RenderOptions *options, const char *stage, FilmPixel *pixel, void *context, MemoryBudget *memory, Image *out,
+bool film_expose(const RenderOptions *options, const char *stage, FilmTile *tile, void *context, MemoryBudget *memory, Image *out,
                  StrBuf *error);
 
 #endif

@@ -137,8 +137,37 @@ static int nearest_segment(const Tracer *tr, size_t met) {
     return nearest;
 }
 
+/* ---- from exact geometry to voxels ---- */
+
+static double march_start(const CompiledSkin *skin, const ConeStart *start) {
+    float least = INFINITY;
+    if (!skin->boxes || !start->count) return 0;
+    for (int i = 0; i < start->count; i++) least = float_min(least, start->factors[i]);
+    return skin->exact_to * (double)least;
+}
+
+/* The share of the cone's samples that see voxels of the skin at t. */
+static float share_at(const CompiledSkin *skin, const ConeStart *start, double t) {
+    int passed = 0;
+    if (!skin->boxes || !start->count) return 1;
+    for (int i = 0; i < start->count; i++) passed += skin->exact_to * (double)start->factors[i] < t;
+    return (float)passed / (float)start->count;
+}
+
+static bool next_segment(Tracer *tr, size_t i, const ConeStart *start) {
+    const CompiledSkin *skin = &tr->compiled->skins[i];
+    SkinSegment *segment = &tr->segments[i];
+    while (skin_march_next(&tr->marches[i], segment)) {
+        float share = share_at(skin, start, (segment->t0 + segment->t1) / 2);
+        if (share <= 0) continue;
+        if (share < 1) segment->transmittance = powf(segment->transmittance, share);
+        return true;
+    }
+    return false;
+}
+
 /* Follows the cone through all skins at once, nearest segment first; returns how many records were made. */
-static size_t gather(Tracer *tr, const Cone *cone, double t_max, float *transmittance) {
+static size_t gather(Tracer *tr, const Cone *cone, const ConeStart *start, double t_max, float *transmittance) {
     const CompiledScene *scene = tr->compiled;
     const Ray axis = {cone->origin, cone->direction};
     size_t stride = scene->scene->light_count + 1, count = 0, met = compiled_skins_met(scene, &axis, t_max, tr->met);
@@ -146,8 +175,11 @@ static size_t gather(Tracer *tr, const Cone *cone, double t_max, float *transmit
     int coarser = 0, last = -1;
     for (size_t k = 0; k < met; k++) {
         size_t i = tr->met[k];
-        skin_march_begin(&tr->marches[i], cone, 0, t_max, &scene->march, &tr->counters, true);
-        tr->has_segment[i] = skin_march_next(&tr->marches[i], &tr->segments[i]);
+        double from = march_start(&scene->skins[i], start);
+        tr->has_segment[i] = false;
+        if (!(from < t_max)) continue;
+        skin_march_begin(&tr->marches[i], cone, from, t_max, &scene->march, &tr->counters, true);
+        tr->has_segment[i] = next_segment(tr, i, start);
     }
     *transmittance = 1;
     while (count < MOST_SHADE_RECORDS && *transmittance > OPAQUE_BELOW) {
@@ -165,7 +197,7 @@ static size_t gather(Tracer *tr, const Cone *cone, double t_max, float *transmit
             coarser++;
             for (size_t k = 0; k < met; k++) skin_march_coarsen(&tr->marches[tr->met[k]], coarser);
         }
-        tr->has_segment[last] = skin_march_next(&tr->marches[last], &tr->segments[last]);
+        tr->has_segment[last] = next_segment(tr, (size_t)last, start);
     }
     if (group.weight > 0 && count < MOST_SHADE_RECORDS) {
         close_group(tr, cone, &group, last, &tr->records[count], &tr->direct[count * stride]);
@@ -304,11 +336,10 @@ static Vec3f shade_surface(Tracer *tr, const Cone *cone, const SurfaceHit *hit, 
     return sum;
 }
 
-Radiance trace_cone(Tracer *tr, const Cone *cone, const SurfaceHit *hit, float *reaching) {
+Vec3f trace_skins(Tracer *tr, const Cone *cone, const ConeStart *start, double t_max, float *transmittance) {
     const Scene *scene = tr->compiled->scene;
-    float transmittance = 1;
     tr->counters.camera_rays++;
-    size_t count = gather(tr, cone, hit ? hit->t : VTS_INFINITY, &transmittance);
+    size_t count = gather(tr, cone, start, t_max, transmittance);
     Vec3f color = {0, 0, 0};
     double mean_t = 0;
     for (size_t i = 0; i < count; i++) {
@@ -316,10 +347,17 @@ Radiance trace_cone(Tracer *tr, const Cone *cone, const SurfaceHit *hit, float *
         mean_t += (double)tr->records[i].weight * tr->records[i].t;
     }
     for (size_t l = 0; l < scene->light_count; l++) color = vec3f_add(color, add_shadowed(tr, cone, count, l));
-    float covered = 1 - transmittance;
+    float covered = 1 - *transmittance;
     if (count && covered > 0) color = fog_over(scene, color, covered, mean_t / (double)covered);
+    return color;
+}
+
+Radiance trace_cone(Tracer *tr, const Cone *cone, const SurfaceHit *hit, float *reaching) {
+    const Scene *scene = tr->compiled->scene;
+    const ConeStart everything = {.count = 0};
+    float transmittance = 1;
+    Radiance out = {trace_skins(tr, cone, &everything, hit ? hit->t : VTS_INFINITY, &transmittance), 1 - transmittance};
     *reaching = transmittance;
-    Radiance out = {color, covered};
     if (transmittance <= 0) return out;
     if (hit) {
         out.color = vec3f_madd(out.color, fog_over(scene, shade_surface(tr, cone, hit, transmittance), 1, hit->t), transmittance);

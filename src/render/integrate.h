@@ -26,10 +26,21 @@ typedef struct Tracer {
     TraceCounters counters;
 } Tracer;
 
+/* Of each skin's voxels a cone sees a growing share: nothing before the skin's exact_to times the least factor, all after the
+ * largest; each factor passed adds 1/count. count 0: everything from the eye on. */
+enum { MOST_START_FACTORS = 256 };
+typedef struct ConeStart {
+    int count;
+    float factors[MOST_START_FACTORS];
+} ConeStart;
+
 void tracer_init(Tracer *tracer, const CompiledScene *compiled, Arena *arena);
 
 /* `hit` (NULL: nothing) is the nearest explicit surface on the cone's axis. *reaching gets the share of the light from
  * there that is not hidden by skins. */
 Radiance trace_cone(Tracer *tracer, const Cone *cone, const SurfaceHit *hit, float *reaching);
+
+/* The light that a cone gathers from the skins alone, before t_max; *transmittance gets what shows of the rest. */
+Vec3f trace_skins(Tracer *tracer, const Cone *cone, const ConeStart *start, double t_max, float *transmittance);
 
 #endif

@@ -124,12 +124,17 @@ static Radiance see_pixel(void *context, int worker, int px, int py) {
     return sum;
 }
 
+static void see_tile(void *context, int worker, int x0, int y0, int x1, int y1, Radiance *out) {
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x++) *out++ = see_pixel(context, worker, x, y);
+}
+
 bool reference_picture(const CompiledScene *compiled, const RenderOptions *options, MemoryBudget *memory, Image *out,
                        RenderStats *stats, StrBuf *error) {
     ArenaMark mark = arena_mark(compiled->arena);
     int workers = pool_threads(options->pool);
     Reference reference = {compiled, options, arena_new_array(compiled->arena, TraceCounters, (size_t)workers)};
-    bool done = film_expose(options, "reference", see_pixel, &reference, memory, out, error);
+    bool done = film_expose(options, "reference", see_tile, &reference, memory, out, error);
     *stats = (RenderStats){0};
     for (int i = 0; i < workers; i++) trace_counters_add(&stats->counters, &reference.counters[i]);
     arena_reset_to(compiled->arena, mark);

@@ -1,11 +1,13 @@
 #include "render/render.h"
 
 #include "base/random.h"
+#include "render/beam_tile.h"
 
 typedef struct Frame {
     const CompiledScene *compiled;
     const RenderOptions *options;
     Tracer *tracers; /* one for each worker */
+    BeamTracer **beams; /* likewise; NULL: everything is voxels */
     uint64_t *split_pixels;
 } Frame;
 
@@ -62,10 +64,38 @@ static Radiance trace_pixel(void *context, int worker, int px, int py) {
     bool found = find_surface(frame->compiled, &cone, &hit);
     Radiance radiance = trace_cone(tracer, &cone, found ? &hit : NULL, &reaching);
     if (reaching < EDGE_WORTH || !surfaces_vary(frame->compiled, x, y, found, &hit)) return radiance;
-    int n = frame->options->samples > 0 ? frame->options->samples : frame->compiled->split;
+    int n = frame->options->samples > 0 ? (int)ceil(sqrt(frame->options->samples)) : frame->compiled->split;
     if (n == 1) return radiance;
     frame->split_pixels[worker]++;
     return trace_split(tracer, x, y, n, frame->options->interrupted);
+}
+
+/* The whole tile, of which a region may want a part: what beams see hangs, by rounding errors, on where they begin. */
+static void see_by_beams(Frame *frame, int worker, int x0, int y0, int x1, int y1, Radiance *out) {
+    const View *view = &frame->compiled->view;
+    Radiance seen[FILM_TILE * FILM_TILE];
+    int left = x0 - x0 % FILM_TILE, top = y0 - y0 % FILM_TILE;
+    int right = int_min(left + FILM_TILE, view->width), bottom = int_min(top + FILM_TILE, view->height);
+    beam_tile(frame->beams[worker], left, top, right, bottom, seen);
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x++) *out++ = seen[(y - top) * (right - left) + x - left];
+}
+
+static void see_tile(void *context, int worker, int x0, int y0, int x1, int y1, Radiance *out) {
+    Frame *frame = context;
+    const atomic_bool *interrupted = frame->options->interrupted;
+    if (frame->beams) {
+        see_by_beams(frame, worker, x0, y0, x1, y1, out);
+        return;
+    }
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x++, out++) *out = interrupted && *interrupted ? (Radiance){{0, 0, 0}, 0} : trace_pixel(context, worker, x, y);
+}
+
+static bool has_exact_skins(const CompiledScene *compiled) {
+    for (size_t i = 0; i < compiled->skin_count; i++)
+        if (compiled->skins[i].boxes) return true;
+    return false;
 }
 
 bool render_picture(const CompiledScene *compiled, const RenderOptions *options, MemoryBudget *memory, Image *out,
@@ -73,14 +103,20 @@ bool render_picture(const CompiledScene *compiled, const RenderOptions *options,
     /* Workspace from the scene's arena: should memory run out half way, its owner releases it. */
     ArenaMark mark = arena_mark(compiled->arena);
     int workers = pool_threads(options->pool);
-    Frame frame = {.compiled = compiled, .options = options,
-                   .tracers = arena_new_array(compiled->arena, Tracer, (size_t)workers),
-                   .split_pixels = arena_new_array(compiled->arena, uint64_t, (size_t)workers)};
-    for (int i = 0; i < workers; i++) tracer_init(&frame.tracers[i], compiled, compiled->arena);
-    bool done = film_expose(options, "render", trace_pixel, &frame, memory, out, error);
+    Frame frame = {.compiled = compiled, .options = options, .split_pixels = arena_new_array(compiled->arena, uint64_t, (size_t)workers)};
+    if (has_exact_skins(compiled)) {
+        int samples = int_clamp(options->samples > 0 ? options->samples : compiled->samples, 1, MOST_BEAM_SAMPLES);
+        frame.beams = arena_new_array(compiled->arena, BeamTracer *, (size_t)workers);
+        for (int i = 0; i < workers; i++) frame.beams[i] = beam_tracer_create(compiled, samples, options->seed, compiled->arena);
+    } else {
+        frame.tracers = arena_new_array(compiled->arena, Tracer, (size_t)workers);
+        for (int i = 0; i < workers; i++) tracer_init(&frame.tracers[i], compiled, compiled->arena);
+    }
+    bool done = film_expose(options, "render", see_tile, &frame, memory, out, error);
     *stats = (RenderStats){0};
     for (int i = 0; i < workers; i++) {
-        trace_counters_add(&stats->counters, &frame.tracers[i].counters);
+        if (frame.beams) beam_tracer_count(frame.beams[i], &stats->counters);
+        else trace_counters_add(&stats->counters, &frame.tracers[i].counters);
         stats->split_pixels += frame.split_pixels[i];
     }
     arena_reset_to(compiled->arena, mark);

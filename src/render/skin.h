@@ -10,9 +10,11 @@
 
 #include "base/diag.h"
 #include "render/cone.h"
+#include "render/beam_texel.h"
 #include "render/exact_texel.h"
 #include "render/look.h"
 #include "scene/scene.h"
+#include "shape/box_tree.h"
 #include "shape/surface_mesh.h"
 #include "texel/opacity.h"
 
@@ -49,16 +51,18 @@ typedef struct BuiltTexel {
     int levels;
     TexelMatter *matter;
     size_t matter_count;
-    int asked, needed, built; /* resolutions: asked 0 = auto */
+    int asked, needed, built; /* resolutions of voxels: asked 0 = auto, built 0 = none, as everything seen is exact */
+    int finest_seen;          /* the resolution that the nearest place seen would ask for */
     size_t voxel_count, bytes;
     double build_seconds;     /* or of loading */
     bool cached;              /* nothing of it had to be built */
     ExactTexel *exact;        /* instead of voxels, for the reference; else NULL */
+    const BeamTexel *beam;    /* its triangles, for beams; NULL where there are none */
 } BuiltTexel;
 
 /* One `texel { … }` of a skin. */
 typedef struct PlacedTexel {
-    const BuiltTexel *const *family; /* one, or those of `choose` */
+    BuiltTexel *const *family; /* one, or those of `choose` */
     size_t family_size;
     Vec3f finest_extent; /* of the member with the smallest voxels, which sets the step */
     float finest_voxel;
@@ -84,6 +88,9 @@ typedef struct CompiledSkin {
     size_t texel_count;
     bool overlaps;       /* sheets lie over one another: a cell is folded, or neighbours are turned opposite ways */
     CellTree *tree;   /* NULL in the reference */
+    const BoxTree *boxes; /* over the cells' bounds, for beams; NULL: the skin is drawn from voxels alone */
+    double exact_to;      /* distance from the eye at which voxels take the place of exact geometry; VTS_INFINITY: never */
+    double tile_size;     /* of one texel on the surface, on the average, scene units */
     Box3 bounds;
 } CompiledSkin;
 

@@ -79,11 +79,6 @@ static VoxelLayer *get_voxels(BuiltTexel *texel, size_t index, const CompileOpti
     return voxels;
 }
 
-void texel_add_matter(BuiltTexel *texel, const TexelLayer *layer, VoxelLayer *voxels, const CompiledScene *compiled) {
-    const Texture *texture = layer->texture ? layer->texture : compiled->scene->default_texture;
-    texel->matter[texel->matter_count++] = (TexelMatter){voxels, look_from_texture(texture, &compiled->scene->settings)};
-}
-
 static bool build_matter(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
     const TexelDef *def = texel->def;
     double start = stopwatch_wall();
@@ -91,7 +86,7 @@ static bool build_matter(BuiltTexel *texel, const CompileOptions *options, Compi
     for (size_t i = 0; i < def->layer_count; i++) {
         VoxelLayer *voxels = get_voxels(texel, i, options, compiled, diags);
         if (!voxels) return false;
-        texel_add_matter(texel, &def->layers[i], voxels, compiled);
+        texel->matter[i].voxels = voxels;
         for (int l = 0; l < voxel_layer_levels(voxels); l++) texel->voxel_count += voxel_layer_voxels(voxels, l);
         texel->bytes += voxel_layer_bytes(voxels);
     }
@@ -99,28 +94,43 @@ static bool build_matter(BuiltTexel *texel, const CompileOptions *options, Compi
     return true;
 }
 
-BuiltTexel *texel_build(const TexelDef *def, int needed, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
-    int most = def->resolution ? def->resolution : LARGEST_AUTO_RESOLUTION;
-    int wanted = options->exact ? 0 : def->file ? def->resolution : power_of_two_above(needed, power_of_two_above(most, TEXEL_LARGEST_RESOLUTION));
-    for (size_t i = 0; i < compiled->texel_count; i++)
-        if (compiled->texels[i]->def == def && compiled->texels[i]->built >= wanted) return compiled->texels[i];
-    BuiltTexel *texel = arena_new(compiled->arena, BuiltTexel);
-    *texel = (BuiltTexel){.def = def, .extent = texel_extent(def), .asked = def->resolution, .needed = needed, .built = wanted};
+static void list_texel(CompiledScene *compiled, BuiltTexel *texel) {
     /* The list is rebuilt at each addition: a scene has few texels. */
     BuiltTexel **list = arena_new_array(compiled->arena, BuiltTexel *, compiled->texel_count + 1);
     if (compiled->texel_count) memcpy(list, compiled->texels, compiled->texel_count * sizeof *list);
     list[compiled->texel_count] = texel;
     compiled->texels = list;
     compiled->texel_count++;
+}
+
+BuiltTexel *texel_ask(const TexelDef *def, CompiledScene *compiled) {
+    for (size_t i = 0; i < compiled->texel_count; i++)
+        if (compiled->texels[i]->def == def) return compiled->texels[i];
+    BuiltTexel *texel = arena_new(compiled->arena, BuiltTexel);
+    *texel = (BuiltTexel){.def = def, .extent = texel_extent(def), .asked = def->resolution};
     texel->matter = arena_new_array(compiled->arena, TexelMatter, def->layer_count);
-    if (!(options->exact ? exact_build_texel(texel, compiled, diags) : build_matter(texel, options, compiled, diags))) return NULL;
-    if (texel->matter_count == 0 || options->exact) return texel;
+    for (size_t i = 0; i < def->layer_count; i++) {
+        const Texture *texture = def->layers[i].texture ? def->layers[i].texture : compiled->scene->default_texture;
+        texel->matter[i].look = look_from_texture(texture, &compiled->scene->settings);
+    }
+    texel->matter_count = def->layer_count;
+    list_texel(compiled, texel);
+    return texel;
+}
+
+bool texel_build(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
+    const TexelDef *def = texel->def;
+    int most = def->resolution ? def->resolution : LARGEST_AUTO_RESOLUTION;
+    if (options->exact) return exact_build_texel(texel, compiled, diags);
+    texel->built = def->file ? def->resolution : power_of_two_above(texel->needed, power_of_two_above(most, TEXEL_LARGEST_RESOLUTION));
+    if (!build_matter(texel, options, compiled, diags)) return false;
+    if (texel->matter_count == 0) return true;
     int size[3];
     voxel_layer_size(texel->matter[0].voxels, 0, size);
     Vec3f e = texel->extent;
     texel->voxel = cbrtf(e.x / (float)size[0] * e.y / (float)size[1] * e.z / (float)size[2]);
     texel->levels = voxel_layer_levels(texel->matter[0].voxels);
-    return texel;
+    return true;
 }
 
 /* ---- vertices: height vectors and texture coordinates, jittered ---- */
@@ -304,7 +314,7 @@ static void make_cells(const Skin *skin, const SurfaceMesh *mesh, Arena *arena, 
 
 /* ---- resolution: what the view can see ---- */
 
-static bool outside_view(const View *view, Box3 box) {
+bool view_misses(const View *view, Box3 box) {
     const Camera *c = &view->camera;
     if (c->kind != CAMERA_PERSPECTIVE) return false;
     Vec3 r = vec3_scale(c->right, 0.5), u = vec3_scale(c->up, 0.5);
@@ -319,15 +329,15 @@ static bool outside_view(const View *view, Box3 box) {
     return false;
 }
 
-/* Voxels along the longest side that the nearest visible cell asks for, at so many footprints of a pixel each. */
-static double needed_resolution(const CompiledSkin *skin, const View *view, Vec3f extent, double voxel_width) {
+/* Voxels along the longest side that the nearest visible cell asks for, at so many footprints of a pixel each; not nearer than `from`. */
+static double needed_resolution(const CompiledSkin *skin, const View *view, Vec3f extent, double voxel_width, double from) {
     double needed = 1;
     for (size_t i = 0; i < skin->cell_count; i++) {
         const SkinCell *cell = &skin->cells[i];
         Box3 box = cell->bounds;
-        if (outside_view(view, box)) continue;
+        if (view_misses(view, box)) continue;
         Vec3 nearest = vec3_max(box.min, vec3_min(box.max, view->camera.location));
-        double distance = vec3_length(vec3_sub(nearest, view->camera.location));
+        double distance = fmax(from, vec3_length(vec3_sub(nearest, view->camera.location)));
         Cone cone = view_cone(view, view->width / 2.0, view->height / 2.0, 1);
         double footprint = cone_diameter(&cone, distance) * voxel_width;
         SkinPoint middle = {(int32_t)i, cell->triangle ? 1.0 / 3 : 0.5, cell->triangle ? 1.0 / 3 : 0.5, 0.5};
@@ -347,30 +357,20 @@ static int copy_reach(const InstanceJitter *jitter) {
     return (int)double_clamp(ceil(jitter->displace / 2 + half * largest - 0.5 - 1e-9), 0, MOST_REACH);
 }
 
-static bool place_texel(const Skin *skin, size_t index, const CompileOptions *options, CompiledScene *compiled, DiagList *diags,
-                        CompiledSkin *out) {
+static void place_texel(const Skin *skin, size_t index, CompiledScene *compiled, CompiledSkin *out) {
     const SkinTexel *in = &skin->texels[index];
     PlacedTexel *placed = &out->texels[index];
     size_t family = in->texel->choice_count ? in->texel->choice_count : 1;
-    const BuiltTexel **members = arena_new_array(compiled->arena, const BuiltTexel *, family);
+    BuiltTexel **members = arena_new_array(compiled->arena, BuiltTexel *, family);
     *placed = (PlacedTexel){.family = members, .density = in->density, .finest_voxel = INFINITY};
     placed->seed = random_hash(skin->jitter.seed, index, 0, 0);
     for (size_t k = 0; k < family; k++) {
         const TexelDef *def = in->texel->choice_count ? in->texel->choices[k] : in->texel;
-        int needed = options->exact              ? 0
-                     : options->texel_resolution ? options->texel_resolution
-                                                 : (int)needed_resolution(out, &compiled->view, texel_extent(def),
-                                                                          (double)compiled->march.voxel_width);
-        const BuiltTexel *texel = texel_build(def, needed, options, compiled, diags);
-        if (!texel) return false;
+        BuiltTexel *texel = texel_ask(def, compiled);
         if (texel->matter_count == 0) continue;
         members[placed->family_size++] = texel;
         placed->cyclic |= (def->cyclic & (TEXEL_CYCLIC_X | TEXEL_CYCLIC_Z)) != 0;
-        placed->levels = int_max(placed->levels, texel->levels);
-        if (texel->voxel < placed->finest_voxel) {
-            placed->finest_voxel = texel->voxel;
-            placed->finest_extent = texel->extent;
-        }
+        texel->finest_seen = int_max(texel->finest_seen, (int)needed_resolution(out, &compiled->view, texel->extent, (double)compiled->march.voxel_width, 0));
     }
     placed->jitter = skin->jitter.instance;
     placed->reach = placed->cyclic || !placed->jitter.present ? 0 : copy_reach(&placed->jitter);
@@ -382,7 +382,6 @@ static bool place_texel(const Skin *skin, size_t index, const CompileOptions *op
         *look = look_from_texture(texture, &compiled->scene->settings);
         placed->look = look;
     }
-    return true;
 }
 
 static double tallest_copy(const Skin *skin) {
@@ -396,7 +395,7 @@ static double tallest_copy(const Skin *skin) {
     return jitter->present && scaled ? 1 + jitter->scale / 2 : 1;
 }
 
-bool skin_compile(const Skin *skin, const CompileOptions *options, CompiledScene *compiled, DiagList *diags, CompiledSkin *out) {
+bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, CompiledSkin *out) {
     SurfaceMesh mesh;
     ShapeRefusal refusal;
     *out = (CompiledSkin){.def = skin, .top = tallest_copy(skin)};
@@ -412,10 +411,34 @@ bool skin_compile(const Skin *skin, const CompileOptions *options, CompiledScene
     make_cells(skin, &mesh, compiled->arena, out, diags);
     out->texels = arena_new_array(compiled->arena, PlacedTexel, skin->texel_count);
     for (size_t i = 0; i < skin->texel_count; i++) {
-        if (!place_texel(skin, i, options, compiled, diags, out)) return false;
+        place_texel(skin, i, compiled, out);
         if (out->texels[i].family_size) out->texel_count = i + 1;
     }
+    return true;
+}
+
+void skin_ask_voxels(CompiledSkin *skin, const CompileOptions *options, const CompiledScene *compiled) {
+    double from = skin->boxes && isfinite(skin->exact_to) ? 0.7 * skin->exact_to : 0;
+    for (size_t i = 0; i < skin->texel_count; i++)
+        for (size_t k = 0; k < skin->texels[i].family_size; k++) {
+            BuiltTexel *texel = skin->texels[i].family[k];
+            int needed = options->texel_resolution ? options->texel_resolution
+                                                   : (int)needed_resolution(skin, &compiled->view, texel->extent, (double)compiled->march.voxel_width, from);
+            texel->needed = int_max(texel->needed, needed);
+        }
+}
+
+bool skin_finish(CompiledSkin *skin, const CompileOptions *options, CompiledScene *compiled) {
     void *device = hierarchy_device(compiled->hierarchy);
-    if (!options->exact) out->tree = cell_tree_build(out, device);
-    return out->tree || options->exact;
+    for (size_t i = 0; i < skin->texel_count; i++) {
+        PlacedTexel *placed = &skin->texels[i];
+        for (size_t k = 0; k < placed->family_size; k++) {
+            const BuiltTexel *texel = placed->family[k];
+            placed->levels = int_max(placed->levels, texel->levels);
+            if (!(texel->voxel < placed->finest_voxel)) continue;
+            placed->finest_voxel = texel->voxel;
+            placed->finest_extent = texel->extent;
+        }
+    }
+    return options->exact || (skin->tree = cell_tree_build(skin, device)) != NULL;
 }

@@ -32,6 +32,21 @@ float skin_light_through(SkinLight *light, const Cone *cone, double t_max, int b
     return transmittance;
 }
 
+float skin_light_through_voxels(SkinLight *light, const Cone *cone, double t_max, double seen_from) {
+    const CompiledScene *scene = light->compiled;
+    float transmittance = 1;
+    const Ray axis = {cone->origin, cone->direction};
+    size_t met = compiled_skins_met(scene, &axis, t_max, light->met);
+    for (size_t k = 0; k < met && transmittance > 0; k++) {
+        uint32_t i = light->met[k];
+        const CompiledSkin *skin = &scene->skins[i];
+        if (skin->boxes && seen_from <= skin->exact_to) continue;
+        skin_march_begin(&light->marches[i], cone, 0, t_max, &scene->shadow_march, light->counters, false);
+        transmittance = rest_of_march(&light->marches[i], transmittance);
+    }
+    return transmittance;
+}
+
 /* More hides nothing more. */
 static const float MOST_AREA = 1e4f;
 

@@ -17,6 +17,9 @@ void skin_light_init(SkinLight *light, const CompiledScene *compiled, TraceCount
 /* The share of light that passes all skins but `but` (-1: none) along the cone from t = 0 to t_max. In [0, 1]. */
 float skin_light_through(SkinLight *light, const Cone *cone, double t_max, int but);
 
+/* The same of those skins that are not drawn as exact geometry at the distance `seen_from` from the eye. */
+float skin_light_through_voxels(SkinLight *light, const Cone *cone, double t_max, double seen_from);
+
 /* The share of light that comes to matter of skin `own` at the start of the cone, which lies at `at` in it; what other skins
  * take away is left out. `tolerance` (scene units) is that of finding places in the skin. In [0, 1]. */
 float skin_light_on_matter(SkinLight *light, const Cone *cone, double t_max, uint32_t own, const SkinPoint *at, double tolerance);

@@ -61,6 +61,13 @@ static VoxelFit fit_voxels(const TexturePlace *place, Vec3f extent, float finest
     return (VoxelFit){.lod = side > finest_voxel ? log2f(side / finest_voxel) : 0, .voxel = float_max(side, finest_voxel), .width = side};
 }
 
+/* One voxel for the whole texel: the layer as a homogeneous slab. */
+static VoxelFit coarsest_voxels(const PlacedTexel *placed) {
+    float lod = (float)(placed->levels - 1);
+    float voxel = placed->finest_voxel * exp2f(lod);
+    return (VoxelFit){.lod = lod, .voxel = voxel, .width = voxel};
+}
+
 /* Chooses voxels and the length of steps for all texels at `place`. */
 static void fit_span(const SkinMarch *m, const TexturePlace *place, double t, MarchSpan *span) {
     Vec3 d = m->cone->direction;
@@ -70,6 +77,7 @@ static void fit_span(const SkinMarch *m, const TexturePlace *place, double t, Ma
         const PlacedTexel *placed = &m->skin->texels[i];
         float speed;
         span->fits[i] = fit_voxels(place, placed->finest_extent, placed->finest_voxel, d, width, &speed);
+        if (m->settings->slab) span->fits[i] = coarsest_voxels(placed);
         span->fits[i].width *= 1 / m->settings->voxel_width;
         span->fits[i].coarsening = exp2f(float_min(span->fits[i].lod, (float)(placed->levels - 1)));
         if (!(speed > 0)) continue;

@@ -27,6 +27,7 @@ typedef enum RayPath {
 typedef struct MarchSettings {
     OpacityModel opacity;
     RayPath path;
+    bool slab;            /* the coarsest voxels alone */
     float voxel_width;    /* side of the voxels to use, in footprints of the cone: 1 = voxels as wide as the cone */
     float step;           /* length of a step in voxels */
 } MarchSettings;

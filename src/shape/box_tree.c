@@ -174,3 +174,21 @@ bool box_tree_point(const BoxTree *tree, Vec3 point, bool (*visit)(void *context
     const Box3 box = {point, point};
     return box_tree_touch(tree, &box, visit, context);
 }
+
+void box_tree_descend(const BoxTree *tree, bool (*meets)(const void *context, const Box3 *box),
+                      void (*visit)(void *context, uint32_t item), void *context) {
+    uint32_t stack[DEEPEST + 2];
+    size_t depth = 0;
+    stack[depth++] = 0;
+    while (depth) {
+        const TreeNode *node = &tree->nodes[stack[--depth]];
+        if (box3_is_empty(node->box) || !meets(context, &node->box)) continue;
+        for (uint32_t i = 0; i < node->count; i++) {
+            uint32_t item = tree->items[node->first + i];
+            if (meets(context, &tree->boxes[item])) visit(context, item);
+        }
+        if (node->count || tree->node_count == 1) continue;
+        stack[depth++] = node->first + 1;
+        stack[depth++] = node->first;
+    }
+}

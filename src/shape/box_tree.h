@@ -18,6 +18,9 @@ bool box_tree_point(const BoxTree *tree, Vec3 point, bool (*visit)(void *context
                     void *context);
 /* The same for items whose box touches `box`. */
 bool box_tree_touch(const BoxTree *tree, const Box3 *box, bool (*visit)(void *context, uint32_t item), void *context);
+/* Calls visit(context, item) for the items whose box, and all boxes around it, meets(context, box) says yes to. */
+void box_tree_descend(const BoxTree *tree, bool (*meets)(const void *context, const Box3 *box),
+                      void (*visit)(void *context, uint32_t item), void *context);
 /* Where the ray is in the box, within [*t_near, *t_far], which it narrows; false when nowhere. Generous by rounding errors. */
 bool box_tree_clip(const Box3 *box, const Ray *ray, double *t_near, double *t_far);
 

@@ -18,30 +18,32 @@ static int tear_down(void **state) {
 }
 
 /* A bit of everything: skin with jitter, solids, two lights, sky, fog. */
-static const char meadow[] =
-    "#declare S = seed(3);\n"
-    "#declare Tuft = texel { resolution 32 cyclic x + z layer { particles { count 14 {\n"
-    "  position <rand(S), 0, rand(S)> velocity <0.3*rand(S)-0.15, 0.9, 0.3*rand(S)-0.15> acceleration <0, -0.2, 0.1> life 1\n"
-    "  width 0.06, 0.01 profile \"flat\" } } texture { pigment { rgb <0.2, 0.5, 0.1> } finish { diffuse 0.6, 0.3 } } } }\n"
-    "#declare Ball = texel { resolution 16 layer { sphere { <0.5, 0.5, 0.5>, 0.3 } texture { pigment { rgb x } } } }\n"
-    "camera { location <0, 2, -5> look_at <0, 0.4, 0> right x*image_width/image_height up y angle 50 }\n"
-    "light_source { <-20, 30, -25> rgb 1 parallel point_at 0 }\n"
-    "light_source { <5, 4, -3> rgb <0.3, 0.2, 0.1> }\n"
-    "background { rgb <0.4, 0.5, 0.8> }\n"
-    "fog { distance 40 rgb <0.4, 0.5, 0.8> }\n"
-    "#declare Ground = surface { patch_grid 8, 8 function(u, v) { <8*u - 4, 0.3*sin(7*u)*cos(5*v), 8*v - 4> } }\n"
-    "object { Ground }\n"
-    "sphere { <0.5, 0.8, -1>, 0.5 }\n"
-    "skin { surface { Ground } texel { Tuft } texel { Ball density 0.3 } mapping { repeat <12, 12> height 0.5 }\n"
-    "  jitter { direction 0.2 scale 0.8 height 0.3 scale 2 instance { rotate 360 displace 0.4 scale 0.3 mirror } seed 4 } }\n";
+#define MEADOW \
+    "#declare S = seed(3);\n" \
+    "#declare Tuft = texel { resolution 32 cyclic x + z layer { particles { count 14 {\n" \
+    "  position <rand(S), 0, rand(S)> velocity <0.3*rand(S)-0.15, 0.9, 0.3*rand(S)-0.15> acceleration <0, -0.2, 0.1> life 1\n" \
+    "  width 0.06, 0.01 profile \"flat\" } } texture { pigment { rgb <0.2, 0.5, 0.1> } finish { diffuse 0.6, 0.3 } } } }\n" \
+    "#declare Ball = texel { resolution 16 layer { sphere { <0.5, 0.5, 0.5>, 0.3 } texture { pigment { rgb x } } } }\n" \
+    "camera { location <0, 2, -5> look_at <0, 0.4, 0> right x*image_width/image_height up y angle 50 }\n" \
+    "light_source { <-20, 30, -25> rgb 1 parallel point_at 0 }\n" \
+    "light_source { <5, 4, -3> rgb <0.3, 0.2, 0.1> }\n" \
+    "background { rgb <0.4, 0.5, 0.8> }\n" \
+    "fog { distance 40 rgb <0.4, 0.5, 0.8> }\n" \
+    "#declare Ground = surface { patch_grid 8, 8 function(u, v) { <8*u - 4, 0.3*sin(7*u)*cos(5*v), 8*v - 4> } }\n" \
+    "object { Ground }\n" \
+    "sphere { <0.5, 0.8, -1>, 0.5 }\n" \
+    "skin { surface { Ground } texel { Tuft } texel { Ball density 0.3 } mapping { repeat <12, 12> height 0.5 }\n" \
+    "  jitter { direction 0.2 scale 0.8 height 0.3 scale 2 instance { rotate 360 displace 0.4 scale 0.3 mirror } seed 4 } }\n"
+static const char meadow[] = MEADOW;
+static const char voxel_meadow[] = "global_settings { detail voxels }\n" MEADOW;
 
-static void threads_do_not_change_pixels(void **state) {
+static void threads_do_not_change(void **state, const char *scene) {
     VtsOptions o = options_of_size(70, 50);
     static const int threads[] = {1, 2, 5};
     Picture first = {0};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(threads); i++) {
         o.threads = threads[i];
-        Picture p = bench_render(*state, &o, meadow);
+        Picture p = bench_render(*state, &o, scene);
         if (i) {
             assert_memory_equal(p.pixels, first.pixels, 3 * sizeof(float) * 70 * 50);
             picture_free(&p);
@@ -52,11 +54,16 @@ static void threads_do_not_change_pixels(void **state) {
     for (size_t i = 0; i < 3 * 70 * 50; i++) assert_true(isfinite(first.pixels[i]) && first.pixels[i] >= 0 && first.pixels[i] < 20);
     const int region[4] = {17, 23, 60, 49};
     memcpy(o.region, region, sizeof region);
-    Picture part = bench_render(*state, &o, meadow);
+    Picture part = bench_render(*state, &o, scene);
     for (int y = 0; y < part.height; y++)
         assert_memory_equal(pixel_at(&part, 0, y), pixel_at(&first, 17, y + 23), 3 * sizeof(float) * 43);
     picture_free(&part);
     picture_free(&first);
+}
+
+static void threads_do_not_change_pixels(void **state) {
+    threads_do_not_change(state, meadow);
+    threads_do_not_change(state, voxel_meadow);
 }
 
 /* ---- the report ---- */
@@ -73,7 +80,7 @@ static double number_after(const char *text, const char *key) {
 static void texels_are_kept_from_call_to_call(void **state) {
     const Bench *b = *state;
     VtsOptions o = options_of_size(40, 30);
-    bench_write(b, meadow);
+    bench_write(b, voxel_meadow);
     VtsSession *session = vts_session_create(&o, NULL);
     assert_int_equal(vts_render(session, b->scene, b->output), VTS_OK);
     assert_null(strstr(vts_report(session), "\"cached\":true"));
@@ -89,7 +96,7 @@ static void texels_are_kept_from_call_to_call(void **state) {
 static void the_report_counts_what_was_done(void **state) {
     const Bench *b = *state;
     VtsOptions o = options_of_size(70, 50);
-    bench_write(b, meadow);
+    bench_write(b, voxel_meadow);
     VtsSession *session = vts_session_create(&o, NULL);
     assert_string_equal(vts_report(session), "");
     assert_int_equal(vts_render(session, b->scene, b->output), VTS_OK);

@@ -213,6 +213,7 @@ texel_scene() {
 #declare Trees = array[2] { Ball, Checked }
 S
   cat >ground.inc <<'S'
+global_settings { detail voxels }
 camera { location <0, 2, -3> look_at 0 right x*image_width/image_height }
 light_source { <-20, 30, -25> rgb 1 }
 background { rgb <0.5, 0.7, 1> }
@@ -462,7 +463,7 @@ is_true() { awk "BEGIN { exit !($1) }" || fail "'$call': not $1"; }
 case_chart() {
   scene
   cat >>scene.vts <<'S'
-global_settings { max_error 1/60 }
+global_settings { max_error 1/60 detail voxels }
 skin {
   surface { patch_grid 1, 1 function(u, v) { <4*u - 2, 0, 4*v - 2> } }
   texel { texel { layer { cone { <0.5, 0, 0.5>, 0.2, <0.5, 1, 0.5>, 0 } } resolution 32 } }

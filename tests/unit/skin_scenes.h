@@ -138,6 +138,7 @@ static inline void skin_scene_begin(SkinScene *s) {
     s->texture = (Texture){.pigment = &s->pigment, .finish = &s->finish, .transform = transform_identity()};
     s->scene = (Scene){.name = "test", .camera = camera_default(1), .has_camera = true, .default_texture = &s->texture,
                        .settings = global_settings_default()};
+    s->scene.settings.detail = "voxels"; /* whatever the camera sees */
     s->scene.camera.location = vec3(0, 0, -5);
     s->skins[0] = &s->skin;
     s->skin = (Skin){.surface = &s->surface, .mapping = {.repeat_u = 1, .repeat_v = 1, .height = 1, .w_tip = 1},

@@ -11,8 +11,8 @@
 #include <cmocka.h>
 
 static const TexelDef definition = {.name = "test"};
-static const BuiltTexel one = {.def = &definition, .extent = {1, 1, 1}}, two = {.def = &definition, .extent = {1, 1, 1}};
-static const BuiltTexel *const family[] = {&one, &two};
+static BuiltTexel one = {.def = &definition, .extent = {1, 1, 1}}, two = {.def = &definition, .extent = {1, 1, 1}};
+static BuiltTexel *const family[] = {&one, &two};
 
 /* As the renderer places it: `reach` tiles away a copy may still cover a point. */
 static PlacedTexel placed_texel(InstanceJitter jitter, int reach, uint64_t seed) {

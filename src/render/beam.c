@@ -1,0 +1,178 @@
+#include "render/beam.h"
+
+Vec3 beam_vector(const Beam *beam, Vec3 v) {
+    return vec3(vec3_dot(beam->rows[0], v), vec3_dot(beam->rows[1], v), vec3_dot(beam->rows[2], v));
+}
+
+Vec3 beam_point(const Beam *beam, Vec3 p) { return vec3_add(beam_vector(beam, vec3_sub(p, beam->origin)), beam->shift); }
+
+/* k·q.x + l·q.y + m·q.z + n >= 0, of points of the scene. */
+static BeamPlane plane_of(const Beam *b, double k, double l, double m, double n) {
+    Vec3 normal = vec3_madd(vec3_madd(vec3_scale(b->rows[0], k), b->rows[1], l), b->rows[2], m);
+    double offset = k * b->shift.x + l * b->shift.y + m * b->shift.z + n - vec3_dot(normal, b->origin);
+    return (BeamPlane){normal, offset};
+}
+
+void beam_close(Beam *b) {
+    double width = b->samples.columns, height = b->samples.rows;
+    bool p = b->perspective;
+    b->planes[0] = plane_of(b, 1, 0, 0, 0);
+    b->planes[1] = p ? plane_of(b, -1, 0, width, 0) : plane_of(b, -1, 0, 0, width);
+    b->planes[2] = plane_of(b, 0, 1, 0, 0);
+    b->planes[3] = p ? plane_of(b, 0, -1, height, 0) : plane_of(b, 0, -1, 0, height);
+    b->planes[4] = plane_of(b, 0, 0, p ? 1 : -1, p ? -b->nearest : b->nearest);
+    b->planes[5] = plane_of(b, 0, 0, p ? -1 : 1, p ? b->farthest : -b->farthest);
+}
+
+bool beam_meets_box(const Beam *beam, const Box3 *box) {
+    Vec3 middle = vec3_scale(vec3_add(box->min, box->max), 0.5), half = vec3_scale(vec3_sub(box->max, box->min), 0.5);
+    for (int i = 0; i < 6; i++) {
+        const BeamPlane *plane = &beam->planes[i];
+        double reach = fabs(plane->normal.x) * half.x + fabs(plane->normal.y) * half.y + fabs(plane->normal.z) * half.z;
+        if (vec3_dot(plane->normal, middle) + plane->offset + reach < 0) return false;
+    }
+    return true;
+}
+
+/* ---- drawing ---- */
+
+/* Twice the signed area and the key's slopes over a triangle, and its three edges as functions e = a·x + b·y + c that are positive
+ * inside. */
+typedef struct Triangle {
+    float a[3], b[3], c[3];
+    float key_x, key_y, key_0;
+} Triangle;
+
+static bool set_up(const Vec3f p[3], Triangle *t) {
+    float area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
+    if (!(fabsf(area) > 1e-20f)) return false;
+    float inverse = 1 / area;
+    for (int i = 0; i < 3; i++) {
+        const Vec3f *from = &p[(i + 1) % 3], *to = &p[(i + 2) % 3];
+        t->a[i] = (from->y - to->y) * inverse; /* barycentric: 1 at corner i */
+        t->b[i] = (to->x - from->x) * inverse;
+        t->c[i] = -(t->a[i] * from->x + t->b[i] * from->y);
+    }
+    t->key_x = t->key_y = 0;
+    for (int i = 0; i < 3; i++) t->key_x += t->a[i] * p[i].z, t->key_y += t->b[i] * p[i].z;
+    t->key_0 = p[0].z - t->key_x * p[0].x - t->key_y * p[0].y;
+    return true;
+}
+
+/* Slack of bins against rounding. */
+static const float HAIR = 1e-3f;
+
+static int bin_below(float x, int most) { return x > 0 ? x < (float)most ? (int)x : most : 0; }
+
+/* Samples begin … end − 1 against the triangle. Written so that compilers make vectors of it. */
+static bool cover(const BeamSamples *s, const Triangle *t, uint32_t begin, uint32_t end, float most, float exact_to, uint32_t mark) {
+    const float *restrict x = s->x, *restrict y = s->y;
+    const float *restrict limit = s->limit;
+    float *restrict key = s->key;
+    uint32_t *restrict marks = s->mark;
+    float a0 = t->a[0], b0 = t->b[0], c0 = t->c[0], a1 = t->a[1], b1 = t->b[1], c1 = t->c[1], a2 = t->a[2], b2 = t->b[2], c2 = t->c[2];
+    float kx = t->key_x, ky = t->key_y, k0 = t->key_0;
+    uint32_t any = 0;
+    for (uint32_t i = begin; i < end; i++) {
+        float e0 = a0 * x[i] + b0 * y[i] + c0, e1 = a1 * x[i] + b1 * y[i] + c1, e2 = a2 * x[i] + b2 * y[i] + c2;
+        float k = kx * x[i] + ky * y[i] + k0;
+        uint32_t in = (uint32_t)(e0 >= 0) & (uint32_t)(e1 >= 0) & (uint32_t)(e2 >= 0) & (uint32_t)(k > key[i]) &
+                      (uint32_t)(k * exact_to >= limit[i]) & (uint32_t)(k <= most);
+        uint32_t mask = 0u - in;
+        key[i] = in ? k : key[i];
+        marks[i] = (mark & mask) | (marks[i] & ~mask);
+        any |= in;
+    }
+    return any;
+}
+
+/* The same of a light's beam: samples keep their own keys. */
+static bool shade(const BeamSamples *s, const Triangle *t, uint32_t begin, uint32_t end, float most, float exact_to) {
+    const float *restrict x = s->x, *restrict y = s->y, *restrict key = s->key, *restrict limit = s->limit;
+    uint32_t *restrict marks = s->mark;
+    float a0 = t->a[0], b0 = t->b[0], c0 = t->c[0], a1 = t->a[1], b1 = t->b[1], c1 = t->c[1], a2 = t->a[2], b2 = t->b[2], c2 = t->c[2];
+    float kx = t->key_x, ky = t->key_y, k0 = t->key_0;
+    for (uint32_t i = begin; i < end; i++) {
+        float e0 = a0 * x[i] + b0 * y[i] + c0, e1 = a1 * x[i] + b1 * y[i] + c1, e2 = a2 * x[i] + b2 * y[i] + c2;
+        float k = kx * x[i] + ky * y[i] + k0;
+        marks[i] |= (uint32_t)(e0 >= 0) & (uint32_t)(e1 >= 0) & (uint32_t)(e2 >= 0) & (uint32_t)(k > key[i]) &
+                    (uint32_t)(exact_to >= limit[i]) & (uint32_t)(k <= most);
+    }
+    return true;
+}
+
+/* The range of x that the triangle has between two heights. */
+static void narrow(const Vec3f p[3], float top, float bottom, float *left, float *right) {
+    *left = INFINITY, *right = -INFINITY;
+    for (int i = 0; i < 3; i++) {
+        Vec3f a = p[i], b = p[(i + 1) % 3];
+        if (a.y > b.y) a = p[(i + 1) % 3], b = p[i];
+        if (b.y < top || a.y > bottom) continue;
+        float slope = b.y > a.y ? (b.x - a.x) / (b.y - a.y) : 0;
+        float x0 = a.y < top ? a.x + (top - a.y) * slope : a.x, x1 = b.y > bottom ? a.x + (bottom - a.y) * slope : b.x;
+        *left = float_min(*left, float_min(x0, x1));
+        *right = float_max(*right, float_max(x0, x1));
+    }
+}
+
+/* Projected: (x, y, key). */
+static bool draw_triangle(Beam *beam, Vec3f a, Vec3f b, Vec3f c, uint32_t mark) {
+    const BeamSamples *s = &beam->samples;
+    float left = float_min(a.x, float_min(b.x, c.x)), right = float_max(a.x, float_max(b.x, c.x));
+    float top = float_min(a.y, float_min(b.y, c.y)), bottom = float_max(a.y, float_max(b.y, c.y));
+    if (!(right >= 0 && left <= (float)s->columns && bottom >= 0 && top <= (float)s->rows)) return false;
+    Triangle t;
+    Vec3f corners[3] = {a, b, c};
+    if (!set_up(corners, &t)) return false;
+    int x0 = bin_below(left, s->columns - 1), x1 = bin_below(right, s->columns - 1);
+    int y0 = bin_below(top, s->rows - 1), y1 = bin_below(bottom, s->rows - 1);
+    bool large = y1 > y0 && x1 > x0;
+    float most = beam->perspective ? INFINITY : (float)beam->nearest;
+    bool any = false;
+    for (int row = y0; row <= y1; row++) {
+        const uint32_t *first = s->first + row * s->columns;
+        if (large) {
+            narrow(corners, (float)row - HAIR, (float)(row + 1) + HAIR, &left, &right);
+            if (!(right + HAIR >= 0 && left - HAIR <= (float)s->columns)) continue;
+            x0 = bin_below(left - HAIR, s->columns - 1), x1 = bin_below(right + HAIR, s->columns - 1);
+        }
+        if (beam->light) any |= shade(s, &t, first[x0], first[x1 + 1], most, beam->exact_to);
+        else any |= cover(s, &t, first[x0], first[x1 + 1], most, beam->exact_to, mark);
+    }
+    return any;
+}
+
+/* The part with q.z >= nearest. */
+static int clip_near(const Vec3f *in, int count, float nearest, Vec3f *out) {
+    int kept = 0;
+    for (int i = 0; i < count; i++) {
+        Vec3f a = in[i], b = in[(i + 1) % count];
+        if (a.z >= nearest) out[kept++] = a;
+        if ((a.z >= nearest) != (b.z >= nearest)) {
+            float t = (nearest - a.z) / (b.z - a.z);
+            out[kept++] = vec3f(a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), nearest);
+        }
+    }
+    return kept;
+}
+
+bool beam_draw(Beam *beam, const Vec3f *corners, int count, uint32_t mark) {
+    Vec3f clipped[MOST_CORNERS + 1], seen[MOST_CORNERS + 1];
+    if (beam->perspective) {
+        float nearest = (float)beam->nearest;
+        bool clip = false;
+        for (int i = 0; i < count; i++) clip |= !(corners[i].z >= nearest);
+        if (clip) {
+            count = clip_near(corners, count, nearest, clipped);
+            corners = clipped;
+        }
+        for (int i = 0; i < count; i++) {
+            float key = 1 / corners[i].z;
+            seen[i] = vec3f(corners[i].x * key, corners[i].y * key, key);
+        }
+        corners = seen;
+    }
+    bool any = false;
+    for (int i = 2; i < count; i++) any |= draw_triangle(beam, corners[0], corners[i - 1], corners[i], mark);
+    return any;
+}

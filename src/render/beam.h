@@ -1,0 +1,57 @@
+/* Beams: bundles of sample lines that share a projection, and triangles drawn into them.
+ *
+ * The camera's lines through a tile of the picture are a beam, and so are the lines from what the tile shows to a light. A
+ * triangle covers those samples whose line it crosses; of the camera's each keeps the nearest, of a light's each learns whether
+ * anything lies before it. Samples lie anywhere, sorted into square bins, so that shadows are as exact as rays (an irregular
+ * z-buffer: Johnson et al. 2005, Aila & Laine 2004).
+ *
+ * Beam space of a point P: q = rows·(P − origin) + shift. A perspective beam sees it at (q.x/q.z, q.y/q.z) with the key 1/q.z,
+ * a parallel one at (q.x, q.y) with the key q.z. Keys grow towards the eye or the light and are linear over a triangle. */
+#ifndef VTS_RENDER_BEAM_H
+#define VTS_RENDER_BEAM_H
+
+#include "base/arena.h"
+#include "base/vec.h"
+
+/* Sorted by bin: those of bin (column, row) are numbers first[row·columns + column] up to the next bin's. */
+typedef struct BeamSamples {
+    int columns, rows;
+    uint32_t *first; /* [columns·rows + 1] */
+    float *x, *y;    /* in bins */
+    float *key;      /* of the nearest so far; of a light's beam, of the point itself */
+    float *limit;    /* how exact_to bounds what is drawn: of the eye's samples key · exact_to, of a light's points exact_to alone must
+                        be at least this much */
+    uint32_t *mark;  /* of the nearest facet; of a light's beam, whether something lies before the point */
+} BeamSamples;
+
+typedef struct BeamPlane {
+    Vec3 normal;
+    double offset; /* inside: normal · P + offset >= 0 */
+} BeamPlane;
+
+typedef struct Beam {
+    Vec3 origin, rows[3], shift;
+    bool perspective;
+    bool light;       /* a light's beam */
+    double nearest;   /* perspective: smallest q.z; parallel: no matter of larger q.z counts */
+    double farthest;  /* the other end */
+    float tolerance;  /* in bins: how far a triangle's edge may be from the curve that the mapping makes of it */
+    float exact_to;   /* of what is drawn now: the distance up to which it is drawn as exact geometry; INFINITY */
+    BeamPlane planes[6];
+    BeamSamples samples;
+} Beam;
+
+/* Finishes a beam whose projection, limits and samples are set: planes for culling. */
+void beam_close(Beam *beam);
+/* False when the box certainly is out of the beam. */
+bool beam_meets_box(const Beam *beam, const Box3 *box);
+/* The beam-space point of P, in doubles. */
+Vec3 beam_point(const Beam *beam, Vec3 p);
+/* Its linear part. */
+Vec3 beam_vector(const Beam *beam, Vec3 v);
+
+enum { MOST_CORNERS = 16 };
+/* Draws a convex polygon given in beam space; false when no sample sees it. Those that do get `mark`. */
+bool beam_draw(Beam *beam, const Vec3f *corners, int count, uint32_t mark);
+
+#endif

@@ -1,0 +1,89 @@
+/* What is drawn as exact geometry, and from where on voxels are better. */
+#include "render/compile.h"
+
+/* What is round is tessellated to this part of the finest voxels that would be seen: a tenth of a pixel. */
+static const double BEAM_TOLERANCE_VOXELS = 0.2;
+/* As many triangles in a pixel's footprint cost as much as its voxels do. */
+static const double MOST_TRIANGLES_A_PIXEL = 128;
+/* More triangles than this are left to the voxels. */
+enum { MOST_BEAM_TRIANGLES = 4000000 };
+
+bool beam_build_texel(BuiltTexel *texel, CompiledScene *compiled, DiagList *diags) {
+    const TexelDef *def = texel->def;
+    if (def->file || def->layer_count == 0) return true;
+    ArenaMark mark = arena_mark(&compiled->scratch);
+    BeamTexelDraft *draft = beam_texel_begin(texel->extent, def->cyclic, &compiled->scratch);
+    size_t triangles = 0;
+    for (size_t i = 0; i < def->layer_count; i++) {
+        TexelMesh mesh;
+        if (!texel_mesh_layer(texel, &def->layers[i], BEAM_TOLERANCE_VOXELS / int_max(texel->finest_seen, 16), compiled, diags, &mesh)) return false;
+        triangles += mesh.triangle_count;
+        if (triangles <= MOST_BEAM_TRIANGLES) beam_texel_add_layer(draft, &mesh);
+    }
+    if (triangles <= MOST_BEAM_TRIANGLES) texel->beam = beam_texel_finish(draft, compiled->arena);
+    arena_reset_to(&compiled->scratch, mark);
+    return true;
+}
+
+/* Area of the surface against that of its tiles. */
+static double mean_tile_size(const CompiledSkin *skin) {
+    double area = 0, tiles = 0;
+    for (size_t i = 0; i < skin->cell_count; i++) {
+        const SkinCell *cell = &skin->cells[i];
+        double middle = cell->triangle ? 1.0 / 3 : 0.5, share = cell->triangle ? 0.5 : 1;
+        Mat3 j;
+        skin_cell_position(cell, middle, middle, 0, &j);
+        const double *u = cell->u.c, *v = cell->v.c;
+        double ua = u[1] + u[3] * middle, ub = u[2] + u[3] * middle, va = v[1] + v[3] * middle, vb = v[2] + v[3] * middle;
+        area += share * vec3_length(vec3_cross(j.c[0], j.c[1]));
+        tiles += share * fabs(ua * vb - ub * va);
+    }
+    return tiles > 0 && area > 0 ? sqrt(area / tiles) : 0;
+}
+
+/* Triangles over one tile, on the average. */
+static double triangles_a_tile(const CompiledSkin *skin, bool *all) {
+    double sum = 0;
+    for (size_t i = 0; i < skin->texel_count; i++) {
+        const PlacedTexel *placed = &skin->texels[i];
+        double family = 0;
+        for (size_t k = 0; k < placed->family_size; k++) {
+            const BeamTexel *beam = placed->family[k]->beam;
+            *all &= beam != NULL;
+            if (beam) family += (double)beam->triangle_count / (double)placed->family_size;
+        }
+        sum += placed->density * family;
+    }
+    return sum;
+}
+
+static void seen_range(const CompiledSkin *skin, const View *view, double *nearest, double *farthest) {
+    Vec3 eye = view->camera.location;
+    *nearest = VTS_INFINITY, *farthest = 0;
+    for (size_t i = 0; i < skin->cell_count; i++) {
+        Box3 box = skin->cells[i].bounds;
+        if (view_misses(view, box)) continue;
+        Vec3 near = vec3_max(box.min, vec3_min(box.max, eye));
+        Vec3 far = vec3_max(vec3_sub(box.max, eye), vec3_sub(eye, box.min));
+        *nearest = fmin(*nearest, vec3_length(vec3_sub(near, eye)));
+        *farthest = fmax(*farthest, vec3_length(far));
+    }
+}
+
+void beam_plan_skin(CompiledSkin *skin, bool everything, CompiledScene *compiled) {
+    const View *view = &compiled->view;
+    bool all = true;
+    double triangles = triangles_a_tile(skin, &all), nearest, farthest;
+    skin->tile_size = mean_tile_size(skin);
+    if (!all || !(skin->tile_size > 0)) return;
+    Cone cone = view_cone(view, view->width / 2.0, view->height / 2.0, 1);
+    double width = skin->tile_size * sqrt(MOST_TRIANGLES_A_PIXEL / fmax(triangles, 1));
+    double to = cone.spread > 0 ? width / cone.spread : cone.width <= width ? VTS_INFINITY : 0;
+    seen_range(skin, view, &nearest, &farthest);
+    if (everything || 0.7 * to >= farthest) to = VTS_INFINITY;
+    if (1.42 * to <= nearest) return;
+    Box3 *boxes = arena_new_array(compiled->arena, Box3, skin->cell_count);
+    for (size_t i = 0; i < skin->cell_count; i++) boxes[i] = skin->cells[i].bounds;
+    skin->boxes = box_tree_build(boxes, skin->cell_count, compiled->arena);
+    skin->exact_to = to;
+}

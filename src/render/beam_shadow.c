@@ -1,0 +1,205 @@
+#include "render/beam_shadow.h"
+
+#include <string.h>
+
+enum { POINTS_IN_BIN = 4, MOST_BINS_ACROSS = 128, LEAST_HALVED = 64 };
+/* The share of a window's bins that hold points. */
+static const double LEAST_FILLED = 0.4;
+
+void shadow_scratch_init(ShadowScratch *s, uint32_t points, size_t most_cells, Arena *arena) {
+    *s = (ShadowScratch){.capacity = points,
+                         .order = arena_new_array(arena, uint32_t, points),
+                         .sorted = arena_new_array(arena, uint32_t, points),
+                         .bin = arena_new_array(arena, uint32_t, points),
+                         .first = arena_new_array(arena, uint32_t, MOST_BINS_ACROSS * MOST_BINS_ACROSS + 1),
+                         .mark = arena_new_array(arena, uint32_t, points),
+                         .x = arena_new_array(arena, float, points),
+                         .y = arena_new_array(arena, float, points),
+                         .key = arena_new_array(arena, float, points),
+                         .limit = arena_new_array(arena, float, points)};
+    s->draft.cells = arena_new_array(arena, BeamCell, most_cells);
+}
+
+/* The rectangle around the points as the beam sees them, and the range of their keys. */
+typedef struct Window {
+    double x0, x1, y0, y1, key0, key1;
+    uint32_t count;
+} Window;
+
+static Vec3 seen_at(const Beam *beam, Vec3f p) {
+    Vec3 q = beam_vector(beam, vec3_from_f(p));
+    q = vec3_add(q, beam->shift); /* of the beam from the points' origin */
+    return beam->perspective ? vec3(q.x / q.z, q.y / q.z, 1 / q.z) : q;
+}
+
+static Window look_through(const Beam *beam, const ShadowPoints *in, const uint32_t *order, uint32_t count) {
+    Window w = {VTS_INFINITY, -VTS_INFINITY, VTS_INFINITY, -VTS_INFINITY, VTS_INFINITY, -VTS_INFINITY, count};
+    for (uint32_t i = 0; i < count; i++) {
+        Vec3 q = seen_at(beam, in->points[order[i]]);
+        w.x0 = fmin(w.x0, q.x), w.x1 = fmax(w.x1, q.x), w.y0 = fmin(w.y0, q.y), w.y1 = fmax(w.y1, q.y);
+        w.key0 = fmin(w.key0, q.z), w.key1 = fmax(w.key1, q.z);
+    }
+    return w;
+}
+
+/* Scales and shifts the projection so that the window is cut into bins of a few points each. */
+static void fit_bins(Beam *beam, const Window *w) {
+    double width = fmax(w->x1 - w->x0, 1e-12), height = fmax(w->y1 - w->y0, 1e-12);
+    double bins = fmax(1, (double)w->count / POINTS_IN_BIN), side = sqrt(width * height / bins);
+    side = fmax(side, fmax(width, height) / (MOST_BINS_ACROSS - 1));
+    BeamSamples *s = &beam->samples;
+    s->columns = (int)double_clamp(ceil(width / side * 1.0001), 1, MOST_BINS_ACROSS);
+    s->rows = (int)double_clamp(ceil(height / side * 1.0001), 1, MOST_BINS_ACROSS);
+    double x0 = w->x0 - 0.5 * (s->columns * side - width), y0 = w->y0 - 0.5 * (s->rows * side - height);
+    Vec3 *r = beam->rows;
+    if (beam->perspective) { /* what is taken from the quotient is taken times q.z before */
+        r[0] = vec3_scale(vec3_madd(r[0], r[2], -x0), 1 / side);
+        r[1] = vec3_scale(vec3_madd(r[1], r[2], -y0), 1 / side);
+        beam->shift.x = (beam->shift.x - x0 * beam->shift.z) / side;
+        beam->shift.y = (beam->shift.y - y0 * beam->shift.z) / side;
+    } else {
+        r[0] = vec3_scale(r[0], 1 / side);
+        r[1] = vec3_scale(r[1], 1 / side);
+        beam->shift.x = (beam->shift.x - x0) / side;
+        beam->shift.y = (beam->shift.y - y0) / side;
+    }
+    beam->tolerance = (float)((double)beam->tolerance / side);
+}
+
+/* Sorts the points into the beam's bins; returns how many of those are not empty. */
+static int sort_points(ShadowScratch *scratch, Beam *beam, const ShadowPoints *in, const uint32_t *order, uint32_t count) {
+    BeamSamples *s = &beam->samples;
+    int bins = s->columns * s->rows, filled = 0;
+    *s = (BeamSamples){s->columns, s->rows, scratch->first, scratch->x, scratch->y, scratch->key, scratch->limit, scratch->mark};
+    memset(s->first, 0, ((size_t)bins + 1) * sizeof *s->first);
+    uint32_t *bin_of = scratch->bin, *sorted = scratch->sorted;
+    for (uint32_t i = 0; i < count; i++) {
+        Vec3 q = seen_at(beam, in->points[order[i]]);
+        int column = int_clamp((int)q.x, 0, s->columns - 1), row = int_clamp((int)q.y, 0, s->rows - 1);
+        bin_of[i] = (uint32_t)(row * s->columns + column);
+        s->first[bin_of[i] + 1]++;
+    }
+    for (int b = 0; b < bins; b++) {
+        filled += s->first[b + 1] > 0;
+        s->first[b + 1] += s->first[b];
+    }
+    for (uint32_t i = count; i-- > 0;) { /* fills each bin from its end; `first` comes back to the beginnings */
+        Vec3 q = seen_at(beam, in->points[order[i]]);
+        uint32_t at = --s->first[bin_of[i] + 1];
+        s->x[at] = (float)q.x, s->y[at] = (float)q.y, s->key[at] = (float)q.z;
+        s->mark[at] = 0;
+        s->limit[at] = in->distance[order[i]];
+        sorted[at] = order[i];
+    }
+    /* Now first[b + 1] is where bin b begins. */
+    memmove(s->first, s->first + 1, (size_t)bins * sizeof *s->first);
+    s->first[bins] = count;
+    return filled;
+}
+
+/* Moves the points of the window's first half, across its longer side, to the front; returns how many. */
+static uint32_t halve(const Beam *beam, const Window *w, const ShadowPoints *in, uint32_t *order, uint32_t count) {
+    bool across = w->x1 - w->x0 >= w->y1 - w->y0;
+    double middle = across ? (w->x0 + w->x1) / 2 : (w->y0 + w->y1) / 2;
+    uint32_t low = 0, high = count;
+    while (low < high) {
+        Vec3 q = seen_at(beam, in->points[order[low]]);
+        uint32_t other = order[low];
+        if ((across ? q.x : q.y) < middle) {
+            low++;
+        } else {
+            order[low] = order[--high];
+            order[high] = other;
+        }
+    }
+    return low;
+}
+
+/* Draws the skins between the points and the light. Points that lie in few places of their window are taken by halves: much would
+ * be drawn into the empty part of it. */
+static void cast(ShadowScratch *scratch, const CompiledScene *compiled, const Beam *aim, const ShadowPoints *in, uint32_t *order, uint32_t count) {
+    if (count == 0) return;
+    Beam beam = *aim;
+    Window w = look_through(&beam, in, order, count);
+    fit_bins(&beam, &w);
+    int filled = sort_points(scratch, &beam, in, order, count);
+    if (count >= LEAST_HALVED && filled < LEAST_FILLED * beam.samples.columns * beam.samples.rows) {
+        uint32_t low = halve(aim, &w, in, order, count);
+        if (low > 0 && low < count) {
+            cast(scratch, compiled, aim, in, order, low);
+            cast(scratch, compiled, aim, in, order + low, count - low);
+            return;
+        }
+    }
+    if (beam.perspective) {
+        beam.farthest = 1 / w.key0;
+        beam.nearest = 1e-4 * beam.farthest;
+    } else {
+        beam.farthest = w.key0;
+        beam.nearest = VTS_INFINITY;
+    }
+    beam_close(&beam);
+    scratch->draft.beam = &beam;
+    beam_draw_skins(&scratch->draft, compiled);
+    for (uint32_t i = 0; i < count; i++) in->hidden[scratch->sorted[i]] |= (uint8_t)beam.samples.mark[i];
+}
+
+/* Points that are not hidden yet and whose way to the light meets the box of all skins. */
+static bool may_be_hidden(const CompiledScene *compiled, const Light *light, const ShadowPoints *in, uint32_t i) {
+    if (in->hidden[i]) return false;
+    Vec3 from = vec3_add(in->origin, vec3_from_f(in->points[i]));
+    bool parallel = light->kind == LIGHT_PARALLEL;
+    Ray ray = {from, parallel ? light->to_light : vec3_sub(light->location, from)};
+    double near = 0, far = parallel ? VTS_INFINITY : 1;
+    return box_tree_clip(&compiled->exact_bounds, &ray, &near, &far);
+}
+
+/* The direction across the light along which the points lie apart most: beams are narrow across it. */
+static Vec3 longest_across(const ShadowPoints *in, const uint32_t *order, uint32_t count, Vec3 to_light) {
+    Vec3f first = in->points[order[0]], last = in->points[order[count - 1]];
+    Vec3 along = vec3_sub(vec3_from_f(last), vec3_from_f(first));
+    along = vec3_madd(along, to_light, -vec3_dot(along, to_light));
+    if (vec3_length_squared(along) > 1e-20) return vec3_normalize(along);
+    Vec3 s, t;
+    vec3_frame(to_light, &s, &t);
+    return s;
+}
+
+static void cast_parallel(ShadowScratch *scratch, const CompiledScene *compiled, const Light *light, const ShadowPoints *in) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < in->count; i++)
+        if (may_be_hidden(compiled, light, in, i)) scratch->order[count++] = i;
+    if (count == 0) return;
+    Vec3 s = longest_across(in, scratch->order, count, light->to_light);
+    Beam beam = {.origin = in->origin, .rows = {s, vec3_cross(light->to_light, s), light->to_light}, .light = true,
+                 .tolerance = (float)in->tolerance};
+    cast(scratch, compiled, &beam, in, scratch->order, count);
+}
+
+/* Towards a light at a place: six beams, one for each side of a cube around it. */
+static void cast_central(ShadowScratch *scratch, const CompiledScene *compiled, const Light *light, const ShadowPoints *in) {
+    Vec3 from = vec3_sub(in->origin, light->location);
+    for (int face = 0; face < 6; face++) {
+        double sign = face & 1 ? -1 : 1;
+        Vec3 axis = face / 2 == 0 ? vec3(sign, 0, 0) : face / 2 == 1 ? vec3(0, sign, 0) : vec3(0, 0, sign), s, t;
+        uint32_t count = 0;
+        for (uint32_t i = 0; i < in->count; i++) {
+            Vec3 p = vec3_add(from, vec3_from_f(in->points[i]));
+            double size[3] = {fabs(p.x), fabs(p.y), fabs(p.z)};
+            int most = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
+            if (may_be_hidden(compiled, light, in, i) && most == face / 2 && vec3_dot(p, axis) > 0) scratch->order[count++] = i;
+        }
+        vec3_frame(axis, &s, &t);
+        Vec3 rows[3] = {s, t, axis};
+        Beam beam = {.origin = in->origin, .rows = {s, t, axis}, .perspective = true, .light = true,
+                     .shift = {vec3_dot(rows[0], from), vec3_dot(rows[1], from), vec3_dot(rows[2], from)}};
+        double distance = vec3_length(from);
+        beam.tolerance = (float)(in->tolerance / fmax(distance, 1e-12));
+        cast(scratch, compiled, &beam, in, scratch->order, count);
+    }
+}
+
+void beam_shadow(ShadowScratch *scratch, const CompiledScene *compiled, const Light *light, const ShadowPoints *in) {
+    if (light->kind == LIGHT_PARALLEL) cast_parallel(scratch, compiled, light, in);
+    else cast_central(scratch, compiled, light, in);
+}

@@ -1,0 +1,27 @@
+/* Exact shadows of skins on points: beams towards a light. */
+#ifndef VTS_RENDER_BEAM_SHADOW_H
+#define VTS_RENDER_BEAM_SHADOW_H
+
+#include "render/beam_skin.h"
+
+/* Points to be tested; `hidden` is set, never cleared, for those that matter of skins keeps from the light. */
+typedef struct ShadowPoints {
+    Vec3 origin;           /* from which the points count */
+    const Vec3f *points;
+    const float *distance; /* of each from the eye: skins that are voxels there are left out */
+    uint8_t *hidden;
+    uint32_t count;
+    double tolerance;      /* scene units: how far shadows may be off */
+} ShadowPoints;
+
+typedef struct ShadowScratch {
+    BeamDraft draft;       /* with room for cells; of facets nothing is kept */
+    uint32_t *order, *sorted, *bin, *first, *mark;
+    float *x, *y, *key, *limit;
+    uint32_t capacity;     /* of points */
+} ShadowScratch;
+
+void shadow_scratch_init(ShadowScratch *scratch, uint32_t points, size_t most_cells, Arena *arena);
+void beam_shadow(ShadowScratch *scratch, const CompiledScene *compiled, const Light *light, const ShadowPoints *points);
+
+#endif

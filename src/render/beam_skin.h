@@ -1,0 +1,39 @@
+/* Drawing the matter of skins into a beam: cells, copies, clusters and triangles that the beam meets, nearest first, each mapped on
+ * the way from texel space to the beam. Nothing mapped is kept but the triangles that some sample saw. */
+#ifndef VTS_RENDER_BEAM_SKIN_H
+#define VTS_RENDER_BEAM_SKIN_H
+
+#include "render/beam.h"
+#include "render/compile.h"
+
+/* A triangle of a copy that some sample saw. */
+typedef struct BeamFacet {
+    const CompiledSkin *skin;
+    const SkinCell *cell;
+    const PlacedTexel *placed;
+    TexelCopy copy;
+    size_t layer;
+    Vec3f corner[3]; /* (a, b, w) */
+} BeamFacet;
+
+typedef struct BeamCell {
+    uint32_t skin, cell;
+    float nearest; /* q.z */
+} BeamCell;
+
+/* What drawing needs, of one worker. */
+typedef struct BeamDraft {
+    Beam *beam;
+    BeamFacet *facets;        /* of the camera's beam: samples' marks are 1 + their numbers here. Of a light's NULL */
+    uint32_t facet_count, facet_capacity;
+    uint32_t *renumber;       /* [facet_capacity + 1] */
+    BeamCell *cells;          /* room for as many cells as all skins have */
+    uint64_t triangles;       /* mapped and drawn: counted up */
+} BeamDraft;
+
+/* How many cells all skins have that are drawn by beams. */
+size_t beam_most_cells(const CompiledScene *compiled);
+/* Draws all exact geometry that lies in the beam. */
+void beam_draw_skins(BeamDraft *draft, const CompiledScene *compiled);
+
+#endif

@@ -1,0 +1,484 @@
+#include "render/beam_tile.h"
+
+#include "base/random.h"
+
+#include <string.h>
+
+enum { NOTHING = -1, EDGE = BEAM_TILE + 2 };
+/* How far triangles may leave what the mapping makes of them, in pixels; and how far beside a place shadows begin, in pixels and tiles:
+ * more than the triangles that light meets may differ from those that the eye sees. */
+static const double TOLERANCE = 0.02, BIAS_PIXELS = 0.03, BIAS_TILES = 3e-4;
+
+/* An explicit surface, as one ray has met it. */
+typedef struct SeenSurface {
+    bool found;
+    SurfaceHit hit;
+    double key_x, key_y, key_0; /* of its tangent plane in the beam */
+} SeenSurface;
+
+/* Samples of one pixel that see the same thing. */
+typedef struct Sight {
+    int pixel;            /* in the tile */
+    int first, count;     /* its samples are linked: next[] */
+    float t;              /* of the first; VTS_INFINITY of the sky */
+    Vec3f normal, flat, bias; /* bias: to add to a place on it so that it lies on the side of the eye */
+    const Look *look;     /* NULL: the sky */
+    const SurfaceHit *surface;
+    Vec3f color, light;   /* pigment; what it sends to the eye, so far */
+    Vec3f tone;           /* of the light that is being asked for, without shadows */
+    uint32_t begin;       /* of its points */
+} Sight;
+
+struct BeamTracer {
+    const CompiledScene *compiled;
+    int samples;
+    uint64_t seed;
+    Tracer volumes;
+    Beam beam;
+    BeamDraft draft;
+    ShadowScratch shadow;
+    /* of the tile's pixels and a border of one around */
+    SeenSurface pixels[EDGE * EDGE];
+    SeenSurface *surfaces; /* of samples that were asked for one by one */
+    uint32_t surface_count;
+    /* per sample */
+    float *fade;           /* the factor of exact_to */
+    int32_t *surface;      /* into `surfaces`; NOTHING: its pixel's */
+    int32_t *next;         /* sample of the same sight, or NOTHING */
+    Vec3f *points;         /* where the light is asked for */
+    uint8_t *hidden;
+    float *distance;
+    Sight *sights;
+    uint32_t sight_count;
+    int x0, y0, columns, rows;
+    TraceCounters counters;
+};
+
+BeamTracer *beam_tracer_create(const CompiledScene *compiled, int samples, uint64_t seed, Arena *arena) {
+    BeamTracer *tr = arena_new(arena, BeamTracer);
+    size_t all = (size_t)samples * BEAM_TILE * BEAM_TILE, most_cells = beam_most_cells(compiled);
+    tr->compiled = compiled;
+    tr->samples = samples;
+    tr->seed = seed;
+    tracer_init(&tr->volumes, compiled, arena);
+    shadow_scratch_init(&tr->shadow, (uint32_t)all, most_cells, arena);
+    BeamSamples *s = &tr->beam.samples;
+    s->first = arena_new_array(arena, uint32_t, BEAM_TILE * BEAM_TILE + 1);
+    s->x = arena_new_array(arena, float, all);
+    s->y = arena_new_array(arena, float, all);
+    s->key = arena_new_array(arena, float, all);
+    s->limit = arena_new_array(arena, float, all);
+    s->mark = arena_new_array(arena, uint32_t, all);
+    tr->draft.facet_capacity = (uint32_t)(2 * all + 64);
+    tr->draft.facets = arena_new_array(arena, BeamFacet, tr->draft.facet_capacity);
+    tr->draft.renumber = arena_new_array(arena, uint32_t, tr->draft.facet_capacity + 1);
+    tr->draft.cells = arena_new_array(arena, BeamCell, most_cells);
+    tr->surfaces = arena_new_array(arena, SeenSurface, all);
+    tr->fade = arena_new_array(arena, float, all);
+    tr->surface = arena_new_array(arena, int32_t, all);
+    tr->next = arena_new_array(arena, int32_t, all);
+    tr->points = arena_new_array(arena, Vec3f, all);
+    tr->hidden = arena_new_array(arena, uint8_t, all);
+    tr->distance = arena_new_array(arena, float, all);
+    tr->sights = arena_new_array(arena, Sight, all);
+    return tr;
+}
+
+void beam_tracer_count(const BeamTracer *tr, TraceCounters *sum) {
+    trace_counters_add(sum, &tr->counters);
+    trace_counters_add(sum, &tr->volumes.counters);
+}
+
+/* ---- the beam and its samples ---- */
+
+/* The camera's lines through the tile: in the axes right, up, direction a point is at (s, t, 1) times its depth. */
+static void aim(BeamTracer *tr) {
+    const View *view = &tr->compiled->view;
+    const Camera *c = &view->camera;
+    Mat3 axes = {{c->right, c->up, c->direction}};
+    double det = mat3_determinant(&axes);
+    Vec3 to_s = vec3_scale(vec3_cross(axes.c[1], axes.c[2]), 1 / det), to_t = vec3_scale(vec3_cross(axes.c[2], axes.c[0]), 1 / det);
+    Vec3 to_d = vec3_scale(vec3_cross(axes.c[0], axes.c[1]), 1 / det);
+    double w = view->width, h = view->height, sx = 0.5 * w - tr->x0, sy = 0.5 * h - tr->y0;
+    Beam *b = &tr->beam;
+    b->perspective = c->kind == CAMERA_PERSPECTIVE;
+    b->light = false;
+    b->origin = c->location;
+    b->shift = b->perspective ? vec3(0, 0, 0) : vec3(sx, sy, 0);
+    b->rows[0] = vec3_scale(to_s, w);
+    b->rows[1] = vec3_scale(to_t, -h);
+    b->rows[2] = b->perspective ? to_d : vec3_negate(to_d);
+    if (b->perspective) {
+        b->rows[0] = vec3_madd(b->rows[0], to_d, sx);
+        b->rows[1] = vec3_madd(b->rows[1], to_d, sy);
+    }
+    b->tolerance = (float)TOLERANCE;
+    b->samples.columns = tr->columns;
+    b->samples.rows = tr->rows;
+}
+
+/* Of the line through (x, y) of the tile: from `origin` along `direction`, whose length is that of one unit of q.z. */
+typedef struct Line {
+    Vec3 origin, direction;
+    double length;
+} Line;
+
+static Line line_at(const BeamTracer *tr, double x, double y) {
+    const View *view = &tr->compiled->view;
+    const Camera *c = &view->camera;
+    double s = (tr->x0 + x) / view->width - 0.5, t = 0.5 - (tr->y0 + y) / view->height;
+    Vec3 offset = vec3_madd(vec3_scale(c->right, s), c->up, t);
+    Line line = {c->location, c->direction, 0};
+    if (c->kind == CAMERA_PERSPECTIVE) line.direction = vec3_add(c->direction, offset);
+    else line.origin = vec3_add(c->location, offset);
+    line.length = vec3_length(line.direction);
+    return line;
+}
+
+static double distance_of(const BeamTracer *tr, const Line *line, float key) {
+    return tr->beam.perspective ? line->length / (double)key : -(double)key * line->length;
+}
+
+/* The additive recurrence of the plastic number, shifted for each pixel at random: low discrepancy for any count. */
+static void lay_samples(BeamTracer *tr) {
+    const double step_x = 0.7548776662466927, step_y = 0.5698402909980532;
+    BeamSamples *s = &tr->beam.samples;
+    uint32_t i = 0;
+    for (int row = 0; row < tr->rows; row++)
+        for (int column = 0; column < tr->columns; column++) {
+            uint64_t bits = random_hash((uint64_t)(tr->x0 + column), (uint64_t)(tr->y0 + row), 0, tr->seed);
+            double x = random_unit(bits), y = random_unit(random_mix(bits)), f = random_unit(random_mix(bits + 1));
+            s->first[row * tr->columns + column] = i;
+            for (int k = 0; k < tr->samples; k++, i++) {
+                x += step_x, y += step_y, f += 0.6180339887498949;
+                x -= floor(x), y -= floor(y), f -= floor(f);
+                s->x[i] = (float)(column + x);
+                s->y[i] = (float)(row + y);
+                s->mark[i] = 0;
+                tr->fade[i] = (float)exp2(f - 0.5);
+                tr->surface[i] = NOTHING;
+            }
+        }
+    s->first[tr->rows * tr->columns] = i;
+}
+
+/* ---- explicit surfaces ---- */
+
+static void see_surface(BeamTracer *tr, double x, double y, SeenSurface *out) {
+    Line line = line_at(tr, x, y);
+    Ray ray = {line.origin, vec3_scale(line.direction, 1 / line.length)};
+    out->found = hierarchy_intersect(tr->compiled->hierarchy, &ray, 1e-9, VTS_INFINITY, &out->hit);
+    tr->counters.camera_rays++;
+    if (!out->found) return;
+    /* q.z of the tangent plane n·(P − P0) = 0, along lines whose direction is linear in x and y. */
+    Vec3 p0 = vec3_madd(ray.origin, ray.direction, out->hit.t), n = out->hit.flat;
+    if (tr->beam.perspective) {
+        double far = 1 / vec3_dot(n, vec3_sub(p0, line.origin));
+        Line a = line_at(tr, x + 1, y), b = line_at(tr, x, y + 1);
+        out->key_0 = vec3_dot(n, line.direction) * far;
+        out->key_x = vec3_dot(n, vec3_sub(a.direction, line.direction)) * far;
+        out->key_y = vec3_dot(n, vec3_sub(b.direction, line.direction)) * far;
+    } else {
+        double per = 1 / vec3_dot(n, line.direction);
+        Line a = line_at(tr, x + 1, y), b = line_at(tr, x, y + 1);
+        out->key_0 = -vec3_dot(n, vec3_sub(p0, line.origin)) * per;
+        out->key_x = vec3_dot(n, vec3_sub(a.origin, line.origin)) * per;
+        out->key_y = vec3_dot(n, vec3_sub(b.origin, line.origin)) * per;
+    }
+    out->key_0 -= out->key_x * x + out->key_y * y;
+}
+
+/* Whether two neighbouring pixels may be taken for parts of one smooth surface. */
+static bool alike(const SeenSurface *a, const SeenSurface *b, double x, double y) {
+    if (a->found != b->found) return false;
+    if (!a->found) return true;
+    if (a->hit.object != b->hit.object || vec3_dot(a->hit.flat, b->hit.flat) < 0.95) return false;
+    double key_a = a->key_0 + a->key_x * x + a->key_y * y, key_b = b->key_0 + b->key_x * x + b->key_y * y;
+    return fabs(key_a - key_b) <= 0.01 * (fabs(key_a) + fabs(key_b));
+}
+
+static const SeenSurface *surface_of(const BeamTracer *tr, int pixel, uint32_t sample) {
+    if (tr->surface[sample] != NOTHING) return &tr->surfaces[tr->surface[sample]];
+    int row = pixel / tr->columns, column = pixel % tr->columns;
+    return &tr->pixels[(row + 1) * EDGE + column + 1];
+}
+
+static void see_surfaces(BeamTracer *tr) {
+    BeamSamples *s = &tr->beam.samples;
+    for (int row = -1; row <= tr->rows; row++)
+        for (int column = -1; column <= tr->columns; column++)
+            see_surface(tr, column + 0.5, row + 0.5, &tr->pixels[(row + 1) * EDGE + column + 1]);
+    tr->surface_count = 0;
+    for (int row = 0; row < tr->rows; row++)
+        for (int column = 0; column < tr->columns; column++) {
+            const SeenSurface *p = &tr->pixels[(row + 1) * EDGE + column + 1];
+            double x = column + 0.5, y = row + 0.5;
+            bool smooth = alike(p, p - 1, x - 0.5, y) && alike(p, p + 1, x + 0.5, y) && alike(p, p - EDGE, x, y - 0.5) && alike(p, p + EDGE, x, y + 0.5);
+            int pixel = row * tr->columns + column;
+            for (uint32_t i = s->first[pixel]; i < s->first[pixel + 1]; i++) {
+                double sx = (double)s->x[i], sy = (double)s->y[i];
+                const SeenSurface *at = p;
+                if (!smooth) {
+                    tr->surface[i] = (int32_t)tr->surface_count;
+                    at = &tr->surfaces[tr->surface_count++];
+                    see_surface(tr, sx, sy, &tr->surfaces[tr->surface[i]]);
+                }
+                s->key[i] = at->found ? (float)(at->key_0 + at->key_x * sx + at->key_y * sy) : tr->beam.perspective ? 0 : -INFINITY;
+            }
+        }
+}
+
+/* ---- skins ---- */
+
+static void draw_skins(BeamTracer *tr) {
+    BeamSamples *s = &tr->beam.samples;
+    uint32_t count = s->first[tr->columns * tr->rows];
+    tr->draft.beam = &tr->beam;
+    tr->draft.facet_count = 0;
+    if (tr->beam.perspective) {
+        for (uint32_t i = 0; i < count; i++) s->limit[i] = (float)line_at(tr, (double)s->x[i], (double)s->y[i]).length / tr->fade[i];
+        tr->beam.nearest = tr->compiled->nearest;
+        tr->beam.farthest = VTS_INFINITY;
+    } else { /* everything is as wide: a skin is exact as a whole, or voxels */
+        for (uint32_t i = 0; i < count; i++) s->limit[i] = -INFINITY;
+        tr->beam.nearest = 0;
+        tr->beam.farthest = -VTS_INFINITY;
+    }
+    beam_close(&tr->beam);
+    beam_draw_skins(&tr->draft, tr->compiled);
+}
+
+/* ---- what each sample sees ---- */
+
+static Vec3 facet_corner(const BeamFacet *f, int i) {
+    return skin_cell_position(f->cell, (double)f->corner[i].x, (double)f->corner[i].y, (double)f->corner[i].z, NULL);
+}
+
+/* Where the pigment of a facet is looked up: in the texel's bounds. */
+static Vec3 facet_place(const BeamFacet *f, Vec3 point, const Vec3 p[3], Vec3 normal) {
+    Vec3 e1 = vec3_sub(p[1], p[0]), e2 = vec3_sub(p[2], p[0]), r = vec3_sub(point, p[0]);
+    double area = vec3_length_squared(normal);
+    double u = area > 0 ? vec3_dot(vec3_cross(r, e2), normal) / area : 0, v = area > 0 ? vec3_dot(vec3_cross(e1, r), normal) / area : 0;
+    Vec3f c = vec3f_add(f->corner[0], vec3f_add(vec3f_scale(vec3f_sub(f->corner[1], f->corner[0]), (float)u),
+                                                vec3f_scale(vec3f_sub(f->corner[2], f->corner[0]), (float)v)));
+    SkinPoint at = {0, (double)c.x, (double)c.y, (double)c.z};
+    TexturePlace place = skin_texture_place(f->cell, &at);
+    const TexelCopy *copy = &f->copy;
+    Vec3 in = vec3(copy->xu * place.u + copy->xv * place.v + copy->x0, place.w * copy->inverse_scale,
+                   copy->zu * place.u + copy->zv * place.v + copy->z0);
+    if (copy->texel->beam->cyclic[0]) in.x -= floor(in.x);
+    if (copy->texel->beam->cyclic[1]) in.y -= floor(in.y);
+    if (copy->texel->beam->cyclic[2]) in.z -= floor(in.z);
+    Box3 b = copy->texel->def->bounds;
+    return vec3_add(b.min, vec3_mul(in, vec3_sub(b.max, b.min)));
+}
+
+static void see_facet(BeamTracer *tr, const BeamFacet *f, Vec3 point, double width, Sight *sight) {
+    Vec3 p[3] = {facet_corner(f, 0), facet_corner(f, 1), facet_corner(f, 2)};
+    Vec3 normal = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0])), unit = vec3_normalize(normal);
+    Vec3 view = vec3_normalize(vec3_sub(tr->beam.origin, point));
+    if (vec3_dot(unit, view) < 0) unit = vec3_negate(unit);
+    const Look *own = &f->copy.texel->matter[f->layer].look;
+    sight->look = f->placed->look ? f->placed->look : own;
+    sight->normal = sight->flat = vec3f_from(unit);
+    sight->bias = vec3f_from(vec3_scale(unit, BIAS_TILES * f->skin->tile_size + BIAS_PIXELS * width));
+    Vec3f color = sight->look->color;
+    if (!sight->look->uniform) {
+        Vec3 place = sight->look == own ? facet_place(f, point, p, normal) : point;
+        color = look_color(sight->look, place, unit, 0);
+    }
+    sight->color = vec3f_mul(color, f->copy.tint);
+}
+
+static void see_explicit(const SeenSurface *seen, Vec3 point, Vec3 view, double width, double t, Sight *sight) {
+    const SurfaceHit *hit = &seen->hit;
+    Vec3 local = transform_point_back(hit->space, point), local_normal = vec3_normalize(mat3_apply_transposed(&hit->space->linear, hit->normal));
+    double shrink = cbrt(fabs(mat3_determinant(&hit->space->inverse_linear))), facing = fmax(0.05, vec3_dot(hit->normal, view));
+    sight->look = hit->look;
+    sight->surface = hit;
+    sight->normal = vec3f_from(hit->normal);
+    sight->flat = vec3f_from(hit->flat);
+    sight->bias = vec3f_from(vec3_scale(hit->flat, 1e-5 * t + 0.01 * width));
+    sight->color = hit->look->uniform ? hit->look->color : look_color(hit->look, local, local_normal, width / facing * shrink);
+}
+
+static Vec3 sample_point(const BeamTracer *tr, uint32_t i, double *t) {
+    const BeamSamples *s = &tr->beam.samples;
+    Line line = line_at(tr, (double)s->x[i], (double)s->y[i]);
+    *t = distance_of(tr, &line, s->key[i]);
+    return vec3_madd(line.origin, line.direction, *t / line.length);
+}
+
+static Cone pixel_cone(const BeamTracer *tr, int pixel) {
+    return view_cone(&tr->compiled->view, tr->x0 + pixel % tr->columns + 0.5, tr->y0 + pixel / tr->columns + 0.5, 1);
+}
+
+/* Two explicit hits of one pixel that may share their shading. */
+static bool same_surface(const SeenSurface *a, const SeenSurface *b) {
+    return a == b || (a->found == b->found && (!a->found || (a->hit.object == b->hit.object && vec3_dot(a->hit.normal, b->hit.normal) > 0.999)));
+}
+
+static void gather_sights(BeamTracer *tr) {
+    const BeamSamples *s = &tr->beam.samples;
+    tr->sight_count = 0;
+    for (int pixel = 0; pixel < tr->columns * tr->rows; pixel++) {
+        uint32_t begin = tr->sight_count;
+        for (uint32_t i = s->first[pixel]; i < s->first[pixel + 1]; i++) {
+            const SeenSurface *surface = s->mark[i] ? NULL : surface_of(tr, pixel, i);
+            uint32_t k = begin;
+            for (; k < tr->sight_count; k++) {
+                uint32_t other = (uint32_t)tr->sights[k].first;
+                if (s->mark[i] != s->mark[other]) continue;
+                if (s->mark[i] || same_surface(surface, surface_of(tr, pixel, other))) break;
+            }
+            Sight *sight = &tr->sights[k];
+            if (k < tr->sight_count) {
+                tr->next[i] = sight->first;
+                sight->first = (int)i;
+                sight->count++;
+                continue;
+            }
+            tr->sight_count++;
+            *sight = (Sight){.pixel = pixel, .first = (int)i, .count = 1, .t = INFINITY};
+            tr->next[i] = NOTHING;
+            if (!s->mark[i] && !surface->found) continue;
+            double t;
+            Vec3 point = sample_point(tr, i, &t);
+            sight->t = (float)t;
+            Cone cone = pixel_cone(tr, pixel);
+            double width = cone_diameter(&cone, t);
+            if (s->mark[i]) see_facet(tr, &tr->draft.facets[s->mark[i] - 1], point, width, sight);
+            else see_explicit(surface, point, vec3_negate(cone.direction), width, t, sight);
+        }
+    }
+}
+
+/* ---- light ---- */
+
+static float luminance(Vec3f c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+
+/* What the light would send to the eye if nothing were in its way. */
+static Vec3f tone_of(const Sight *sight, const Cone *cone, const Light *light, LightRay *ray) {
+    Vec3 point = cone_point(cone, (double)sight->t);
+    *ray = light_ray(light, point);
+    NdfShade shade = sheet_shade(sight->normal, vec3f_from(vec3_negate(cone->direction)), vec3f_from(ray->direction), &sight->look->sheet);
+    if (shade.diffuse <= 0 && shade.highlight <= 0) return vec3f(0, 0, 0);
+    return vec3f_mul(shade_tone(&shade, sight->look, sight->color), ray->color);
+}
+
+/* Puts the samples of a sight on the list of points whose shadows are wanted. */
+static uint32_t add_points(BeamTracer *tr, const Sight *sight, const LightRay *ray, uint32_t count) {
+    bool front = vec3f_dot(sight->flat, vec3f_from(ray->direction)) > 0;
+    for (int i = sight->first; i != NOTHING; i = tr->next[i]) {
+        double t;
+        Vec3f p = vec3f_from(vec3_sub(sample_point(tr, (uint32_t)i, &t), tr->beam.origin));
+        tr->points[count] = front ? vec3f_add(p, sight->bias) : vec3f_sub(p, sight->bias);
+        tr->hidden[count] = 0;
+        tr->distance[count] = (float)t;
+        count++;
+    }
+    return count;
+}
+
+static void hide_by_surfaces(BeamTracer *tr, const Sight *sight, const LightRay *ray, uint32_t begin) {
+    double bias = (double)vec3f_length(sight->bias);
+    for (int i = 0; i < sight->count; i++) {
+        Ray shadow = {vec3_add(tr->beam.origin, vec3_from_f(tr->points[begin + (uint32_t)i])), ray->direction};
+        tr->counters.shadow_rays++;
+        tr->hidden[begin + (uint32_t)i] = hierarchy_occluded(tr->compiled->hierarchy, &shadow, bias, ray->distance);
+    }
+}
+
+/* The share of light that voxels let through to a sight: of skins that have no exact geometry there. */
+static float through_voxels(BeamTracer *tr, const Sight *sight, const Cone *cone, const LightRay *ray) {
+    if ((double)sight->t <= tr->compiled->all_exact_to) return 1;
+    double aperture = tr->compiled->shadow_aperture, side = vec3f_dot(sight->flat, vec3f_from(ray->direction)) > 0 ? 1 : -1;
+    Vec3 from = vec3_madd(cone_point(cone, (double)sight->t), vec3_from_f(sight->bias), side);
+    Cone shadow = {from, ray->direction, cone_diameter(cone, (double)sight->t) * aperture, cone->spread * aperture};
+    return skin_light_through_voxels(&tr->volumes.light, &shadow, ray->distance, (double)sight->t);
+}
+
+static void add_light(BeamTracer *tr, const Light *light) {
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < tr->sight_count; k++) {
+        Sight *sight = &tr->sights[k];
+        sight->tone = vec3f(0, 0, 0);
+        sight->begin = count;
+        if (!sight->look) continue;
+        Cone cone = pixel_cone(tr, sight->pixel);
+        LightRay ray;
+        sight->tone = tone_of(sight, &cone, light, &ray);
+        if (light->shadowless || !(luminance(sight->tone) > 0)) continue;
+        count = add_points(tr, sight, &ray, count);
+        hide_by_surfaces(tr, sight, &ray, sight->begin);
+        float through = through_voxels(tr, sight, &cone, &ray);
+        sight->tone = vec3f_scale(sight->tone, through);
+    }
+    double nearest = VTS_INFINITY;
+    for (uint32_t k = 0; k < tr->sight_count; k++) nearest = fmin(nearest, (double)tr->sights[k].t);
+    Cone first = pixel_cone(tr, 0);
+    double tolerance = TOLERANCE * cone_diameter(&first, isfinite(nearest) ? nearest : 0);
+    ShadowPoints points = {.origin = tr->beam.origin, .points = tr->points, .distance = tr->distance, .hidden = tr->hidden, .count = count,
+                           .tolerance = tolerance};
+    beam_shadow(&tr->shadow, tr->compiled, light, &points);
+    for (uint32_t k = 0; k < tr->sight_count; k++) {
+        Sight *sight = &tr->sights[k];
+        if (!(luminance(sight->tone) > 0)) continue;
+        int seen = sight->count;
+        if (!light->shadowless)
+            for (int i = 0; i < sight->count; i++) seen -= tr->hidden[sight->begin + (uint32_t)i];
+        sight->light = vec3f_madd(sight->light, sight->tone, (float)seen / (float)sight->count);
+    }
+}
+
+/* ---- pixels ---- */
+
+/* Where skins' voxels begin for the samples of a sight; false when it sees none. */
+static bool starts_of(const BeamTracer *tr, const Sight *sight, ConeStart *start) {
+    float first = INFINITY;
+    start->count = 0;
+    for (int i = sight->first; i != NOTHING; i = tr->next[i]) {
+        start->factors[start->count++] = tr->fade[i];
+        first = float_min(first, tr->fade[i]);
+    }
+    return tr->compiled->all_exact_to * (double)first < (double)sight->t;
+}
+
+static Radiance see_sight(BeamTracer *tr, const Sight *sight) {
+    const Scene *scene = tr->compiled->scene;
+    Cone cone = pixel_cone(tr, sight->pixel);
+    Radiance out = {sight->light, sight->look ? 1 : 0};
+    if (!sight->look) out.color = sky_radiance(scene, cone.direction, cone.spread);
+    double t = sight->look ? (double)sight->t : VTS_INFINITY;
+    out.color = fog_over(scene, out.color, 1, t);
+    ConeStart start;
+    if (!starts_of(tr, sight, &start)) return out;
+    float transmittance;
+    tr->volumes.seed = random_hash((uint64_t)(tr->x0 + sight->pixel % tr->columns), (uint64_t)(tr->y0 + sight->pixel / tr->columns), 1, tr->seed);
+    Vec3f matter = trace_skins(&tr->volumes, &cone, &start, t, &transmittance);
+    out.color = vec3f_madd(matter, out.color, transmittance);
+    out.alpha = 1 - transmittance * (1 - out.alpha);
+    return out;
+}
+
+void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out) {
+    tr->x0 = x0, tr->y0 = y0, tr->columns = x1 - x0, tr->rows = y1 - y0;
+    aim(tr);
+    lay_samples(tr);
+    see_surfaces(tr);
+    draw_skins(tr);
+    gather_sights(tr);
+    for (uint32_t k = 0; k < tr->sight_count; k++) {
+        Sight *s = &tr->sights[k];
+        if (s->look) s->light = vec3f_mul(vec3f_add(s->look->ambient, s->look->emission), s->color);
+    }
+    for (size_t l = 0; l < tr->compiled->scene->light_count; l++) add_light(tr, &tr->compiled->scene->lights[l]);
+    memset(out, 0, (size_t)(tr->columns * tr->rows) * sizeof *out);
+    for (uint32_t k = 0; k < tr->sight_count; k++) {
+        const Sight *s = &tr->sights[k];
+        Radiance seen = see_sight(tr, s);
+        float share = (float)s->count / (float)tr->samples;
+        out[s->pixel].color = vec3f_madd(out[s->pixel].color, seen.color, share);
+        out[s->pixel].alpha += seen.alpha * share;
+    }
+}

@@ -1,0 +1,22 @@
+/* A tile of the picture, drawn by beams: what is near enough as exact geometry, at some samples a pixel, what is farther as
+ * voxels, one cone for all samples that see the same.
+ *
+ * Each skin has a distance at which voxels take over (CompiledSkin.exact_to). The samples of a pixel go over at slightly different
+ * distances, so that one fades into the other: sample i of n at exact_to · 2^((i + 1/2)/n − 1/2), an octave from first to last. */
+#ifndef VTS_RENDER_BEAM_TILE_H
+#define VTS_RENDER_BEAM_TILE_H
+
+#include "render/beam_shadow.h"
+#include "render/integrate.h"
+
+enum { BEAM_TILE = FILM_TILE, MOST_BEAM_SAMPLES = 256 };
+
+typedef struct BeamTracer BeamTracer;
+
+/* Of one worker; `samples` a pixel, at most MOST_BEAM_SAMPLES. All memory comes from the arena, now. */
+BeamTracer *beam_tracer_create(const CompiledScene *compiled, int samples, uint64_t seed, Arena *arena);
+/* What the pixels of [x0, x1) × [y0, y1), at most BEAM_TILE each way, see; rows of `out` are x1 − x0 long. */
+void beam_tile(BeamTracer *tracer, int x0, int y0, int x1, int y1, Radiance *out);
+void beam_tracer_count(const BeamTracer *tracer, TraceCounters *sum);
+
+#endif

@@ -23,7 +23,8 @@ static const char spheres[] = "camera { location <0, 1, -4> look_at <0, 0.5, 0> 
                               "#for (I, -3, 3) sphere { <0.4*I, 0.5, 0.2*I*I>, 0.18 pigment { rgb <0.9, 0.2, 0.1> } } #end\n";
 
 /* A layer as high as the radius over a ball of few cells, with pillars that glow, so that nothing but their outlines is compared. */
-static const char curved[] = "camera { location <0, 0, -6> look_at <0, 0, 0> right x up y angle 42 }\n"
+static const char curved[] = "global_settings { detail voxels }\n"
+                             "camera { location <0, 0, -6> look_at <0, 0, 0> right x up y angle 42 }\n"
                              "background { rgb 0 }\n"
                              "#declare Pillars = texel { resolution 128 layer { cylinder { <0.5, 0, 0.5>, <0.5, 1, 0.5>, 0.2 }\n"
                              "  texture { pigment { gradient y color_map { [0 rgb <1, 0, 0>] [1 rgb <0, 1, 1>] } } finish { ambient 1 diffuse 0 } } } }\n"
@@ -32,7 +33,8 @@ static const char curved[] = "camera { location <0, 0, -6> look_at <0, 0, 0> rig
                              "skin { surface { S } texel { Pillars } mapping { repeat <12, 5> height 1 } }\n";
 
 /* Leaves in all directions, a few in a voxel. */
-static const char leaves[] = "camera { location <0, 2, -4> look_at <0, 0.3, 0> right x up y angle 50 }\n"
+static const char leaves[] = "global_settings { detail voxels }\n"
+                             "camera { location <0, 2, -4> look_at <0, 0.3, 0> right x up y angle 50 }\n"
                              "light_source { <-2000, 3000, -2500> rgb 1 parallel point_at 0 }\n"
                              "#declare R = seed(2);\n"
                              "#declare Crown = texel { resolution 32 cyclic x + z layer { #for (I, 1, 60)\n"

@@ -27,6 +27,7 @@ void chart_free(Chart *chart);
 
 /* The coordinates of a point: user seconds of building and rendering, and RMSE without the reference's noise (0: below it). */
 double chart_seconds(const ChartPoint *point);
+/* Marks the points on the front. Points that came out as the same rendering get the times of the fastest. */
 void chart_find_front(Chart *chart);
 /* The smallest RMSE above 0, or 0. */
 double chart_least_error(const Chart *chart);

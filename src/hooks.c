@@ -4,6 +4,7 @@
 #include "image/picture.h"
 #include "shape/extent.h"
 #include "shape/mesh_file.h"
+#include "volume/grid_file.h"
 
 #include <string.h>
 
@@ -100,6 +101,14 @@ static bool picture_file(void *context, Arena *arena, ImageMap *image, StrBuf *e
     return true;
 }
 
+static bool density_grid(void *context, Arena *arena, const char *path, const EvalDensityRequest *request, DensityGrid *out, StrBuf *error) {
+    (void)context;
+    if (request->fractal) return grid_fractal(request->size, request->dimension, request->threshold, request->seed, arena, out);
+    GridRaw raw = {.sample = request->bytes == 1 ? GRID_UINT8 : request->bytes == 2 ? GRID_UINT16 : GRID_FLOAT, .big = request->big};
+    memcpy(raw.size, request->size, sizeof raw.size);
+    return grid_load(path, request->raw ? &raw : NULL, arena, out, error);
+}
+
 EvalGeometry hooks_geometry(Arena *arena, TexelCache *texels) {
     Hooks *hooks = arena_new(arena, Hooks);
     *hooks = (Hooks){.tracer = shape_tracer_create(arena), .texels = texels, .memory = arena->budget};
@@ -113,5 +122,6 @@ EvalGeometry hooks_geometry(Arena *arena, TexelCache *texels) {
         .texel_file = texel_file,
         .mesh_file = mesh_file,
         .picture_file = picture_file,
+        .density_grid = density_grid,
     };
 }

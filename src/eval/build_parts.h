@@ -46,6 +46,8 @@ const char *data_file_find(const BuildContext *context, const char *what, const 
 bool picture_file_load(const BuildContext *context, ImageMap *image, Span span);
 /* Reads the file of meshes that the text at `span` names (eval_path.c); false after a report. */
 bool mesh_file_load(const BuildContext *context, const char *name, Span span, const EvalMeshRequest *request, EvalMeshFile *out);
+/* build_density.c: density { … } as a block; NULL after a report. */
+const DensityField *density_read(Reader *parent, const EvalBlock *block);
 /* Reads the texel's file that the text at `span` names (eval_path.c); false after a report. */
 bool texel_file_read(const BuildContext *context, const char *name, Span span, TexelDef *out);
 

@@ -29,6 +29,8 @@ WordHandler read_warp;
 
 /* A function of place that gives 1 inside of the object, else 0 (eval_internal.c); NULL: objects cannot be asked here. */
 const Tape *object_inside_tape(const BuildContext *context, const Object *object, Span span);
+/* A grid of densities; `name`: of its file, or NULL. NULL after a report. */
+const DensityGrid *density_grid_load(const BuildContext *context, const char *name, Span span, const EvalDensityRequest *request);
 /* The density file that the text at `span` names (eval_density.c); NULL after a report. */
 const DensityGrid *density_load(const BuildContext *context, const char *name, Span span);
 

@@ -122,8 +122,18 @@ static bool on_layer_value(Reader *reader, const Argument *value, void *target) 
 
 static void read_density(Reader *reader, const Word *word, void *target) {
     LayerDraft *draft = target;
-    inert_add(reader->context, &draft->texel->texel.inert, "density", word->span);
-    draft->unmodelled = true;
+    if (!word->body) {
+        reader_error(reader, word->span, "'%s' needs its block { … }", word->text);
+        return;
+    }
+    const DensityField *field = density_read(reader, word->body);
+    if (field && field->unmodelled) {
+        inert_add(reader->context, &draft->texel->texel.inert, field->unmodelled, word->span);
+        draft->unmodelled = true;
+        return;
+    }
+    if (draft->layer.density) reader_error(reader, word->span, "a layer holds one density");
+    draft->layer.density = field;
 }
 
 /* A layer of nothing but what is not drawn is left out; one without anything is an error. */
@@ -141,7 +151,9 @@ static void read_layer(Reader *reader, const Word *word, void *target) {
     body.value_target = &layer;
     reader_run(&body);
     if (!reader_end_nested(reader, &body)) return;
-    if (layer.contents.count == 0) {
+    if (layer.contents.count && layer.layer.density)
+        reader_error(reader, layer.layer.density->span, "a layer holds a density or objects: superimpose two layers");
+    if (layer.contents.count == 0 && !layer.layer.density) {
         if (!layer.unmodelled) reader_error(reader, word->span, "this layer holds no object");
         return;
     }

@@ -24,6 +24,16 @@ typedef struct EvalMeshRequest {
     bool by_color, smooth;
 } EvalMeshRequest;
 
+/* A grid of densities: a file (df3, or `raw` as the rest says), or a fractal. */
+typedef struct EvalDensityRequest {
+    bool raw, fractal;
+    int size[3];
+    int bytes; /* of a number: 1, 2, 4 (a float) */
+    bool big;  /* endian */
+    double dimension, threshold;
+    uint32_t seed;
+} EvalDensityRequest;
+
 typedef struct EvalMeshPart {
     const MeshData *mesh;
     bool colored; /* the file gives it `color` */
@@ -48,6 +58,8 @@ typedef struct EvalGeometry {
     /* The parts of a file of meshes, in `arena`: one for each colour in it, or (by_color false) one for all; `smooth`: normals where it
      * has none. False, with a line of text in `error` that says why the file is refused. */
     bool (*mesh_file)(void *context, Arena *arena, const char *path, const EvalMeshRequest *request, EvalMeshFile *out, StrBuf *error);
+    /* path NULL: a fractal. False with a line of text in `error`. */
+    bool (*density_grid)(void *context, Arena *arena, const char *path, const EvalDensityRequest *request, DensityGrid *out, StrBuf *error);
     /* Loads the picture at image->path into `arena`, as image->gamma says, and adds its content to image->hash. False with a line of text in `error`. */
     bool (*picture_file)(void *context, Arena *arena, ImageMap *image, StrBuf *error);
     /* A pattern as a function of place: 3 inputs, 1 output; otherwise the same. */

@@ -7,6 +7,7 @@
 #include "render/skin_fold.h"
 #include "tape/noise.h"
 #include "texel/texel_content.h"
+#include "texel/texel_field.h"
 
 #include <string.h>
 
@@ -44,11 +45,16 @@ static VoxelLayer *build_voxels(const BuiltTexel *texel, const TexelLayer *layer
                                .name = def->name};
     TexelMesh mesh;
     ArenaMark mark = arena_mark(&compiled->scratch);
-    if (!texel_mesh_layer(texel, layer, CONTENT_TOLERANCE_VOXELS / texel->built, compiled, diags, &mesh)) return NULL;
+    if (layer->density) {
+        mesh = (TexelMesh){0};
+        build.field = texel_field_make(def, layer, &compiled->scratch);
+    } else if (!texel_mesh_layer(texel, layer, CONTENT_TOLERANCE_VOXELS / texel->built, compiled, diags, &mesh)) {
+        return NULL;
+    }
     VoxelLayer *voxels = voxel_layer_build(&mesh, &build, NULL);
     arena_reset_to(&compiled->scratch, mark);
     if (!voxels && (!options->interrupted || !*options->interrupted)) memory_budget_fail(options->memory);
-    if (voxels && mesh.triangle_count && voxel_layer_is_empty(voxels))
+    if (voxels && (mesh.triangle_count || layer->density) && voxel_layer_is_empty(voxels))
         diag_warning(diags, layer->span, "nothing of this layer of the texel '%s' lies within its bounds", def->name);
     return voxels;
 }

@@ -315,11 +315,23 @@ const Object *object_keep(Arena *arena, const Object *object, const Transform *t
 
 /* ---- volumetric textures ---- */
 
+/* Matter as numbers of place: `value` below `low` is nothing, from `high` on 1. Where it is 1, a ray of the length of the bounds' longest
+ * side meets matter of the optical depth `extinction`. */
+typedef struct DensityField {
+    Span span;
+    Hash128 hash;
+    const Pigment *pattern;       /* its value, before frequency and colours; PATTERN_DENSITY: between the centres of cells */
+    bool in_bounds;               /* pattern space is the texel's bounds as the unit cube; else the scene's */
+    double low, high, extinction; /* 0, 1, 64 */
+    const char *unmodelled;       /* a word that makes it inert, or NULL */
+} DensityField;
+
 typedef struct TexelLayer {
     Span span;
     Hash128 hash;                 /* of the contents' geometry alone, without colours */
     const Object *const *contents;
     size_t content_count;
+    const DensityField *density;  /* instead of contents; or NULL */
     const Texture *texture;       /* NULL: the default texture */
 } TexelLayer;
 

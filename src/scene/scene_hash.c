@@ -280,6 +280,7 @@ void layer_rehash(TexelLayer *layer) {
     Hash128 h = hash_begin(KIND_LAYER);
     for (size_t i = 0; i < layer->content_count; i++)
         hash_add_hash(&h, object_geometry_hash(layer->contents[i]));
+    if (layer->density) hash_add_hash(&h, layer->density->hash);
     layer->hash = h;
 }
 

@@ -267,6 +267,12 @@ static void print_texel(Printer *p, const TexelDef *texel) {
         begin_line(p, "layer");
         end_line(p);
         p->depth++;
+        if (texel->layers[i].density) {
+            const DensityField *density = texel->layers[i].density;
+            begin_line(p, "density");
+            strbuf_addf(p->out, " threshold %g, %g extinction %g", density->low, density->high, density->extinction);
+            end_line(p);
+        }
         for (size_t k = 0; k < texel->layers[i].content_count; k++)
             print_object(p, texel->layers[i].contents[k]);
         print_texture(p, texel->layers[i].texture);

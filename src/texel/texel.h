@@ -33,6 +33,16 @@ typedef struct TexelMesh {
     const bool *solid;
 } TexelMesh;
 
+/* Matter that is no triangles, asked for by cells of texel space; its functions are called from any thread. What they give lies as random
+ * matter in its voxel: gamma is 0. */
+typedef struct TexelField {
+    const void *context;
+    /* Whether there may be any in the box. */
+    bool (*touches)(const void *context, Vec3f lo, Vec3f hi);
+    /* Adds the area in the box from `lo`, and the sum of area · n nᵗ: xx yy zz xy xz yz. */
+    void (*fill)(const void *context, Vec3f lo, Vec3f sides, float *area, float normals[6]);
+} TexelField;
+
 typedef struct VoxelSample {
     float density; /* 1 / texel length; 0 = empty, the rest is then meaningless */
     float gamma;   /* −0.48 clumped, 0 random matter, 1 one sheet … 2.5 a part of one that goes on in the next voxel */
@@ -64,6 +74,7 @@ typedef struct TexelBuildOptions {
     MemoryBudget *memory;
     const Progress *progress; /* may be NULL */
     const char *name;    /* for progress */
+    const TexelField *field; /* besides the triangles, or instead of them; NULL */
 } TexelBuildOptions;
 
 /* Builds a layer's pyramid down to one voxel along the longest side. Deterministic for any number of threads. NULL when

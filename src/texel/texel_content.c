@@ -1,6 +1,10 @@
 #include "texel/texel_content.h"
 
 #include "grow/particles.h"
+#include "texel/texel_field.h"
+
+/* Triangles that stand for a density where only triangles will do. */
+enum { FIELD_FLAKES = 1500000 };
 
 static double longest_side(Box3 bounds) {
     Vec3 size = vec3_sub(bounds.max, bounds.min);
@@ -25,6 +29,11 @@ Transform texel_space(const TexelDef *def) {
 
 bool texel_layer_mesh(const TexelDef *def, const TexelLayer *layer, double tolerance, Arena *arena, TexelMesh *out,
                       ShapeRefusal *refusal) {
+    if (layer->density) {
+        *refusal = (ShapeRefusal){0};
+        texel_field_flakes(texel_field_make(def, layer, arena), texel_extent(def), FIELD_FLAKES, arena, out);
+        return true;
+    }
     TriangleSoup soup = {0};
     Transform space = texel_space(def);
     ShapeRefusal doubt = {0};

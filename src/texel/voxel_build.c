@@ -23,13 +23,22 @@ typedef struct Build {
 
 /* ---- marks ---- */
 
+static bool field_touches(const Build *b, int x, int y, int z) {
+    const TexelField *field = b->options->field;
+    if (!field) return false;
+    const float *sides = b->layer->level[0].sides;
+    const Vec3f size = vec3f_scale(vec3f(sides[0], sides[1], sides[2]), BRICK_SIDE), at = {(float)x, (float)y, (float)z};
+    Vec3f lo = vec3f_mul(at, size);
+    return field->touches(field->context, lo, vec3f_add(lo, size));
+}
+
 static void mark_finest(const Build *b, uint8_t *marks) {
     const VoxelLevel *level = &b->layer->level[0];
     for (int z = 0; z < level->brick_size[2]; z++)
         for (int y = 0; y < level->brick_size[1]; y++)
             for (int x = 0; x < level->brick_size[0]; x++) {
                 size_t i = voxel_level_brick_at(level, x, y, z);
-                if (b->bins.start[i + 1] > b->bins.start[i])
+                if (b->bins.start[i + 1] > b->bins.start[i] || field_touches(b, x, y, z))
                     marks[i] = BRICK_AREA | BRICK_BUILT;
                 else if (voxel_fill_column(&b->fill, x * BRICK_SIDE, y * BRICK_SIDE, z * BRICK_SIDE) & 1)
                     marks[i] = BRICK_INSIDE;
@@ -211,6 +220,7 @@ static bool build(Build *b, const TexelMesh *mesh) {
                            .layer = b->layer,
                            .bins = &b->bins,
                            .fill = &b->fill,
+                           .field = b->options->field,
                            .job_level = choose_job_level(b->layer)};
     if (!mark_bricks(b) || !take_scratch(b)) return false;
     if (!pool_run(b->options->pool, b->jobs, run_job, b)) return false;

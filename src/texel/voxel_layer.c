@@ -56,6 +56,7 @@ VoxelLayer *voxel_layer_create(const TexelBuildOptions *options) {
     layer->memory = options->memory;
     layer->bytes = sizeof *layer;
     layer->filtering = options->filtering;
+    layer->scattered = options->field != NULL;
     for (int i = 0; i < 3; i++) layer->cyclic[i] = options->cyclic >> i & 1;
     set_sizes(layer, options);
     return layer;

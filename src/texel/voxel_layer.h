@@ -53,6 +53,7 @@ struct VoxelLayer {
     int owners; /* voxel_layer_destroy() takes one away */
     int levels;
     bool cyclic[3];
+    bool scattered; /* all matter is random: gamma is 0 */
     TexelFiltering filtering;
     VoxelLevel level[TEXEL_MAX_LEVELS];
     MemoryBudget *memory;

@@ -21,6 +21,18 @@ static void build_finest(const Pyramid *p, const int at[3], VoxelCell *cells) {
     }
 }
 
+/* Matter that is no triangles. */
+static void add_field(const Pyramid *p, const int at[3], VoxelCell *cells) {
+    const VoxelLevel *finest = &p->layer->level[0];
+    const Vec3f sides = {finest->sides[0], finest->sides[1], finest->sides[2]};
+    for (int i = 0; i < BRICK_VOXELS; i++) {
+        const int voxel[3] = {at[0] * BRICK_SIDE + (i & 7), at[1] * BRICK_SIDE + (i >> 3 & 7), at[2] * BRICK_SIDE + (i >> 6)};
+        if (voxel[0] >= finest->size[0] || voxel[1] >= finest->size[1] || voxel[2] >= finest->size[2]) continue;
+        Vec3f lo = {(float)voxel[0] * sides.x, (float)voxel[1] * sides.y, (float)voxel[2] * sides.z};
+        p->field->fill(p->field->context, lo, sides, &cells[i].sheet, cells[i].normals);
+    }
+}
+
 /* Middles of voxels within solids. */
 static void fill_finest(const Pyramid *p, const int at[3], VoxelCell *cells) {
     const VoxelLevel *finest = &p->layer->level[0];
@@ -113,7 +125,7 @@ typedef struct BrickBlock {
     int count;
     const VoxelLevel *level;
     const uint8_t *marks; /* of the level's bricks */
-    bool cyclic[3];
+    bool cyclic[3], scattered;
     int first[3], end[3]; /* voxels of the block: outside nothing is known */
 } BrickBlock;
 
@@ -209,9 +221,9 @@ static VoxelCode code_inside(const VoxelCell *parent) {
 }
 
 static VoxelCode code_matter(const VoxelCell *cell, const VoxelSurround *around, const VoxelLevel *l,
-                             float thin) {
+                             bool scattered, float thin) {
     VoxelMatter m = voxel_cell_matter(cell, around, l->sides, 1 / l->density_unit, thin);
-    return voxel_code_pack(m.density, m.gamma, &m.root);
+    return voxel_code_pack(m.density, scattered ? 0 : m.gamma, &m.root);
 }
 
 /* parent: the cells of the brick above; NULL for the topmost. */
@@ -237,7 +249,7 @@ static void code_brick(const BrickBlock *block, int level, const bool halved[3],
         VoxelCode *code = grow_buffer_add(&out->codes, 1, sizeof *code);
         if (!code) return;
         if (!inside && thin[above] < 0) thin[above] = thinness_around(parent, above);
-        *code = inside ? code_inside(&parent[above]) : code_matter(&cells[i], &around, l, thin[above]);
+        *code = inside ? code_inside(&parent[above]) : code_matter(&cells[i], &around, l, block->scattered, thin[above]);
         brick.slice[i >> 6] |= (uint64_t)1 << (i & 63);
     }
     brick.count = out->codes.count - brick.first;
@@ -252,7 +264,8 @@ static BrickBlock make_block(const Pyramid *p, int level, const int (*bricks)[3]
                         .cells = cells,
                         .count = count,
                         .level = &p->layer->level[level],
-                        .marks = p->marks[level]};
+                        .marks = p->marks[level],
+                        .scattered = p->layer->scattered};
     memcpy(block.cyclic, p->layer->cyclic, sizeof block.cyclic);
     return block;
 }
@@ -304,6 +317,7 @@ void pyramid_build_brick(const Pyramid *p, int level, const int at[3], bool from
         if (p->job_cells[place]) memcpy(cells, p->job_cells[place], BRICK_VOXELS * sizeof *cells);
     } else if (level == 0) {
         build_finest(p, at, cells);
+        if (p->field) add_field(p, at, cells);
         if (p->fill->start) fill_finest(p, at, cells);
         close_cells(cells, 0, p->layer->filtering);
     } else {

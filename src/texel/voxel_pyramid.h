@@ -33,6 +33,7 @@ typedef struct Pyramid {
     const VoxelLayer *layer;
     const TriangleBins *bins;
     const VoxelFill *fill;
+    const TexelField *field; /* or NULL */
     uint8_t *marks[TEXEL_MAX_LEVELS]; /* per brick: BRICK_… */
     /* Level whose bricks are built as parallel jobs; their cells are kept for the levels above. */
     int job_level;

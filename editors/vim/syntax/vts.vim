@@ -106,7 +106,7 @@ syn region vtsIn_turbulence matchgroup=vtsBlock start="\<turbulence\>\s*{" match
 syn match vtsItem_turbulence "\<\%(amplitude\|scale\|octaves\|seed\)\>\%(\s*{\)\@!" contained containedin=vtsIn_turbulence
 hi def link vtsItem_turbulence vtsItem
 syn region vtsIn_density matchgroup=vtsBlock start="\<density\>\s*{" matchgroup=vtsBlock end="}" fold contains=TOP
-syn match vtsItem_density "\<\%(df3\|nanovdb\|grid\|raw\|uint8\|uint16\|little\|big\|fractal\|threshold\)\>\%(\s*{\)\@!" contained containedin=vtsIn_density
+syn match vtsItem_density "\<\%(df3\|nanovdb\|grid\|raw\|uint8\|uint16\|float\|little\|big\|fractal\|threshold\|extinction\)\>\%(\s*{\)\@!" contained containedin=vtsIn_density
 hi def link vtsItem_density vtsItem
 syn region vtsIn_fractal matchgroup=vtsBlock start="\<fractal\>\s*{" matchgroup=vtsBlock end="}" fold contains=TOP
 syn match vtsItem_fractal "\<\%(size\|dimension\|threshold\|seed\)\>\%(\s*{\)\@!" contained containedin=vtsIn_fractal

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Charts of speed against accuracy: opacity, ray path, quadrature, filtering and max_error for lawn.vts and meadow_ball.vts.
+# Charts of speed against accuracy: max_error, detail, opacity, ray path, quadrature and filtering for lawn.vts and meadow_ball.vts.
 #
 #   bench/chart.sh [folder [path to vts [WxH [rays a pixel of the reference [runs]]]]]
 #
@@ -26,9 +26,12 @@ for scene in lawn meadow_ball; do
   echo "$scene: max_error"
   "$vts" chart "${common[@]}" "${reference[@]}" --sweep "$sweep" -o "$folder/$scene-max_error.svg"
   reference=(--reference "$pictures/reference-1.exr" --reference "$pictures/reference-2.exr")
+  echo "$scene: detail"
+  "$vts" chart "${common[@]}" "${reference[@]}" --sweep "$sweep" --methods detail -o "$folder/$scene-detail.svg"
+  # The others are about voxels, which are few where geometry is drawn itself.
   for knob in opacity_model ray_path quadrature filtering; do
     echo "$scene: $knob"
-    "$vts" chart "${common[@]}" "${reference[@]}" --sweep "$sweep" --methods "$knob" -o "$folder/$scene-$knob.svg"
+    "$vts" chart "${common[@]}" "${reference[@]}" --set detail=voxels --sweep "$sweep" --methods "$knob" -o "$folder/$scene-$knob.svg"
   done
 done
 

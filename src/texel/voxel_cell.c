@@ -175,7 +175,7 @@ static Sym3f unit_root(const VoxelCell *cell) {
 /* A sheet goes on in the next voxel if the two hide more than this, and surely if they hide all. */
 static const float MOST_CONTINUATION = 2.5f, LEAST_INTACT = 0.7f;
 
-static const float ROUNDING = 0.2f;
+static const float ROUNDING = 0.02f;
 
 Sym3f voxel_cell_root_inside(const VoxelCell *parent) {
     VoxelCell walls = {.normals = {1, 1, 1}};

@@ -508,7 +508,7 @@ static void sample_copy(SkinMarch *m, size_t i, const CopyOnWay *on_way, StepSam
         step->depth += tau;
         float area = opacity_area(&v, along);
         step->area += area;
-        step->gamma_area += area * v.gamma;
+        step->gamma_area += area * (v.gamma + v.solid * (1 - v.gamma)); /* walls of solids are sheets */
         if (!m->shade || out->hit_count == MOST_MATTER_HITS) continue;
         MatterHit *hit = &out->hits[out->hit_count++];
         *hit = (MatterHit){.matter = &texel->matter[k], .look = placed->look ? placed->look : &texel->matter[k].look,

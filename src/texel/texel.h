@@ -45,7 +45,8 @@ typedef struct TexelField {
 
 typedef struct VoxelSample {
     float density; /* 1 / texel length; 0 = empty, the rest is then meaningless */
-    float gamma;   /* −0.48 clumped, 0 random matter, 1 one sheet … 2.5 a part of one that goes on in the next voxel */
+    float gamma;   /* −0.36 clumped, 0 random matter, 1 one sheet … 1.7 a part of one that goes on in the next voxel */
+    float solid;   /* the share of it that is walls before the inside of a solid, or the inside: there gamma only serves opacity.h */
     Sym3f s;       /* unit mean projected area */
 } VoxelSample;
 

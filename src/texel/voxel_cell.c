@@ -173,7 +173,7 @@ static Sym3f unit_root(const VoxelCell *cell) {
 }
 
 /* A sheet goes on in the next voxel if the two hide more than this, and surely if they hide all. */
-static const float MOST_CONTINUATION = 2.5f, LEAST_INTACT = 0.7f;
+static const float MOST_CONTINUATION = 2, LEAST_INTACT = 0.7f;
 
 static const float ROUNDING = 0.02f;
 
@@ -250,7 +250,7 @@ static float fit_alone(const AxisLight *light, float density) {
 
 /* Walls before the inside of a solid, which stops the light, only smooth its outline: at full strength they would fatten it by nearly
  * half a voxel all around. Thin solids have no inside; a ray meets both walls, and at full strength each would count twice. */
-static const float BACKED_WALL = -0.4f, THIN_WALL = 0.6f;
+static const float BACKED_WALL = -0.43f, THIN_WALL = 0.6f;
 
 /* Sheets go on into the next voxels; thin solids and clumps end in this one. */
 static float fit_gamma(const VoxelCell *cell, const VoxelSurround *around, const AxisLight *light,
@@ -271,5 +271,6 @@ VoxelMatter voxel_cell_matter(const VoxelCell *cell, const VoxelSurround *around
     matter.density = area / (2 * sides[0] * sides[1] * sides[2]) * side;
     AxisLight light = axis_light(cell, &matter.root, matter.density, sides, side);
     matter.gamma = fit_gamma(cell, around, &light, matter.density, thin);
+    matter.wall = thin < 0.05f && cell->solid > cell->sheet;
     return matter;
 }

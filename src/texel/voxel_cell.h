@@ -27,6 +27,7 @@ typedef struct VoxelCell {
 typedef struct VoxelMatter {
     float density; /* in units of 1/side */
     float gamma;
+    bool wall; /* of a solid, with its inside behind it */
     Sym3f root; /* square root of S */
 } VoxelMatter;
 

@@ -2,6 +2,8 @@
 
 #include "texel/opacity.h"
 
+#include <assert.h>
+
 static uint32_t whole(float x, float lo, float hi) { return (uint32_t)(float_clamp(x, lo, hi) + 0.5f); }
 static uint32_t diagonal(float b) { return whole(b * 127.5f, 0, 255); }
 static uint32_t mixed(float b) { return whole(b * 127.5f + 128, 0, 255); }
@@ -16,7 +18,7 @@ static uint32_t density_code(float density) {
 }
 
 static uint32_t gamma_code(float gamma) {
-    return whole(gamma / VOXEL_GAMMA_STEP + VOXEL_GAMMA_ZERO, 0, VOXEL_GAMMA_LARGEST) << VOXEL_GAMMA_SHIFT;
+    return whole(gamma / VOXEL_GAMMA_STEP + VOXEL_GAMMA_ZERO, VOXEL_GAMMA_LEAST, VOXEL_GAMMA_LARGEST) << VOXEL_GAMMA_SHIFT;
 }
 
 VoxelCode voxel_code_pack(float density, float gamma, const Sym3f *root) {
@@ -29,11 +31,17 @@ VoxelCode voxel_code_pack(float density, float gamma, const Sym3f *root) {
 }
 
 /* With the largest gamma this density is opaque within a fraction of the voxel. */
-#define INSIDE_DENSITY 0.4f
+#define INSIDE_DENSITY 0.64f
 
 VoxelCode voxel_code_inside(const Sym3f *root) {
     VoxelCode code = voxel_code_pack(INSIDE_DENSITY, 0, root);
     code.rest |= (uint32_t)VOXEL_GAMMA_INSIDE << VOXEL_GAMMA_SHIFT;
+    return code;
+}
+
+VoxelCode voxel_code_wall(VoxelCode code) {
+    code.rest &= ((uint32_t)1 << VOXEL_GAMMA_SHIFT) - 1;
+    static_assert(VOXEL_GAMMA_WALL == 0, "the code of walls is no bits");
     return code;
 }
 
@@ -45,6 +53,7 @@ void voxel_code_unpack(VoxelCode code, VoxelSample *out) {
     *out = (VoxelSample){
         .density = voxel_code_density(code.rest),
         .gamma = voxel_code_gamma(code.rest),
+        .solid = voxel_code_solid(code.rest),
         .s = {k * (xx * xx + xy * xy + xz * xz), k * (xy * xy + yy * yy + yz * yz),
               k * (xz * xz + yz * yz + zz * zz), k * (xx * xy + xy * yy + xz * yz),
               k * (xx * xz + xy * yz + xz * zz), k * (xy * xz + yy * yz + yz * zz)},

@@ -5,8 +5,8 @@
  * most the same error of the projected area (1.2 % of its mean at worst, 0.4 % rms). A rotation with two ratios has a
  * similar error but costs a square root and sixty products to read.
  * Density in eleven bits: a small float (5 bits exponent, 6 mantissa), in units of 1/side; relative error at most 0.8 %.
- * Gamma in five bits, from −0.48 to 2.4 by steps of 0.096. The largest code, 2.5, is kept for voxels that lie within solids, far
- * from any surface: they stop light and have no area of their own. */
+ * Gamma in five bits, from −0.36 to 1.73 by steps of 0.072. Two codes are kept for solids: the lowest, −0.43, for walls before their
+ * inside, the largest, 1.8, for voxels of the inside, which stop light and have no area of their own. */
 #ifndef VTS_TEXEL_VOXEL_CODE_H
 #define VTS_TEXEL_VOXEL_CODE_H
 
@@ -25,13 +25,17 @@ enum {
     VOXEL_GAMMA_SHIFT = 27,
     VOXEL_DENSITY_LARGEST = 2047,
     VOXEL_GAMMA_LARGEST = 30,
+    VOXEL_GAMMA_WALL = 0,
+    VOXEL_GAMMA_LEAST = 1,
     VOXEL_GAMMA_INSIDE = 31,
-    VOXEL_GAMMA_ZERO = 5
+    VOXEL_GAMMA_ZERO = 6
 };
-#define VOXEL_GAMMA_STEP 0.096f
+#define VOXEL_GAMMA_STEP 0.072f
 
 /* `density` in units of 1/side (> 0), s of unit mean projected area and roughness at least VOXEL_ROUGHNESS. */
 VoxelCode voxel_code_pack(float density, float gamma, const Sym3f *root);
+/* The same of a wall that has the inside of its solid behind it. */
+VoxelCode voxel_code_wall(VoxelCode code);
 /* A voxel within a solid that turns like `root`. */
 VoxelCode voxel_code_inside(const Sym3f *root);
 static inline bool voxel_code_is_inside(VoxelCode code) {
@@ -61,6 +65,12 @@ static inline float voxel_code_density(uint32_t rest) {
 }
 static inline float voxel_code_gamma(uint32_t rest) {
     return (float)((int32_t)(rest >> VOXEL_GAMMA_SHIFT) - VOXEL_GAMMA_ZERO) * VOXEL_GAMMA_STEP;
+}
+
+/* 1 for walls and insides of solids, 0 for all else. */
+static inline float voxel_code_solid(uint32_t rest) {
+    uint32_t code = rest >> VOXEL_GAMMA_SHIFT;
+    return (float)(int32_t)(((code + 1) & 31u) < 2);
 }
 
 #endif

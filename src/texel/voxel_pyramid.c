@@ -223,7 +223,8 @@ static VoxelCode code_inside(const VoxelCell *parent) {
 static VoxelCode code_matter(const VoxelCell *cell, const VoxelSurround *around, const VoxelLevel *l,
                              bool scattered, float thin) {
     VoxelMatter m = voxel_cell_matter(cell, around, l->sides, 1 / l->density_unit, thin);
-    return voxel_code_pack(m.density, scattered ? 0 : m.gamma, &m.root);
+    VoxelCode code = voxel_code_pack(m.density, scattered ? 0 : m.gamma, &m.root);
+    return m.wall ? voxel_code_wall(code) : code;
 }
 
 /* parent: the cells of the brick above; NULL for the topmost. */

@@ -118,7 +118,7 @@ static inline bool gather(const VoxelLevel *level, const bool cyclic[3], Vec3f p
 }
 
 /* Sums of weight·density, weight·density·gamma and weight·density·S. */
-enum { SUM_DENSITY, SUM_GAMMA, SUM_XX, SUM_YY, SUM_ZZ, SUM_XY, SUM_XZ, SUM_YZ, SUMS };
+enum { SUM_DENSITY, SUM_GAMMA, SUM_SOLID, SUM_XX, SUM_YY, SUM_ZZ, SUM_XY, SUM_XZ, SUM_YZ, SUMS };
 
 /* Of four corners, side by side so that compilers vectorise it. */
 static inline void decode_four(const uint32_t diagonal[4], const uint32_t rest[4], const float weight[4],
@@ -130,6 +130,7 @@ static inline void decode_four(const uint32_t diagonal[4], const uint32_t rest[4
         float xy = voxel_code_mixed(d, 3), xz = voxel_code_mixed(r, 0), yz = voxel_code_mixed(r, 1);
         lanes[SUM_DENSITY][l] = w;
         lanes[SUM_GAMMA][l] = w * voxel_code_gamma(r);
+        lanes[SUM_SOLID][l] = w * voxel_code_solid(r);
         lanes[SUM_XX][l] = w * (xx * xx + xy * xy + xz * xz);
         lanes[SUM_YY][l] = w * (xy * xy + yy * yy + yz * yz);
         lanes[SUM_ZZ][l] = w * (xz * xz + yz * yz + zz * zz);
@@ -158,6 +159,7 @@ static bool finish(const float sums[SUMS], VoxelSample *out) {
     *out = (VoxelSample){
         .density = sums[SUM_DENSITY],
         .gamma = k * sums[SUM_GAMMA],
+        .solid = k * sums[SUM_SOLID],
         .s = {s * sums[SUM_XX], s * sums[SUM_YY], s * sums[SUM_ZZ], s * sums[SUM_XY], s * sums[SUM_XZ],
               s * sums[SUM_YZ]},
     };

@@ -72,7 +72,7 @@ static void a_ball_in_a_texel_covers_its_disc(void **state) {
         VOXELS "camera { orthographic location <0, 5, 0> direction <0, -1, 0> right 4*x up 4*z }\n"
         "#declare T = texel { resolution 64 layer { sphere { <0.5, 0.5, 0.5>, 0.37 } texture { pigment { rgb 1 } finish { ambient 1 diffuse 0 } } } }\n"
         "skin { surface { surface { patch_grid 4, 4 function(u, v) { <8*(u - 0.5), 0, 8*(v - 0.5)> } } } texel { T } mapping { repeat <8, 8> height 1 } }\n";
-    static const struct { int pixels; double tolerance; } views[] = {{256, .02}, {128, .03}, {64, .04}, {32, .04}};
+    static const struct { int pixels; double tolerance; } views[] = {{256, .015}, {128, .015}, {64, .025}, {32, .025}};
     for (size_t v = 0; v < VTS_ARRAY_COUNT(views); v++) {
         VtsOptions o = options_of_size(views[v].pixels, views[v].pixels);
         Picture p = bench_render(*state, &o, text);

@@ -253,7 +253,7 @@ static void test_headers_of_others(void **state) {
     for (size_t i = 0; i < VTS_ARRAY_COUNT(cases); i++) {
         Bytes b = encode(&file);
         StrBuf error = {0};
-        b.data[cases[i].at] = cases[i].value;
+        b.data[cases[i].at] = (unsigned char)(cases[i].value + (b.data[cases[i].at] == cases[i].value));
         assert_int_equal(decode(b, &back, &error), TEXEL_FILE_REFUSED);
         if (!strstr(error.data, cases[i].says)) fail_msg("case %zu says: %s", i, error.data);
         strbuf_free(&error);
@@ -285,7 +285,7 @@ static void test_files_of_version_1(void **state) {
         assert_int_equal(was & 0x7ffffffu, now & 0x7ffffffu);
         assert_false(voxel_code_is_inside(back.layers[0].voxels->level[0].codes[i]));
         /* by half a step of the coarser code, or as far as it reaches */
-        if (before < 0.95 * (double)opacity_enhancement(2.4f, (float)density)) assert_true(fabs(after / before - 1) < .2);
+        if (before > .63 && before < 0.95 * (double)opacity_enhancement(1.73f, (float)density)) assert_true(fabs(after / before - 1) < .2);
     }
     free(b.data);
     texel_file_release(&file);

@@ -101,7 +101,7 @@ static void test_coverage_of_leaves_and_grass(void **state) {
     (void)state;
     check_coverage("600 leaves", scene_leaves(600, .035, 1), (double[]){.06, .065, .065, .05}, .03);
     check_coverage("60 leaves", scene_leaves(60, .05, 2), (double[]){.045, .045, .045, .035}, .012);
-    check_coverage("grass", scene_grass(300, .6, .012, 3), (double[]){.035, .035, .045, .055}, .025);
+    check_coverage("grass", scene_grass(300, .6, .012, 3), (double[]){.035, .035, .045, .055}, .028);
 }
 
 static void test_coverage_of_sheets(void **state) {

@@ -56,9 +56,9 @@ static VtsReference *make_reference(const Bench *b, const VtsOptions *options, i
 
 static VtsMeasure measure(const Bench *b, const VtsOptions *options, const VtsReference *reference, const char *knob, const char *value) {
     VtsOptions o = *options;
-    VtsPair setting = {knob, value};
+    VtsPair settings[] = {{"detail", "voxels"}, {knob, value}}; /* geometry itself would hide what is done with voxels */
     VtsMeasure m;
-    if (knob) o.settings = &setting, o.setting_count = 1;
+    o.settings = settings, o.setting_count = knob ? 2 : 1;
     VtsSession *session = vts_session_create(&o, NULL);
     assert_non_null(session);
     assert_int_equal(vts_measure(session, b->scene, reference, NULL, &m), VTS_OK);

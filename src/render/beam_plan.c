@@ -11,6 +11,8 @@ enum { MOST_BEAM_TRIANGLES = 4000000 };
 bool beam_build_texel(BuiltTexel *texel, CompiledScene *compiled, DiagList *diags) {
     const TexelDef *def = texel->def;
     if (def->file || def->layer_count == 0) return true;
+    for (size_t i = 0; i < def->layer_count; i++)
+        if (def->layers[i].density) return true; /* flakes only stand for it; voxels are what it is drawn with */
     ArenaMark mark = arena_mark(&compiled->scratch);
     BeamTexelDraft *draft = beam_texel_begin(texel->extent, def->cyclic, &compiled->scratch);
     size_t triangles = 0;

@@ -111,6 +111,7 @@ static const WordRule rules[] = {
     KNOB("quadrature"),
     KNOB("filtering"),
     KNOB("detail"),
+    {"sky_light", WORD_FLAG, FIELD(sky_light), NULL, false},
     INERT("geo_origin"),
     INERT("radiosity"),
     INERT("photons"),

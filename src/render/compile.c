@@ -188,8 +188,10 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
 void compiled_scene_destroy(CompiledScene *compiled) {
     exact_skins_destroy(compiled->exact);
     for (size_t i = 0; i < compiled->skin_count; i++) cell_tree_destroy(compiled->skins[i].tree);
-    for (size_t i = 0; i < compiled->texel_count; i++)
+    for (size_t i = 0; i < compiled->texel_count; i++) {
+        if (compiled->texels[i]->sky) texel_sky_destroy(compiled->texels[i]->sky);
         for (size_t k = 0; k < compiled->texels[i]->matter_count; k++) voxel_layer_destroy(compiled->texels[i]->matter[k].voxels);
+    }
     hierarchy_destroy(compiled->hierarchy);
     arena_destroy(&compiled->scratch);
     compiled->skin_count = compiled->texel_count = 0;

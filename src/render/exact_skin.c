@@ -486,7 +486,8 @@ static SkinHit describe(const Walk *w) {
     const BuiltTexel *texel = w->copy.texel;
     Vec3 normal = normal_in_scene(&w->copy, &w->at.place, w->hit.normal);
     double stretch = vec3_length(normal); /* of texel space against the scene, along the normal */
-    SkinHit out = {.t = w->t, .normal = vec3_normalize(normal), .clearance = stretch > 0 ? CLEARANCE / stretch : 0, .tint = w->copy.tint};
+    SkinHit out = {.t = w->t, .normal = vec3_normalize(normal), .clearance = stretch > 0 ? CLEARANCE / stretch : 0, .tint = w->copy.tint,
+                   .up = vec3_normalize(w->at.place.grad_layer)};
     out.look = w->placed->look;
     if (out.look) { /* laid over the texel: it lives in the scene */
         out.place = vec3_madd(w->ray->origin, w->ray->direction, w->t);

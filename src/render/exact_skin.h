@@ -13,6 +13,7 @@ typedef struct SkinHit {
     double t;
     Vec3 normal;      /* unit, scene space; zero where the mapping is singular. Which side is the front is not told */
     double clearance; /* how far along the normal other matter may be told from this: scene units */
+    Vec3 up;          /* unit, across the layer from its foot; zero where the mapping is singular */
     const Look *look; /* the layer's own or the skin's */
     Vec3f tint;
     Vec3 place;       /* where to look up the pigment of `look`: the texel's bounds, or the scene */

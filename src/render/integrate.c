@@ -8,6 +8,7 @@
 typedef struct MatterSum {
     const Look *look;
     float weight;
+    float sky;   /* that is seen */
     Vec3f color; /* pigment */
     Sym3f s;
 } MatterSum;
@@ -91,6 +92,7 @@ static void group_add(Group *group, const Cone *cone, const SkinSegment *segment
         MatterSum *sum = sum_of(group, hit->look);
         float share = weight * hit->share;
         sum->weight += share;
+        sum->sky += share * hit->sky;
         sum->color = vec3f_madd(sum->color, vec3f_mul(matter_color(hit, cone, middle), hit->tint), share);
         sum->s = sym3f_madd(&sum->s, &hit->s, share);
     }
@@ -106,7 +108,8 @@ static Vec3f shade_group(const Tracer *tr, const Cone *cone, const Group *group,
         const Look *look = sum->look;
         if (!(sum->weight > 0)) continue;
         Vec3f color = vec3f_scale(sum->color, 1 / sum->weight);
-        ambient = vec3f_madd(ambient, vec3f_mul(vec3f_add(look->ambient, look->emission), color), sum->weight);
+        ambient = vec3f_madd(ambient, vec3f_mul(look->ambient, color), sum->sky);
+        ambient = vec3f_madd(ambient, vec3f_mul(look->emission, color), sum->weight);
         for (size_t l = 0; l < lights; l++) {
             NdfShade shade = ndf_shade(tr->compiled->quadrature, &sum->s, view, vec3f_from(rays[l].direction), &look->sheet);
             direct[l] = vec3f_madd(direct[l], vec3f_mul(shade_tone(&shade, look, color), rays[l].color), sum->weight);

@@ -14,6 +14,7 @@ typedef struct Sample {
     const CompiledScene *compiled;
     Ray ray;
     double width, spread; /* of the pixel's cone: what is too small to matter */
+    uint64_t random; /* of the directions that it asks */
     TraceCounters *counters;
 } Sample;
 
@@ -22,6 +23,7 @@ typedef struct Facet {
     double t;
     Vec3 normal, flat; /* unit; `flat` that of the surface itself, for telling on which side of it a place lies */
     double bias;       /* shadows start so far beside it */
+    Vec3 up;           /* its ambient light comes from the hemisphere about it; zero: from everywhere */
     const Look *look;
     Vec3f color;
 } Facet;
@@ -41,7 +43,7 @@ static Facet skin_facet(const Sample *s, const SkinHit *hit) {
     Vec3f color = vec3f_mul(look_color(hit->look, hit->place, hit->place_normal, 0), hit->tint);
     /* Where the mapping is singular nothing tells how matter is turned. */
     Vec3 normal = vec3_length_squared(hit->normal) > 0 ? hit->normal : vec3_negate(s->ray.direction);
-    return (Facet){.t = hit->t, .normal = normal, .flat = normal, .bias = hit->clearance, .look = hit->look, .color = color};
+    return (Facet){.t = hit->t, .normal = normal, .flat = normal, .bias = hit->clearance, .up = hit->up, .look = hit->look, .color = color};
 }
 
 static bool nearest_facet(const Sample *s, Facet *facet) {
@@ -58,10 +60,26 @@ static bool nearest_facet(const Sample *s, Facet *facet) {
 
 /* ---- light ---- */
 
+/* From just beside the facet, on the side of the direction. */
+static Ray leaving(const Sample *s, const Facet *facet, Vec3 direction) {
+    double side = vec3_dot(direction, facet->flat) > 0 ? facet->bias : -facet->bias;
+    return (Ray){vec3_madd(facet_point(s, facet->t), facet->flat, side), direction};
+}
+
+/* Whether the sky is seen in one direction of the hemisphere over the layer, each alike, past all skins: explicit objects do not count. */
+static bool sky_lit(const Sample *s, const Facet *facet) {
+    if (!s->compiled->scene->settings.sky_light || vec3_length_squared(facet->up) == 0) return true;
+    Vec3 a, b;
+    vec3_frame(facet->up, &a, &b);
+    double height = random_unit(random_mix(s->random)), turn = 2 * VTS_PI * random_unit(random_mix(s->random + 1)), r = sqrt(1 - height * height);
+    Vec3 d = vec3_madd(vec3_madd(vec3_scale(a, r * cos(turn)), b, r * sin(turn)), facet->up, height);
+    Ray ray = leaving(s, facet, d);
+    return !exact_skins_occluded(s->compiled->exact, &ray, 0, VTS_INFINITY, s->counters);
+}
+
 static bool lit(const Sample *s, const Light *light, const LightRay *to_light, const Facet *facet) {
     if (light->shadowless) return true;
-    double side = vec3_dot(to_light->direction, facet->flat) > 0 ? facet->bias : -facet->bias;
-    Ray shadow = {vec3_madd(facet_point(s, facet->t), facet->flat, side), to_light->direction};
+    Ray shadow = leaving(s, facet, to_light->direction);
     s->counters->shadow_rays++;
     if (hierarchy_occluded(s->compiled->hierarchy, &shadow, facet->bias, to_light->distance)) return false;
     return !exact_skins_occluded(s->compiled->exact, &shadow, 0, to_light->distance, s->counters);
@@ -71,7 +89,8 @@ static Vec3f shade(const Sample *s, const Facet *facet) {
     const Scene *scene = s->compiled->scene;
     Vec3 point = facet_point(s, facet->t);
     Vec3f view = vec3f_from(vec3_negate(s->ray.direction));
-    Vec3f sum = vec3f_mul(vec3f_add(facet->look->ambient, facet->look->emission), facet->color);
+    Vec3f sum = vec3f_mul(facet->look->emission, facet->color);
+    if (sky_lit(s, facet)) sum = vec3f_add(sum, vec3f_mul(facet->look->ambient, facet->color));
     for (size_t l = 0; l < scene->light_count; l++) {
         LightRay ray = light_ray(&scene->lights[l], point);
         NdfShade amount = sheet_shade(vec3f_from(facet->normal), view, vec3f_from(ray.direction), &facet->look->sheet);
@@ -115,7 +134,7 @@ static Radiance see_pixel(void *context, int worker, int px, int py) {
             uint64_t bits = random_hash((uint64_t)px, (uint64_t)py, number++, options->seed);
             double x = (column + random_unit(bits)) / columns, y = (row + random_unit(random_mix(bits))) / strata.rows;
             Cone cone = view_cone(&reference->compiled->view, px + x, py + y, 1);
-            Sample sample = {reference->compiled, {cone.origin, cone.direction}, cone.width, cone.spread, &reference->counters[worker]};
+            Sample sample = {reference->compiled, {cone.origin, cone.direction}, cone.width, cone.spread, random_mix(bits + 2), &reference->counters[worker]};
             Radiance seen = trace_sample(&sample);
             sum.color = vec3f_madd(sum.color, seen.color, share);
             sum.alpha += seen.alpha * share;

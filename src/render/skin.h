@@ -17,6 +17,7 @@
 #include "shape/box_tree.h"
 #include "shape/surface_mesh.h"
 #include "texel/opacity.h"
+#include "texel/texel_sky.h"
 
 /* c[0] + c[1]·a + c[2]·b + c[3]·a·b */
 typedef struct BilinearVec {
@@ -56,6 +57,7 @@ typedef struct BuiltTexel {
     size_t voxel_count, bytes;
     double build_seconds;     /* or of loading */
     bool cached;              /* nothing of it had to be built */
+    TexelSky *sky;            /* NULL: ambient light is the same everywhere */
     ExactTexel *exact;        /* instead of voxels, for the reference; else NULL */
     const BeamTexel *beam;    /* its triangles, for beams; NULL where there are none */
 } BuiltTexel;

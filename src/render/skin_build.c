@@ -85,6 +85,19 @@ static VoxelLayer *get_voxels(BuiltTexel *texel, size_t index, const CompileOpti
     return voxels;
 }
 
+/* NULL when interrupted, or for want of matter. */
+static TexelSky *build_sky(const BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled) {
+    const TexelDef *def = texel->def;
+    if (texel->matter_count == 0) return NULL;
+    const VoxelLayer **layers = arena_new_array(compiled->arena, const VoxelLayer *, texel->matter_count);
+    for (size_t i = 0; i < texel->matter_count; i++) layers[i] = texel->matter[i].voxels;
+    TexelSkyOptions sky = {.opacity = compiled->march.opacity, .pool = options->pool, .memory = options->memory,
+                           .repeated = def->cyclic ? def->cyclic : TEXEL_CYCLIC_X | TEXEL_CYCLIC_Z}; /* copies stand side by side */
+    TexelSky *built = texel_sky_build(layers, texel->matter_count, &sky);
+    if (!built && (!options->interrupted || !*options->interrupted)) memory_budget_fail(options->memory);
+    return built;
+}
+
 static bool build_matter(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
     const TexelDef *def = texel->def;
     double start = stopwatch_wall();
@@ -96,6 +109,7 @@ static bool build_matter(BuiltTexel *texel, const CompileOptions *options, Compi
         for (int l = 0; l < voxel_layer_levels(voxels); l++) texel->voxel_count += voxel_layer_voxels(voxels, l);
         texel->bytes += voxel_layer_bytes(voxels);
     }
+    if (compiled->scene->settings.sky_light) texel->sky = build_sky(texel, options, compiled);
     texel->build_seconds = stopwatch_wall() - start;
     return true;
 }

@@ -482,6 +482,26 @@ typedef struct StepSample {
     float depth, area, gamma_area;
 } StepSample;
 
+/* Directions over the hemisphere about y, each for the same solid angle: two rings at the middles of equal heights. */
+static const Vec3 SKY_DIRECTIONS[] = {{0.9682, 0.25, 0},        {0, 0.25, 0.9682},       {-0.9682, 0.25, 0},       {0, 0.25, -0.9682},
+                                      {0.4677, 0.75, 0.4677},   {-0.4677, 0.75, 0.4677}, {-0.4677, 0.75, -0.4677}, {0.4677, 0.75, -0.4677}};
+
+/* The share of the hemisphere over the layer that the place sees past its texel's own matter. */
+static float sky_seen(const TexelCopy *copy, const TexturePlace *place, Vec3f at) {
+    SkyView view = texel_sky_at(copy->texel->sky, at);
+    Vec3 up = vec3_normalize(place->grad_layer), s, t;
+    vec3_frame(up, &s, &t);
+    float sum = 0;
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(SKY_DIRECTIONS); i++) {
+        Vec3 d = SKY_DIRECTIONS[i], world = vec3_madd(vec3_madd(vec3_scale(s, d.x), t, d.z), up, d.y);
+        Vec3 rate = vec3(vec3_dot(place->grad_u, world), vec3_dot(place->grad_v, world), vec3_dot(place->grad_w, world));
+        Vec3f way = rate_to_copy(copy, rate);
+        float length = vec3f_length(way);
+        sum += length > 0 ? sky_view_toward(&view, vec3f_scale(way, 1 / length)) : view.mean;
+    }
+    return sum / (float)VTS_ARRAY_COUNT(SKY_DIRECTIONS);
+}
+
 static void sample_copy(SkinMarch *m, size_t i, const CopyOnWay *on_way, StepSample *step, SkinSegment *out) {
     const PlacedTexel *placed = &m->skin->texels[i];
     const TexelCopy *copy = &on_way->copy;
@@ -516,6 +536,7 @@ static void sample_copy(SkinMarch *m, size_t i, const CopyOnWay *on_way, StepSam
                            .width = fit->width,
                            .place = {at.x / texel->extent.x, at.y / texel->extent.y, at.z / texel->extent.z}};
         hit->s = to_world(&v.s, copy, &m->span.place);
+        hit->sky = texel->sky ? sky_seen(copy, &m->span.place, at) : 1;
     }
 }
 

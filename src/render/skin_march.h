@@ -39,6 +39,7 @@ typedef struct MatterHit {
     Vec3f tint;
     float share;          /* of the step's optical depth */
     Sym3f s;              /* world space, any scale */
+    float sky;            /* how much of the sky it sees: 1 where that is not asked */
     Vec3f place;          /* in the texel's bounds, for its pigment: fractions of the box */
     float width;          /* of the cone there, texel space */
     const BuiltTexel *texel;

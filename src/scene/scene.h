@@ -478,6 +478,7 @@ typedef struct GlobalSettings {
     const char *ray_path;      /* NULL: box */
     const char *filtering;     /* NULL: linear */
     const char *detail;        /* NULL: auto */
+    bool sky_light;            /* ambient light of matter in skins comes from the sky that it sees */
 } GlobalSettings;
 
 /* A texel that a name stands for when the scene's text ends: "Grass", "Trees[2]". */

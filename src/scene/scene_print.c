@@ -418,6 +418,7 @@ static void print_settings(Printer *p, const GlobalSettings *s) {
     add_unless(p, "shadow_aperture", s->shadow_aperture, 2);
     for (size_t i = 0; i < VTS_ARRAY_COUNT(texts); i++)
         if (texts[i][1]) strbuf_addf(p->out, " %s %s", texts[i][0], texts[i][1]);
+    add_flag(p, "sky_light", s->sky_light);
     end_line(p);
 }
 

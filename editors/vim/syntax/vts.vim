@@ -133,7 +133,7 @@ syn region vtsIn_isosurface matchgroup=vtsBlock start="\<isosurface\>\s*{" match
 syn match vtsItem_isosurface "\<\%(detail\|interval\|affine\|reduced_affine\|reduced_affine_optimised\|auto\|full\)\>\%(\s*{\)\@!" contained containedin=vtsIn_isosurface
 hi def link vtsItem_isosurface vtsItem
 syn region vtsIn_global_settings matchgroup=vtsBlock start="\<global_settings\>\s*{" matchgroup=vtsBlock end="}" fold contains=TOP
-syn match vtsItem_global_settings "\<\%(max_error\|geo_origin\|opacity_model\|ray_path\|quadrature\|filtering\|detail\|shadow_aperture\)\>\%(\s*{\)\@!" contained containedin=vtsIn_global_settings
+syn match vtsItem_global_settings "\<\%(max_error\|geo_origin\|opacity_model\|ray_path\|quadrature\|filtering\|detail\|shadow_aperture\|sky_light\)\>\%(\s*{\)\@!" contained containedin=vtsIn_global_settings
 hi def link vtsItem_global_settings vtsItem
 syn region vtsIn_light_source matchgroup=vtsBlock start="\<light_source\>\s*{" matchgroup=vtsBlock end="}" fold contains=TOP
 syn match vtsItem_light_source "\<\%(goniometric\|ies\)\>\%(\s*{\)\@!" contained containedin=vtsIn_light_source

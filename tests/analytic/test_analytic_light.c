@@ -1,0 +1,102 @@
+/* Light in layers of texels seen from afar: its mean against the exact geometry's, sun and sky. */
+#include "analytic.h"
+
+static int set_up(void **state) {
+    Bench *b = malloc(sizeof *b);
+    bench_begin(b);
+    *state = b;
+    return 0;
+}
+
+static int tear_down(void **state) {
+    bench_end(*state);
+    free(*state);
+    return 0;
+}
+
+#define GRASS \
+    "#declare S = seed(11);\n" \
+    "#declare T = texel { cyclic x + z layer { particles { count 16 { position <rand(S), 0, rand(S)> velocity <0.4*rand(S) - 0.2, 0.9, 0.4*rand(S) - 0.2>\n" \
+    "  acceleration <0.6*rand(S) - 0.3, -0.3, 0.6*rand(S) - 0.3> life 1 width 0.06, 0.004 profile \"flat\" } }\n" \
+    "  texture { pigment { rgb <0.3, 0.6, 0.1> } finish { ambient 0.1 diffuse 0.55, 0.35 } } } }\n"
+#define LEAVES \
+    "#declare S = seed(5);\n" \
+    "#macro P() <rand(S) - 0.5, rand(S) - 0.5, rand(S) - 0.5> #end\n" \
+    "#declare T = texel { layer { mesh { #for (I, 1, 300) #local C = <0.5, 0.5, 0.5> + 0.8*P(); triangle { C + 0.1*P(), C + 0.1*P(), C + 0.1*P() } #end }\n" \
+    "  texture { pigment { rgb <0.3, 0.6, 0.1> } finish { ambient 0.1 diffuse 0.6, 0.3 } } } }\n"
+/* The camera sees nothing but the layer. */
+#define FIELD \
+    "global_settings { detail voxels ambient_light %g %s }\n" \
+    "camera { location <0, 4, -40> look_at <0, %g, 0> right x*image_width/image_height angle %g translate <0, %g, %g> }\n" \
+    "light_source { <-2000, 2600, %g>, rgb %g parallel point_at 0 }\n" \
+    "#declare G = surface { patch_grid 20, 20 function(u, v) { <80*u - 40, 0, 80*v - 40> } texture { pigment { rgb <0.11, 0.09, 0.05> } finish { diffuse 0.7 } } }\n" \
+    "object { G }\n" \
+    "skin { surface { G } texel { T } mapping { repeat <%g, %g> height %g } jitter { direction 0.2 height 0.2 instance { rotate 360 displace 0.3 } } }\n"
+
+typedef struct LightCase {
+    const char *name, *contents;
+    double ambient;
+    const char *setting;
+    double look, angle, lift, back, sun_z, sun, repeat, height;
+    double tolerance; /* of the mean */
+} LightCase;
+
+static double mean_of(const Bench *b, const char *text, bool exact) {
+    VtsOptions o = options_of_size(32, 24);
+    o.reference_samples = 24;
+    bench_write(b, text);
+    VtsSession *session = vts_session_create(&o, NULL);
+    assert_non_null(session);
+    assert_int_equal(exact ? vts_reference(session, b->scene, b->output) : vts_render(session, b->scene, b->output), VTS_OK);
+    vts_session_destroy(session);
+    Picture p = picture_read(b->output);
+    double mean = picture_mean(&p);
+    picture_free(&p);
+    return mean;
+}
+
+static void mean_light_is_that_of_the_geometry(void **state) {
+    static const LightCase cases[] = {
+        {"grass, sun behind the viewer", GRASS, 1, "", 0.5, 5, 0, 0, -1800, 1.5, 160, 0.9, .05},
+        {"grass, sun before the viewer", GRASS, 1, "", 0.5, 5, 0, 0, 2200, 1.5, 160, 0.9, .05},
+        {"grass from above", GRASS, 1, "", 0.5, 10, 36, 35, -1800, 1.5, 160, 0.9, .05},
+        {"leaves, sun behind the viewer", LEAVES, 1, "", 0.5, 5, 0, 0, -1800, 1.5, 40, 2, .05},
+        {"leaves, sun before the viewer", LEAVES, 1, "", 0.5, 5, 0, 0, 2200, 1.5, 40, 2, .05},
+        {"leaves from above", LEAVES, 1, "", 0.5, 10, 36, 35, -1800, 1.5, 40, 2, .05},
+        {"sky on grass from above", GRASS, 6, "sky_light on", 0.5, 10, 36, 35, -1800, 0, 160, 0.9, .12},
+        {"sky on leaves from above", LEAVES, 6, "sky_light on", 0.5, 10, 36, 35, -1800, 0, 40, 2, .12},
+    };
+    static char text[8192];
+    int bad = 0;
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(cases); i++) {
+        const LightCase *c = &cases[i];
+        int n = snprintf(text, sizeof text, "%s", c->contents);
+        snprintf(text + n, sizeof text - (size_t)n, FIELD, c->ambient, c->setting, c->look - c->lift, c->angle, c->lift, c->back, c->sun_z, c->sun,
+                 c->repeat, c->repeat, c->height);
+        double truth = mean_of(*state, text, true), got = mean_of(*state, text, false);
+        printf("%-32s %.4f geometry %.4f ratio %.3f\n", c->name, got, truth, got / truth);
+        assert_true(truth > 0.01);
+        bad += fabs(got / truth - 1) > c->tolerance;
+    }
+    assert_int_equal(bad, 0);
+}
+
+/* The foot of the grass lies in its own shade: without sky_light all of it is alike. */
+static void sky_light_darkens_what_stands_under_others(void **state) {
+    static char text[8192];
+    double mean[2];
+    for (int on = 0; on < 2; on++) {
+        int n = snprintf(text, sizeof text, "%s", GRASS);
+        snprintf(text + n, sizeof text - (size_t)n, FIELD, 6.0, on ? "sky_light on" : "sky_light off", -35.5, 10.0, 36.0, 35.0, -1800.0, 0.0, 160.0, 160.0, 0.9);
+        mean[on] = mean_of(*state, text, false);
+    }
+    assert_true(mean[1] < 0.8 * mean[0] && mean[1] > 0.2 * mean[0]);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(mean_light_is_that_of_the_geometry),
+        cmocka_unit_test(sky_light_darkens_what_stands_under_others),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

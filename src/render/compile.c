@@ -176,7 +176,9 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     for (size_t i = 0; i < skins.count; i++)
         if (skin_compile(skins.items[i], out, diags, &out->skins[out->skin_count])) out->skin_count++;
     if (diags->error_count > errors) return COMPILE_FAILED;
-    CompileStatus status = build_texels(options, detail_of(scene->settings.detail), diags, out);
+    Detail detail = detail_of(scene->settings.detail);
+    if (detail == DETAIL_AUTO && scene->settings.sky_light) detail = DETAIL_VOXELS; /* beams know nothing of the sky */
+    CompileStatus status = build_texels(options, detail, diags, out);
     if (status != COMPILE_OK) return status;
     out->skin_tree = tree_over_skins(out);
     if (options->exact && out->skin_count) out->exact = exact_skins_build(out->skins, out->skin_count, hierarchy_device(out->hierarchy));

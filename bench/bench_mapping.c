@@ -10,6 +10,9 @@
 
 /* ---- leaks ---- */
 
+/* Lengths that differ by more than this many heights count. */
+static const double LEAK = 1e-6;
+
 typedef struct Leaks {
     uint64_t rays, missed, doubled, stretches, entries;
     double sum, true_sum, worst;
@@ -44,37 +47,90 @@ static Ray aimed_ray(const BallMesh *ball, Vec3 center, double radius, double he
     return (Ray){vec3_madd(target, d, i % 8 == 5 ? 0 : -3 * radius), d};
 }
 
-static void measure_leaks(uint64_t rays) {
+static void count_leak(Leaks *leaks, double got, double want, double height) {
+    double error = (got - want) / height;
+    leaks->rays++;
+    leaks->sum += got, leaks->true_sum += want;
+    leaks->worst = fmax(leaks->worst, fabs(error));
+    leaks->missed += error < -LEAK;
+    leaks->doubled += error > LEAK;
+}
+
+static void print_leaks(const char *what, const Leaks *l, double seconds) {
+    printf("%-34s %llu rays in %.0f s with their checks: %llu leak, %llu count twice (more than 1e-6 heights), worst %.1e heights, sum of "
+           "lengths %.10f of the true one, %.1f boxes and %.2f entries a ray\n",
+           what, (unsigned long long)l->rays, seconds, (unsigned long long)l->missed, (unsigned long long)l->doubled, l->worst,
+           l->sum / l->true_sum, (double)l->stretches / (double)l->rays, (double)l->entries / (double)l->rays);
+}
+
+/* A ball of triangles: each box a prism, and faces as half spaces know the truth. */
+static void leaks_of_prisms(uint64_t rays) {
     static BallMesh ball;
     const Vec3 center = {.3, -.2, .1};
     const double radius = 1, height = .2;
     RandomStream r = {1};
     SkinScene s;
     Leaks leaks = {0};
-    ball_make(&ball, 2);
+    ball_make(&ball, 1);
     skin_scene_begin(&s);
     skin_scene_ball(&s, &ball, center, radius, height);
     if (skin_scene_compile(&s) != COMPILE_OK) return;
-    const CompiledSkin *skin = &s.compiled.skins[0];
     double start = stopwatch_cpu();
     for (uint64_t i = 0; i < rays; i++) {
         Ray ray = aimed_ray(&ball, center, radius, height, i, &r);
         LayerParts parts = ball_layer_parts(&ball, center, radius, height, &ray, 0);
-        double want = layer_length(&parts), got = way_length(skin, &ray, &leaks), error = (got - want) / (radius * height);
-        leaks.rays++;
-        leaks.sum += got, leaks.true_sum += want;
-        leaks.worst = fmax(leaks.worst, fabs(error));
-        leaks.missed += error < -1e-6;
-        leaks.doubled += error > 1e-6;
+        count_leak(&leaks, way_length(&s.compiled.skins[0], &ray, &leaks), layer_length(&parts), radius * height);
     }
-    printf("edge-aimed rays: %llu in %.0f s with their checks; leaks %llu, counted twice %llu (by more than 1e-6 heights); worst %.1e heights; sum of lengths %.9f of the true one; "
-           "%.1f cells and %.2f entries a ray\n",
-           (unsigned long long)leaks.rays, stopwatch_cpu() - start, (unsigned long long)leaks.missed, (unsigned long long)leaks.doubled, leaks.worst,
-           leaks.sum / leaks.true_sum, (double)leaks.stretches / (double)rays, (double)leaks.entries / (double)rays);
+    print_leaks("prisms, aimed at edges:", &leaks, stopwatch_cpu() - start);
+    skin_scene_end(&s);
+}
+
+/* Patches of an uneven grid over the unit square under one slanting height vector: together a parallelepiped. */
+static const Vec3 SLANT = {.1, .25, -.05};
+
+static Vec3 uneven_foot(double u, double v) {
+    double inside = 64 * u * (1 - u) * v * (1 - v);
+    return vec3(u + .02 * inside * sin(40 * u + 9 * v), 0, v + .02 * inside * cos(31 * v - 17 * u));
+}
+static Vec3 slanting_height(double u, double v) { return (void)u, (void)v, SLANT; }
+
+static double slab_length(const Ray *ray) {
+    double t0 = 0, t1 = VTS_INFINITY;
+    double o[3] = {ray->origin.x - ray->origin.y * SLANT.x / SLANT.y, ray->origin.y / SLANT.y, ray->origin.z - ray->origin.y * SLANT.z / SLANT.y};
+    double d[3] = {ray->direction.x - ray->direction.y * SLANT.x / SLANT.y, ray->direction.y / SLANT.y,
+                   ray->direction.z - ray->direction.y * SLANT.z / SLANT.y};
+    for (int k = 0; k < 3; k++) {
+        double a = -o[k] / d[k], b = (1 - o[k]) / d[k];
+        t0 = fmax(t0, fmin(a, b)), t1 = fmin(t1, fmax(a, b));
+    }
+    return fmax(0, t1 - t0);
+}
+
+static void leaks_of_hexahedra(uint64_t rays) {
+    enum { N = 6 };
+    RandomStream r = {2};
+    SkinScene s;
+    Leaks leaks = {0};
+    skin_scene_begin(&s);
+    skin_scene_grid(&s, N, N, uneven_foot, slanting_height);
+    if (skin_scene_compile(&s) != COMPILE_OK) return;
+    double start = stopwatch_cpu();
+    for (uint64_t i = 0; i < rays; i++) {
+        int a = 1 + (int)between(&r, 0, N - 1), b = 1 + (int)between(&r, 0, N - 1);
+        Vec3 p = uneven_foot((double)a / N, (double)b / N), q = uneven_foot((double)(a + 1) / N, (double)b / N), d = spread_direction(&r);
+        Vec3 on = i % 4 == 0 ? p : vec3_lerp(p, q, random_next_unit(&r));
+        if (i % 4 == 2) d = vec3_normalize(vec3_madd(vec3_scale(vec3_sub(q, p), between(&r, -6, 6)), SLANT, between(&r, -1, 1)));
+        if (i % 4 == 3) d = vec3_normalize(vec3(d.x, .02 * d.y, d.z));
+        Ray ray = {vec3_madd(vec3_madd(on, SLANT, random_next_unit(&r)), d, i % 8 == 5 ? 0 : -3), d};
+        count_leak(&leaks, way_length(&s.compiled.skins[0], &ray, &leaks), slab_length(&ray), SLANT.y);
+    }
+    print_leaks("hexahedra, aimed at edges:", &leaks, stopwatch_cpu() - start);
     skin_scene_end(&s);
 }
 
 int main(int argc, char **argv) {
-    measure_leaks(argc > 1 ? strtoull(argv[1], NULL, 10) : 1000000);
+    uint64_t rays = argc > 1 ? strtoull(argv[1], NULL, 10) : 1000000;
+    leaks_of_prisms(rays / 2);
+    leaks_of_hexahedra(rays / 2);
     return 0;
 }

@@ -157,6 +157,7 @@ static void read_layer(Reader *reader, const Word *word, void *target) {
         if (!layer.unmodelled) reader_error(reader, word->span, "this layer holds no object");
         return;
     }
+    if (!layer.layer.texture) layer.layer.texture = texture_default(reader->context); /* of now, as for objects */
     layer.layer.contents = layer.contents.items;
     layer.layer.content_count = layer.contents.count;
     layer_rehash(&layer.layer);

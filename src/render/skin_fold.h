@@ -22,7 +22,7 @@ typedef struct SkinPiece {
     double t0, t1;
     SkinPoint middle;
 } SkinPiece;
-enum { MOST_PIECES = 24 };
+enum { MOST_PIECES = 160 };
 /* Of cell `number`, in no order; returns how many. What touches a fold in less than a sixty-fourth of the cell may be left out. */
 int skin_cell_pieces(const SkinCell *cell, int32_t number, const Ray *ray, double t_min, double t_max, SkinPiece out[MOST_PIECES]);
 /* The first `most` to begin, of all cells of a skin, in the order of t0; returns how many there are. */

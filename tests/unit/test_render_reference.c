@@ -47,6 +47,9 @@ static Vec3 hill_height(double u, double v) { return vec3(0.25 * sin(4 * v), 0.7
 static Vec3 mirrored_foot(double u, double v) { return hill_foot(1 - u, v); }
 static Vec3 mirrored_height(double u, double v) { return hill_height(1 - u, v); }
 
+static Vec3 crossing_height(double u, double v) { return vec3(-8 * (u - 0.5), 0.8, -8 * (v - 0.5)); }
+static Vec3 twisted_height(double u, double v) { return vec3(-5 * (u - 0.5) + 2 * v, 0.9 + 0.3 * u, 4 * (u - 0.5) - 5 * (v - 0.5)); }
+
 /* ---- content ---- */
 
 enum { CONTENT = 14 };
@@ -150,8 +153,8 @@ static void compile(SkinScene *s) {
     assert_int_equal(compile_scene(&s->scene, &options, &s->arena, &s->diags, &s->compiled), COMPILE_OK);
 }
 
-static void picture(SkinScene *s, Image *out) {
-    const RenderOptions options = {.region = {0, 0, SIDE, SIDE}, .samples = SAMPLES};
+static void picture(SkinScene *s, int samples, Image *out) {
+    const RenderOptions options = {.region = {0, 0, SIDE, SIDE}, .samples = samples};
     RenderStats stats;
     assert_true(reference_picture(&s->compiled, &options, NULL, out, &stats, NULL));
 }
@@ -202,7 +205,7 @@ static void superimpose(SkinScene *s, RandomStream *r, Content *content, const T
 }
 
 /* The skin's picture and that of its copies written out; a ground below for the shadows. */
-static void compare_pictures(const Trial *trial) {
+static void compare_pictures_of(const Trial *trial, int samples) {
     SkinScene s;
     Light light;
     Content content;
@@ -225,14 +228,14 @@ static void compare_pictures(const Trial *trial) {
     s.scene.skins = s.skins;
     s.scene.skin_count = 1;
     compile(&s);
-    picture(&s, &skin);
+    picture(&s, samples, &skin);
     if (trial->superimposed) more.as.mesh = write_out(&s, 1, &trial->bed, &second, trial->from, trial->to, trial->cuts);
     copies.as.mesh = write_out(&s, 0, &trial->bed, &content, trial->from, trial->to, trial->cuts);
     compiled_scene_destroy(&s.compiled);
     s.scene.skin_count = 0;
     s.scene.object_count = trial->superimposed ? 3 : 2;
     compile(&s);
-    picture(&s, &plain);
+    picture(&s, samples, &plain);
     assert_true(image_compare(&plain, &skin, &difference, NULL));
     printf("%-28s rmse %.5f, largest %.3f, deviation within the picture %.3f\n", trial->name, difference.rmse, difference.largest, variation(&plain));
     assert_true(variation(&plain) > 0.05); /* there is something to see */
@@ -241,6 +244,8 @@ static void compare_pictures(const Trial *trial) {
     image_free(&plain);
     skin_scene_end(&s);
 }
+
+static void compare_pictures(const Trial *trial) { compare_pictures_of(trial, SAMPLES); }
 
 static const Vec3 NEAR_EYE = {0.6, 3.5, -4.5};
 static const Bed FLAT = {1, 1, 5, flat_foot, flat_height, 0, 0}, HILL = {4, 3, 6, hill_foot, hill_height, 0, 0};
@@ -254,6 +259,13 @@ static void flat_tiles_are_the_objects_they_repeat(void **state) {
 static void bent_tiles_are_the_objects_bent(void **state) {
     (void)state;
     compare_pictures(&(Trial){"hill", HILL, 0, 0.25, 0.75, 0, 6, 12, {0}, NEAR_EYE, 50, 0.0025, false});
+}
+
+/* Where height vectors cross, sheets lie over one another, and all of them are seen. */
+static void folded_layers_show_all_their_sheets(void **state) {
+    (void)state;
+    compare_pictures_of(&(Trial){"collapsed half way up", {2, 2, 5, flat_foot, crossing_height, 0, 0}, 0, 0.25, 0.75, 0, 5, 12, {0}, NEAR_EYE, 30, 0.012, false}, 9);
+    compare_pictures_of(&(Trial){"folded and twisted", {3, 2, 6, hill_foot, twisted_height, 0, 0}, 0, 0.25, 0.75, 0, 6, 24, {0}, NEAR_EYE, 30, 0.012, false}, 9);
 }
 
 static void content_goes_on_across_borders_of_tiles(void **state) {
@@ -326,7 +338,7 @@ static void texels_placed_as_objects_are_their_contents(void **state) {
         for (int i = 0; i < PLACED; i++) objects[i] = &placed[k][i];
         compile(&s);
         assert_int_equal(s.compiled.skin_count, k == 0 ? PLACED : 0);
-        picture(&s, &pictures[k]);
+        picture(&s, SAMPLES, &pictures[k]);
         if (k == 0) compiled_scene_destroy(&s.compiled);
     }
     assert_true(image_compare(&pictures[1], &pictures[0], &difference, NULL));
@@ -399,7 +411,6 @@ static void rays_meet_the_bent_triangles(void **state) {
 
 /* ---- what must not break it ---- */
 
-static Vec3 crossing_height(double u, double v) { return vec3(-8 * (u - 0.5), 0.8, -8 * (v - 0.5)); }
 static Vec3 no_height(double u, double v) { return (void)u, (void)v, vec3(0, 0, 0); }
 static Vec3 no_area(double u, double v) { return (void)v, vec3(u, 0, 0); }
 
@@ -480,6 +491,7 @@ static void samples_cover_the_pixel_evenly(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(flat_tiles_are_the_objects_they_repeat),
                                        cmocka_unit_test(bent_tiles_are_the_objects_bent),
+                                       cmocka_unit_test(folded_layers_show_all_their_sheets),
                                        cmocka_unit_test(content_goes_on_across_borders_of_tiles),
                                        cmocka_unit_test(jittered_copies_lie_where_the_placing_says),
                                        cmocka_unit_test(mirrored_skins_are_the_objects_mirrored),

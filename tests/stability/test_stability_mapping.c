@@ -1,0 +1,65 @@
+/* Mappings that bend, stretch, mirror, fold or crush the layer. */
+#include "stability.h"
+
+#define GROUND "#macro Flat(N) surface { patch_grid N, N function(u, v) { <4*u - 2, 0, 4*v - 2> } } #end\n"
+#define FROM_ABOVE "Look(<0.5, 4, -4>, <0, 0.2, 0>, 50)\n"
+
+static void folded(void **state) {
+    (void)state;
+    static const Trial trials[] = {
+        {"valley, unfolded", FROM_ABOVE "skin { surface { patch_grid 8, 8 function(u, v) { <4*u - 2, (2*u - 1)*(2*u - 1), 4*v - 2> } } texel { Leaves(30, 0.12) }\n"
+                             "mapping { repeat <8, 8> height 0.8 } }", .05, .02, .04},
+        {"valley, folded: curvature below the height", FROM_ABOVE "skin { surface { patch_grid 8, 8 function(u, v) { <4*u - 2, 4*(u - 0.5)*(u - 0.5), 4*v - 2> } } texel { Leaves(30, 0.12) }\n"
+                             "mapping { repeat <8, 8> height 3 } }", .06, .03, .04},
+        {"crossing height vectors", FROM_ABOVE "#declare P = array[3][3]; #declare H = array[3][3];\n"
+                             "#for (I, 0, 2) #for (J, 0, 2) #declare P[I][J] = <2*I - 2, 0, 2*J - 2>; #declare H[I][J] = <2.5 - 2.5*I, 1, 0.3*(1 - J)>; #end #end\n"
+                             "skin { surface { patch_grid 2, 2 points P height_vectors H } texel { Leaves(12, 0.15) } mapping { repeat <6, 6> } }", .06, .03, .04},
+        {"folded prisms", FROM_ABOVE "skin { surface { mesh2 { vertex_vectors { 4, <-2, 0, -2>, <2, 0, -2>, <2, 0, 2>, <-2, 0, 2> } face_indices { 2, <0, 2, 1>, <0, 3, 2> }\n"
+                             "height_vectors { 4, <3, 1, 0.5>, <-2.5, 1, 0>, <0, 1.5, 0>, <0.5, 1, -3> } } uv planar y } texel { Leaves(12, 0.15) } mapping { repeat <6, 6> } }", .06, .03, .04},
+        {"inverted prisms: heights below the ground", FROM_ABOVE "skin { surface { mesh2 { vertex_vectors { 4, <-2, 0.5, -2>, <2, 0.5, -2>, <2, 0.5, 2>, <-2, 0.5, 2> } face_indices { 2, <0, 2, 1>, <0, 3, 2> }\n"
+                             "height_vectors { 4, <0, -0.6, 0>, <0, -0.6, 0>, <0, -0.6, 0>, <0, -0.6, 0> } } uv planar y } texel { Leaves(12, 0.15) } mapping { repeat <6, 6> } }", .05, .02, .04},
+    };
+    try_trials(trials, VTS_ARRAY_COUNT(trials));
+}
+
+static void crushed(void **state) {
+    (void)state;
+    static const Trial trials[] = {
+        {"height falls to nothing along an edge", GROUND FROM_ABOVE "skin { surface { Flat(4) } texel { Leaves(30, 0.12) } mapping { repeat <8, 8> height 0.8 function(x, y, z) { x/4 + 0.5 } } }", .05, .02, .04},
+        {"no area: a line", FROM_ABOVE "skin { surface { patch_grid 4, 4 function(u, v) { <4*u - 2, 0, 0> } } texel { Leaves(30, 0.12) } mapping { repeat <8, 8> height 0.8 } }", .003, .001, 0},
+        {"areas fall to nothing at a pole", FROM_ABOVE "skin { surface { patch_grid 8, 4 function(u, v) { <2*v*cos(2*pi*u), 0, -2*v*sin(2*pi*u)> } } texel { Leaves(30, 0.12) } mapping { repeat <16, 4> height 0.8 } }", .05, .02, .04},
+        {"height vectors laid nearly flat", GROUND FROM_ABOVE "skin { surface { Flat(3) } texel { Leaves(30, 0.12) } mapping { repeat <8, 8> height 0.4 comb <3, -0.9, 1> } }", .06, .02, .02},
+    };
+    try_trials(trials, VTS_ARRAY_COUNT(trials));
+}
+
+/* Matter pressed into a sheet: boxes without volume hold none for rays, and show as a film where triangles are drawn. */
+static void flat(void **state) {
+    (void)state;
+    static const Trial trials[] = {
+        {"no height", GROUND FROM_ABOVE "plane { y, -0.5 } skin { surface { Flat(2) } texel { Leaves(30, 0.12) } mapping { repeat <8, 8> height 0 } }", .003, .001, 0},
+        {"height vectors laid flat", GROUND FROM_ABOVE "plane { y, -0.5 } skin { surface { Flat(3) } texel { Leaves(30, 0.12) } mapping { repeat <8, 8> height 0.4 comb <1, -1, 0> } }", .003, .001, 0},
+    };
+    try_voxels(trials, VTS_ARRAY_COUNT(trials));
+}
+
+static void stretched(void **state) {
+    (void)state;
+    static const Trial trials[] = {
+        {"mirrored", GROUND FROM_ABOVE "skin { surface { Flat(4) scale <-1, 1, 1> } texel { Leaves(30, 0.12) } mapping { repeat <8, 8> height 0.8 } }", .05, .02, .04},
+        {"sheared by combing", GROUND FROM_ABOVE "skin { surface { Flat(4) } texel { Leaves(30, 0.12) } mapping { repeat <8, 8> height 0.6 comb <1.5, 0, 0.5> } }", .05, .02, .04},
+        {"1:30 along u", GROUND FROM_ABOVE "skin { surface { Flat(4) } texel { Leaves(30, 0.12) } mapping { repeat <0.5, 15> height 0.8 } }", .08, .02, .04},
+        {"1:1000 along u", GROUND FROM_ABOVE "skin { surface { Flat(4) } texel { Leaves(30, 0.12) } mapping { repeat <0.02, 20> height 0.8 } }", .10, .04, .02},
+        {"1:1000 in height", GROUND "Look(<0, 400, -4>, <0, 0.2, 0>, 90) skin { surface { Flat(4) } texel { Leaves(8, 0.12) } mapping { repeat <4, 4> height 1000 } }", .06, .02, .02},
+        {"a million tiles", GROUND FROM_ABOVE "skin { surface { Flat(4) } texel { Leaves(30, 0.12) } mapping { repeat 1000000 height 0.000003 } }", .05, .03, .02},
+        {"coordinates of a million tiles", "Look(<0.5, 4, -4>, <0, 0.2, 0>, 50)\n"
+                             "skin { surface { mesh2 { vertex_vectors { 4, <-2, 0, -2>, <2, 0, -2>, <2, 0, 2>, <-2, 0, 2> } uv_vectors { 4, <1000000, 1000000>, <1000008, 1000000>, <1000008, 1000008>, <1000000, 1000008> }\n"
+                             "face_indices { 2, <0, 2, 1>, <0, 3, 2> } } uv mesh } texel { Leaves(30, 0.12) } mapping { height 0.8 } }", .05, .02, .04},
+    };
+    try_trials(trials, VTS_ARRAY_COUNT(trials));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(folded), cmocka_unit_test(crushed), cmocka_unit_test(flat), cmocka_unit_test(stretched)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

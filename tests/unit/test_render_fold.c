@@ -1,0 +1,126 @@
+/* Folded boxes: all places of a point, the sign of det J over a box, pieces of rays; and that the two roads agree. */
+#include "skin_scenes.h"
+
+#include "render/skin_fold.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+
+/* A unit triangle or square whose height vectors are spread by up to `spread` sideways. */
+static SkinCell spread_cell(RandomStream *r, bool triangle, double spread, double height) {
+    SkinCell cell = {.triangle = triangle};
+    cell.foot = (BilinearVec){{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0, 0, 0}}};
+    Vec3 h[4];
+    for (int k = 0; k < 4; k++) h[k] = vec3_scale(vec3(between(r, -spread, spread), 1 + between(r, -.6, .6) * spread, between(r, -spread, spread)), height);
+    cell.height = (BilinearVec){{h[0], vec3_sub(h[1], h[0]), vec3_sub(h[2], h[0]), {0, 0, 0}}};
+    if (!triangle) cell.height.c[3] = vec3_sub(vec3_add(h[0], h[3]), vec3_add(h[1], h[2]));
+    cell.bounds = skin_cell_bounds(&cell);
+    cell.side = (uint8_t)skin_cell_side(&cell, 1);
+    return cell;
+}
+
+static SkinPoint random_place(RandomStream *r, bool triangle) {
+    SkinPoint p = {0, random_next_unit(r), random_next_unit(r), random_next_unit(r)};
+    if (triangle && p.a + p.b > 1) p.a = 1 - p.a, p.b = 1 - p.b;
+    return p;
+}
+
+static bool among(const SkinPoint *list, int count, const SkinPoint *p, double near) {
+    for (int i = 0; i < count; i++)
+        if (fabs(list[i].a - p->a) + fabs(list[i].b - p->b) + fabs(list[i].w - p->w) < near) return true;
+    return false;
+}
+
+static double determinant_at(const SkinCell *cell, const SkinPoint *p) {
+    Mat3 j;
+    skin_cell_position(cell, p->a, p->b, p->w, &j);
+    return mat3_determinant(&j);
+}
+
+/* The place a point was made from is found again, and every place found is one of the point; on a fold two become one. */
+static void count_missed(bool triangle, int trials, uint64_t seed) {
+    RandomStream r = {seed};
+    int missed = 0, folded = 0, several = 0;
+    for (int i = 0; i < trials; i++) {
+        SkinCell cell = spread_cell(&r, triangle, 1.5, 2);
+        SkinPoint p = random_place(&r, triangle), found[MOST_PREIMAGES];
+        Vec3 world = skin_cell_position(&cell, p.a, p.b, p.w, NULL);
+        int count = skin_cell_preimages(&cell, world, 1e-12, found);
+        folded += cell.side == CELL_FOLDED;
+        several += count > 1;
+        missed += fabs(determinant_at(&cell, &p)) > 1e-4 && !among(found, count, &p, 1e-5);
+        for (int k = 0; k < count; k++) {
+            double miss = vec3_length(vec3_sub(skin_cell_position(&cell, found[k].a, found[k].b, found[k].w, NULL), world));
+            if (fabs(determinant_at(&cell, &found[k])) > 1e-4) assert_true(miss < 1e-9);
+        }
+    }
+    printf("%s: %d of %d folded, %d points with several places, %d missed\n", triangle ? "prisms" : "hexahedra", folded, trials, several, missed);
+    assert_true(folded > trials / 3 && several > trials / 100);
+    assert_int_equal(missed, 0);
+}
+
+static void every_place_of_a_point_is_found(void **state) {
+    (void)state;
+    count_missed(true, 100000, 1);
+    count_missed(false, 1500, 2);
+}
+
+/* Against 9³ samples of det J: what shows both signs folds, and what is said to fold shows both, were there enough samples. */
+static void folds_are_decided(void **state) {
+    (void)state;
+    RandomStream r = {3};
+    int folded = 0, wrong = 0, unseen = 0;
+    for (int i = 0; i < 4000; i++) {
+        bool triangle = i & 1, low = false, high = false;
+        SkinCell cell = spread_cell(&r, triangle, between(&r, 0, 1.5), 1.5);
+        for (int k = 0; k < 729; k++) {
+            SkinPoint p = {0, k % 9 / 8.0, k / 9 % 9 / 8.0, k / 81 / 8.0};
+            if (triangle && p.a + p.b > 1) continue;
+            double det = determinant_at(&cell, &p);
+            low |= det < 0, high |= det > 0;
+        }
+        folded += cell.side == CELL_FOLDED;
+        wrong += low && high && cell.side != CELL_FOLDED;
+        unseen += !(low && high) && cell.side == CELL_FOLDED;
+        double safe = skin_cell_unfolded_height(&cell, 1);
+        assert_true(safe == 1 ? cell.side != CELL_FOLDED : skin_cell_side(&cell, safe) != CELL_FOLDED && skin_cell_side(&cell, safe + 0.01) == CELL_FOLDED);
+    }
+    printf("%d of 4000 boxes fold; %d folds overlooked, %d between the samples\n", folded, wrong, unseen);
+    assert_true(folded > 400);
+    assert_int_equal(wrong, 0);
+    assert_true(unseen < folded / 20);
+}
+
+/* At random points of rays: as many pieces go through as the point has places. */
+static void pieces_are_as_many_as_places(void **state) {
+    (void)state;
+    RandomStream r = {4};
+    int asked = 0, different = 0;
+    static SkinPiece pieces[MOST_PIECES];
+    for (int i = 0; i < 1200; i++) {
+        bool triangle = i % 4 != 0;
+        SkinCell cell = spread_cell(&r, triangle, 1.5, 2);
+        SkinPoint p = random_place(&r, triangle), found[MOST_PREIMAGES];
+        Vec3 d = spread_direction(&r);
+        Ray ray = {vec3_madd(skin_cell_position(&cell, p.a, p.b, p.w, NULL), d, -6), d};
+        int count = skin_cell_pieces(&cell, 0, &ray, 0, 20, pieces);
+        for (int k = 0; k < 4; k++) {
+            double t = between(&r, 5, 7);
+            int through = 0, places = skin_cell_preimages(&cell, vec3_madd(ray.origin, d, t), 1e-12, found);
+            for (int n = 0; n < count; n++) through += pieces[n].t0 <= t && t < pieces[n].t1;
+            asked++;
+            different += through != places;
+        }
+    }
+    printf("%d of %d points of rays differ\n", different, asked);
+    assert_true(different <= asked / 100);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_place_of_a_point_is_found), cmocka_unit_test(folds_are_decided),
+                                       cmocka_unit_test(pieces_are_as_many_as_places)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

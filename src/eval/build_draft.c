@@ -78,16 +78,6 @@ static bool warn_first(SceneDraft *draft, BuildContext *context, const char *wor
     return true;
 }
 
-/* Known to trace(), inside() and their like, not to the renderer. */
-static bool solid_word(const char *word) {
-    static const char *const words[] = {"bicubic_patch", "blob", "cubic", "height_field", "isosurface", "julia_fractal",
-                                        "lathe", "ovus", "parametric", "poly", "polygon", "prism", "quadric", "quartic",
-                                        "sor", "sphere_sweep", "superellipsoid", "text"};
-    for (size_t i = 0; i < VTS_ARRAY_COUNT(words); i++)
-        if (strcmp(words[i], word) == 0) return true;
-    return false;
-}
-
 static const char *what_happens(const BuildContext *context, const char *word) {
     static const struct {
         const char *word, *text;
@@ -106,7 +96,6 @@ static const char *what_happens(const BuildContext *context, const char *word) {
     for (size_t i = 0; i < VTS_ARRAY_COUNT(effects); i++)
         if (strcmp(effects[i].word, word) == 0) return effects[i].text;
     bool known;
-    if (solid_word(word)) return "is not modelled yet: it is left out";
     BlockBuilder *builder = block_builder_find(context, intern_cstr(context->names, word), &known);
     return builder == build_unmodelled ? "is not modelled yet: it is left out"
                                        : "is not modelled yet: it has no effect";
@@ -196,14 +185,13 @@ static void add_lights_of(SceneDraft *draft, BuildContext *context, const Object
 }
 
 static bool surface_is_modelled(const Surface *surface) {
-    return surface->kind == SURFACE_PATCHES || (surface->object->kind != OBJECT_UNMODELLED && surface->object->kind != OBJECT_SOLID);
+    return surface->kind == SURFACE_PATCHES || surface->object->kind != OBJECT_UNMODELLED;
 }
 
 static bool texel_is_modelled(const TexelDef *texel) { return texel->layer_count || texel->choice_count; }
 
 static bool object_is_modelled(const Object *object) {
     switch (object->kind) {
-    case OBJECT_SOLID:
     case OBJECT_UNMODELLED: return false;
     case OBJECT_SURFACE: return surface_is_modelled(object->as.surface);
     case OBJECT_TEXEL: return texel_is_modelled(object->as.texel);

@@ -320,7 +320,6 @@ bool rare_begin(RareDraft *draft, Reader *reader) {
         reader_add_table(reader, picture_rules, VTS_ARRAY_COUNT(picture_rules), draft);
     reader->on_value = on_rare_value;
     reader->value_target = draft;
-    inert_add(reader->context, &draft->common.rest.inert, word, reader->block->word_span);
     return object_read(reader, &draft->common);
 }
 

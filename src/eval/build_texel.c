@@ -109,7 +109,7 @@ static bool on_layer_value(Reader *reader, const Argument *value, void *target) 
                                ? NULL
                                : object_from_value(reader->context, value);
     if (!object) return take_looks(reader->context, value, &draft->layer.texture, &ignored, &draft->place);
-    if (object->kind == OBJECT_UNMODELLED || object->kind == OBJECT_SOLID) {
+    if (object->kind == OBJECT_UNMODELLED) {
         note_unmodelled(reader, draft->texel, object);
         draft->unmodelled = true;
         return true;

@@ -2,6 +2,7 @@
 
 #include "grow/particles.h"
 #include "pattern/pattern.h"
+#include "shape/extent.h"
 #include "shape/intersect.h"
 #include "shape/surface_mesh.h"
 #include "shape/tessellate.h"
@@ -39,6 +40,7 @@ typedef struct Builder {
     Arena *arena;
     DiagList *diags;
     double tolerance;
+    ShapeTracer *tracer;
 } Builder;
 
 static const Look *make_look(Builder *b, const Texture *texture) {
@@ -75,7 +77,9 @@ static double view_tolerance(const Builder *b, Box3 box) {
         Vec3 nearest = vec3_max(box.min, vec3_min(box.max, camera->location));
         width *= vec3_length(vec3_sub(nearest, camera->location)) / vec3_length(camera->direction);
     }
-    return isfinite(width) ? double_clamp(SHARE * width, 0.01 * b->tolerance, 10 * b->tolerance) : b->tolerance;
+    Vec3 size = vec3_sub(box.max, box.min);
+    double tolerance = double_clamp(SHARE * width, 0.01 * b->tolerance, 0.01 * vec3_length(size));
+    return isfinite(tolerance) && tolerance > 0 ? tolerance : b->tolerance;
 }
 
 /* The triangles of one surface of a set, which has its own texture. */
@@ -98,7 +102,7 @@ static void add_set(Builder *b, const Object *object, const Transform *parent, c
     ShapeRefusal refusal, doubt = {0};
     TriangleSoup soup = {0};
     Transform own = object_transform(object), to_world = transform_then(&own, parent);
-    Box3 box = box3_transform(&to_world, shape_bounds(object));
+    Box3 box = box3_transform(parent, shape_extent(b->tracer, object));
     const TessellateOptions options = {.tolerance = view_tolerance(b, box), .particles = particles_tessellate, .doubt = &doubt,
                                        .surfaces = &surfaces};
     if (!tessellate(object, parent, &options, b->arena, &soup, &refusal)) {
@@ -152,7 +156,7 @@ static void add_object(Builder *b, const Object *object, const Transform *parent
     Transform own = object_transform(object), to_world = transform_then(&own, parent);
     const Texture *texture = object->texture ? object->texture : inherited;
     if (object_clipped_by(object).count) {
-        add_set(b, object, parent, inherited);
+        add_set(b, object, parent, texture);
         return;
     }
     switch (object->kind) {
@@ -173,7 +177,7 @@ static void add_object(Builder *b, const Object *object, const Transform *parent
     case OBJECT_TEXEL: return; /* a skin of its own */
     case OBJECT_INTERSECTION:
     case OBJECT_DIFFERENCE:
-    case OBJECT_SOLID: add_set(b, object, parent, inherited); return;
+    case OBJECT_SOLID: add_set(b, object, parent, texture); return;
     case OBJECT_UNMODELLED:
         return; /* named in a warning when the scene was read */
     }
@@ -297,7 +301,8 @@ Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags) {
     Hierarchy *h = arena_new(arena, Hierarchy);
     Box3 box = scene_box(scene);
     h->origin = vec3_scale(vec3_add(box.min, box.max), 0.5);
-    Builder builder = {h, scene, arena, diags, 1e-4 * fmax(vec3_length(vec3_sub(box.max, box.min)), 1e-6)};
+    Builder builder = {h, scene, arena, diags, 1e-4 * fmax(vec3_length(vec3_sub(box.max, box.min)), 1e-6),
+                       shape_tracer_create(arena)};
     Transform identity = transform_identity();
     for (size_t i = 0; i < scene->object_count; i++) add_object(&builder, scene->objects[i], &identity, scene->default_texture);
     /* From here on nothing is taken from the arena: if memory ran out, the device would be lost. */

@@ -144,7 +144,8 @@ bool set_tree_build(const Object *object, const Transform *place, ShapeTracer *t
 
 /* ---- inside ---- */
 
-bool set_leaf_inside(const SetLeaf *leaf, Vec3 point) {
+/* `inverse` not regarded. */
+static bool leaf_holds(const SetLeaf *leaf, Vec3 point) {
     if (leaf->singular || !leaf->data || !leaf->ops->inside) return false;
     return leaf->ops->inside(leaf->data, transform_point_back(&leaf->to_root, point));
 }
@@ -176,7 +177,7 @@ static bool group_holds(const SetTree *tree, const SetNode *node, Vec3 p) {
 static bool holds(const SetTree *tree, const SetNode *node, Vec3 p) {
     bool inside = false;
     if (in_box(&node->bounds, p))
-        inside = node->kind == SET_LEAF ? set_leaf_inside(&tree->leaves[node->leaf_begin], p) : group_holds(tree, node, p);
+        inside = node->kind == SET_LEAF ? leaf_holds(&tree->leaves[node->leaf_begin], p) : group_holds(tree, node, p);
     return inside != node->inverse && clips_hold(tree, node, p);
 }
 

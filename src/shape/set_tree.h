@@ -55,7 +55,5 @@ typedef enum SetSide { SET_SIDE_REVERSED = -1, SET_SIDE_NONE = 0, SET_SIDE_KEPT 
 SetSide set_tree_side(const SetTree *tree, uint32_t leaf, Vec3 point, Vec3 normal);
 /* Whether the point is in the whole. */
 bool set_tree_inside(const SetTree *tree, Vec3 point);
-/* Whether it is in the leaf, as the language defines its inside, its own `inverse` not regarded. */
-bool set_leaf_inside(const SetLeaf *leaf, Vec3 point);
 
 #endif

@@ -1,6 +1,7 @@
 /* Surfaces of functions of the place: isosurface. */
 #include "shape/intersect.h"
 #include "shape/solid.h"
+#include "shape/solid_field.h"
 
 enum { PART_SURFACE, PART_CONTAINER_IN, PART_CONTAINER_OUT, MOST_STEPS = 200000, LEAST_STEPS = 32 };
 
@@ -11,12 +12,31 @@ static const void *prepare(const Object *object, Arena *arena) {
     return kind == OBJECT_SPHERE || kind == OBJECT_BOX ? s : NULL;
 }
 
-/* Negative inside. What is not a number is outside. */
-static double value_at(const Solid *s, Vec3 p) {
+static double counted(const Solid *s, double value) {
+    value -= s->as.isosurface.threshold;
+    return isnan(value) ? VTS_INFINITY : value;
+}
+
+double solid_isosurface_value(const Solid *s, Vec3 p) {
     double out[TAPE_CALL_MAX] = {0};
     tape_eval_once(s->as.isosurface.function, (double[]){p.x, p.y, p.z}, out);
-    double value = out[0] - s->as.isosurface.threshold;
-    return isnan(value) ? VTS_INFINITY : value;
+    return counted(s, out[0]);
+}
+
+void solid_isosurface_row(const Solid *s, Vec3 point, Vec3 step, size_t count, double *in, double *out) {
+    const Tape *tape = s->as.isosurface.function;
+    const double *inputs[TAPE_CALL_MAX] = {in, in + count, in + 2 * count};
+    double *outputs[1] = {out};
+    if (tape_input_count(tape) != 3 || tape_output_count(tape) != 1) {
+        for (size_t i = 0; i < count; i++) out[i] = solid_isosurface_value(s, vec3_madd(point, step, (double)i));
+        return;
+    }
+    for (size_t i = 0; i < count; i++) {
+        Vec3 p = vec3_madd(point, step, (double)i);
+        in[i] = p.x, in[count + i] = p.y, in[2 * count + i] = p.z;
+    }
+    tape_eval_batch(tape, count, inputs, outputs);
+    for (size_t i = 0; i < count; i++) out[i] = counted(s, out[i]);
 }
 
 static Ray container_ray(const Solid *s, const Ray *ray) {
@@ -25,7 +45,7 @@ static Ray container_ray(const Solid *s, const Ray *ray) {
 }
 
 static double value_on(const Solid *s, const Ray *ray, double t) {
-    return value_at(s, vec3_madd(ray->origin, ray->direction, t));
+    return solid_isosurface_value(s, vec3_madd(ray->origin, ray->direction, t));
 }
 
 /* Where the sign changes between a and b, to rounding. */
@@ -74,7 +94,7 @@ static void cross(const void *data, const Ray *ray, SolidSink *sink) {
 }
 
 static double difference(const Solid *s, Vec3 p, Vec3 step, double h) {
-    return (value_at(s, vec3_madd(p, step, h)) - value_at(s, vec3_madd(p, step, -h))) / (2 * h);
+    return (solid_isosurface_value(s, vec3_madd(p, step, h)) - solid_isosurface_value(s, vec3_madd(p, step, -h))) / (2 * h);
 }
 
 static Vec3 normal(const void *data, Vec3 p, const SolidTag *tag) {
@@ -97,7 +117,7 @@ static bool inside(const void *data, Vec3 p) {
     const Solid *s = data;
     const Object *container = s->as.isosurface.container;
     Transform place = object_transform(container);
-    return shape_inside(container, transform_point_back(&place, p)) != container->inverse && value_at(s, p) < 0;
+    return shape_inside(container, transform_point_back(&place, p)) != container->inverse && solid_isosurface_value(s, p) < 0;
 }
 
 static Box3 bounds(const void *data) {

@@ -1,6 +1,7 @@
 /* Solids and sheets bounded by an outline in a plane: prism, polygon. */
 #include "shape/outline.h"
 #include "shape/solid.h"
+#include "shape/solid_parts.h"
 
 static const uint32_t PART_CAP = UINT32_MAX;
 
@@ -162,6 +163,11 @@ static void polygon_cross(const void *data, const Ray *ray, SolidSink *sink) {
 static Vec3 polygon_normal(const void *data, Vec3 p, const SolidTag *tag) {
     (void)p, (void)tag;
     return ((const PolygonSheet *)data)->normal;
+}
+
+PlanarOutline solid_polygon_outline(const void *data) {
+    const PolygonSheet *sheet = data;
+    return (PlanarOutline){&sheet->outline, sheet->origin, sheet->a, sheet->b};
 }
 
 static Box3 polygon_bounds(const void *data) { return ((const PolygonSheet *)data)->bounds; }

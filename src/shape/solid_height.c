@@ -2,6 +2,7 @@
 #include "image/image.h"
 #include "shape/box_tree.h"
 #include "shape/solid.h"
+#include "shape/solid_parts.h"
 
 enum { BLOCK = 8 }; /* cells along a side of what the tree knows as one */
 
@@ -147,6 +148,13 @@ static Vec3 smooth_normal(const Field *f, uint32_t i, uint32_t j) {
             if (di + dj > 0) sum = vec3_add(sum, flat_normal(f, i - di, j - dj, true));
         }
     return vec3_normalize(sum);
+}
+
+Vec3 solid_height_normal(const void *data, uint32_t column, uint32_t row) { return smooth_normal(data, column, row); }
+
+HeightGrid solid_height_grid(const void *data) {
+    const Field *f = data;
+    return (HeightGrid){f->heights, f->columns, f->rows, f->water_level, f->smooth};
 }
 
 static Vec3 normal(const void *data, Vec3 p, const SolidTag *tag) {

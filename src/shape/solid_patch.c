@@ -3,6 +3,7 @@
 #include "shape/box_tree.h"
 #include "shape/intersect.h"
 #include "shape/solid.h"
+#include "shape/solid_parts.h"
 
 typedef struct ParamPoint {
     Vec3 p, du, dv;
@@ -122,6 +123,14 @@ static const void *parametric_prepare(const Object *object, Arena *arena) {
                               .dv = (s->as.parametric.v1 - s->as.parametric.v0) / PARAMETRIC_CELLS,
                               .container = s->as.parametric.container};
     return build(surface, arena);
+}
+
+void solid_sheet_at(const void *data, double u, double v, Vec3 *p, Vec3 *normal) {
+    const ParamSurface *s = data;
+    ParamPoint at = s->at(s->solid, s->u0 + u * s->du * s->cells, s->v0 + v * s->dv * s->cells);
+    *p = at.p;
+    *normal = vec3_normalize(vec3_cross(at.du, at.dv));
+    if (!vec3_is_finite(*normal)) *normal = vec3_splat(0);
 }
 
 /* ---- rays ---- */

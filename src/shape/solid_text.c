@@ -2,6 +2,7 @@
 #include "shape/box_tree.h"
 #include "shape/font_outline.h"
 #include "shape/solid.h"
+#include "shape/solid_parts.h"
 #include "shape/solid_text.h"
 
 static const uint32_t PART_CAP = UINT32_MAX;
@@ -98,6 +99,14 @@ Box3 solid_text_extent(const void *data) {
         box = box3_union(box, (Box3){vec3_add(text->places[i], low), vec3_add(text->places[i], high)});
     }
     return box;
+}
+
+bool solid_text_letter(const void *data, size_t index, PlanarOutline *out, double *thickness) {
+    const TextSolid *text = data;
+    if (index >= text->line.count) return false;
+    *out = (PlanarOutline){&text->line.glyphs[index].outline, text->places[index], {1, 0, 0}, {0, 1, 0}};
+    *thickness = text->thickness;
+    return true;
 }
 
 typedef struct PointInText {

@@ -2,6 +2,7 @@
 #include "shape/outline.h"
 #include "shape/roots.h"
 #include "shape/solid.h"
+#include "shape/solid_parts.h"
 
 static const uint32_t PART_LOW = UINT32_MAX, PART_HIGH = UINT32_MAX - 1;
 
@@ -218,6 +219,17 @@ static bool sor_inside(const void *data, Vec3 p) {
         if (p.y >= sor->pieces[i].low && p.y <= sor->pieces[i].high)
             return p.x * p.x + p.z * p.z <= piece_value(&sor->pieces[i], p.y);
     return false;
+}
+
+bool solid_sor_at(const void *data, size_t index, double share, SorPlace *out) {
+    const Sor *sor = data;
+    if (index >= sor->count) return false;
+    const SorPiece *piece = &sor->pieces[index];
+    double y = share == 1 ? piece->high : piece->low + (piece->high - piece->low) * share, off = y - piece->low;
+    out->y = y;
+    out->square = double_max(piece_value(piece, y), 0);
+    out->slope = (3 * piece->square[3] * off + 2 * piece->square[2]) * off + piece->square[1];
+    return true;
 }
 
 static Box3 sor_bounds(const void *data) {

@@ -2,6 +2,7 @@
 
 #include "shape/tessellate_mesh.h"
 #include "shape/tessellate_parts.h"
+#include "shape/tessellate_rare.h"
 #include "shape/tessellate_solids.h"
 
 double tessellate_stretch(const Mat3 *m) {
@@ -48,6 +49,12 @@ static bool push_particles(const TessellateWalk *walk, const Object *object, dou
     return true;
 }
 
+static bool push_rare(TessellateWalk *walk, const Object *object, double tolerance, const Box3 *region) {
+    const ExactSurface surface = {object, solid_ops(object), shape_trace_data(tessellate_tracer(walk), object)};
+    const RareShape shape = {walk, surface, double_clamp(tolerance, 1e-12, 1e12), walk->options->parts, region};
+    return !surface.data || tessellate_rare(&shape);
+}
+
 bool tessellate_shape(TessellateWalk *walk, const Object *object, double tolerance, const Box3 *region) {
     int parts = walk->options->parts;
     switch (object->kind) {
@@ -65,7 +72,7 @@ bool tessellate_shape(TessellateWalk *walk, const Object *object, double toleran
         if (!region) return tessellate_refuse(walk, object, "a plane has no end");
         tessellate_plane(object, region, walk->arena, walk->out);
         return true;
-    case OBJECT_SOLID: return tessellate_refuse(walk, object, "this object is not modelled yet");
+    case OBJECT_SOLID: return push_rare(walk, object, tolerance, region);
     case OBJECT_TEXEL: return tessellate_refuse(walk, object, "a texel has no surface");
     case OBJECT_INTERSECTION:
     case OBJECT_DIFFERENCE:

@@ -2,11 +2,12 @@
 #include "shape/box_tree.h"
 #include "shape/intersect.h"
 #include "shape/set_bounds.h"
+#include "shape/solid_project.h"
 #include "shape/soup_refine.h"
 #include "shape/soup_stitch.h"
 #include "shape/tessellate_parts.h"
 
-enum { MOST_TRIANGLES = 1500000, MOST_TRIES = 12 };
+enum { MOST_TRIANGLES = 1000000, MOST_TRIES = 8 };
 
 /* Where another surface passes, edges are cut to COARSE steps; those whose ends differ to one. */
 static const double COARSE = 3, JOIN = 0.6;
@@ -44,9 +45,11 @@ enum { UNKNOWN = 2 };
 
 bool tessellate_is_set(const Object *object) {
     if (object_clipped_by(object).count) return true;
-    if (object->kind == OBJECT_SOLID)
-        return object->as.solid->kind == SOLID_ISOSURFACE ||
-               (object->as.solid->kind == SOLID_PARAMETRIC && object->as.solid->as.parametric.container);
+    if (object->kind == OBJECT_SOLID) {
+        const Solid *solid = object->as.solid; /* what may have no end is made as far as its bounds reach */
+        return solid->kind == SOLID_ISOSURFACE || solid->kind == SOLID_QUADRIC || solid->kind == SOLID_POLYNOMIAL ||
+               (solid->kind == SOLID_PARAMETRIC && solid->as.parametric.container);
+    }
     return object->kind == OBJECT_INTERSECTION || object->kind == OBJECT_DIFFERENCE || object->kind == OBJECT_MERGE;
 }
 
@@ -128,49 +131,21 @@ static void gather_boxes(Cutter *c) {
 
 /* ---- sides ---- */
 
-typedef struct NearestSink {
-    SolidSink base;
-    double t;
-} NearestSink;
-
-static void take_nearest(SolidSink *base, double t, const SolidTag *tag) {
-    NearestSink *sink = (NearestSink *)(void *)base;
-    (void)tag;
-    if (fabs(t) < fabs(sink->t)) sink->t = t;
-}
-
-/* What has no quick way for rays is asked for its inside. */
-static bool is_asked_inside(const Object *object) {
-    if (object->kind != OBJECT_SOLID) return false;
-    SolidKind kind = object->as.solid->kind;
-    return kind == SOLID_ISOSURFACE || kind == SOLID_JULIA || kind == SOLID_SUPERELLIPSOID;
-}
-
-static double bisected_surface(const SetLeaf *leaf, Vec3 point, Vec3 normal, double reach) {
-    double in = -reach, out = reach;
-    if (!set_leaf_inside(leaf, vec3_madd(point, normal, in)) || set_leaf_inside(leaf, vec3_madd(point, normal, out))) return 0;
-    for (int i = 0; i < 24; i++) {
-        double middle = (in + out) / 2;
-        if (set_leaf_inside(leaf, vec3_madd(point, normal, middle)))
-            in = middle;
-        else
-            out = middle;
-    }
-    return (in + out) / 2;
-}
-
 /* The point of the exact surface under a point of its triangles. */
 static Vec3 on_surface(const Cutter *c, Vec3 point, Vec3 normal) {
     const SetLeaf *leaf = &c->tree.leaves[c->leaf];
-    if (c->meshes[c->leaf].flat || !leaf->data) return point;
-    if (is_asked_inside(leaf->object)) return vec3_madd(point, normal, bisected_surface(leaf, point, normal, c->reach));
-    const Ray ray = {transform_point_back(&leaf->to_root, point), transform_vector_back(&leaf->to_root, normal)};
-    NearestSink sink = {{-c->reach, c->reach, take_nearest}, VTS_INFINITY};
-    if (vec3_length_squared(ray.direction) > 0) leaf->ops->cross(leaf->data, &ray, &sink.base);
-    return isfinite(sink.t) ? vec3_madd(point, normal, sink.t) : point;
+    const ExactSurface surface = {leaf->object, leaf->ops, leaf->data};
+    double t;
+    if (c->meshes[c->leaf].flat) return point;
+    Vec3 local = transform_point_back(&leaf->to_root, point), direction = transform_vector_back(&leaf->to_root, normal);
+    return solid_project(&surface, local, direction, c->reach, &t, NULL) ? vec3_madd(point, normal, t) : point;
 }
 
+/* An isosurface's function may be slow, and what it is cut by hardly coincides with it: its triangles are near enough. */
 static int side_at(const Cutter *c, const SoupVertex *v) {
+    const Object *object = c->tree.leaves[c->leaf].object;
+    if (object->kind == OBJECT_SOLID && object->as.solid->kind == SOLID_ISOSURFACE)
+        return set_tree_side(&c->tree, c->leaf, v->position, v->normal);
     return set_tree_side(&c->tree, c->leaf, on_surface(c, v->position, v->normal), v->normal);
 }
 
@@ -372,7 +347,7 @@ bool tessellate_set(TessellateWalk *walk, const Object *object, const Transform 
     SoupMark since = soup_mark(walk->out);
     name_surfaces(&c);
     if (!mesh_all(&c)) return false;
-    for (int i = 0; i < MOST_TRIES; i++, c.step *= 2) {
+    for (int i = 0; i < MOST_TRIES; i++, c.step *= 4) {
         bool done = true;
         for (uint32_t leaf = 0; leaf < c.tree.leaf_count && done; leaf++)
             done = cut_leaf(&c, leaf) && walk->out->triangles.count - since.triangle <= MOST_TRIANGLES;

@@ -131,7 +131,6 @@ static const Case warnings[] = {
     {"camera { location y look_at 0 }",
      "1:21: the camera looks along its sky vector: the picture's horizon follows 'right'", NULL},
     {"camera { right <1, 1, 0> }", "1:1: the camera's vectors are not perpendicular", NULL},
-    {"blob { threshold 1 sphere { 0, 1, 1 } }", "1:1: 'blob' is not modelled yet: it is left out", NULL},
     {"sphere { 0, 1 interior { ior 1.5 } }", "1:15: 'interior' is not modelled yet: it has no effect", NULL},
     {"sphere { 0, 1 texture { pigment { image_map { \"a.png\" } } } }",
      "1:35: 'image_map' is not modelled yet: it has no effect", NULL},

@@ -115,8 +115,7 @@ static void narrow(const Vec3f p[3], float top, float bottom, float *left, float
     }
 }
 
-/* Projected: (x, y, key). */
-static bool draw_triangle(Beam *beam, Vec3f a, Vec3f b, Vec3f c, uint32_t mark) {
+bool beam_draw_seen(Beam *beam, Vec3f a, Vec3f b, Vec3f c, uint32_t mark) {
     const BeamSamples *s = &beam->samples;
     float left = float_min(a.x, float_min(b.x, c.x)), right = float_max(a.x, float_max(b.x, c.x));
     float top = float_min(a.y, float_min(b.y, c.y)), bottom = float_max(a.y, float_max(b.y, c.y));
@@ -173,6 +172,6 @@ bool beam_draw(Beam *beam, const Vec3f *corners, int count, uint32_t mark) {
         corners = seen;
     }
     bool any = false;
-    for (int i = 2; i < count; i++) any |= draw_triangle(beam, corners[0], corners[i - 1], corners[i], mark);
+    for (int i = 2; i < count; i++) any |= beam_draw_seen(beam, corners[0], corners[i - 1], corners[i], mark);
     return any;
 }

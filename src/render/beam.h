@@ -35,7 +35,6 @@ typedef struct Beam {
     bool light;       /* a light's beam */
     double nearest;   /* perspective: smallest q.z; parallel: no matter of larger q.z counts */
     double farthest;  /* the other end */
-    float tolerance;  /* in bins: how far a triangle's edge may be from the curve that the mapping makes of it */
     float exact_to;   /* of what is drawn now: the distance up to which it is drawn as exact geometry; INFINITY */
     BeamPlane planes[6];
     BeamSamples samples;
@@ -53,5 +52,7 @@ Vec3 beam_vector(const Beam *beam, Vec3 v);
 enum { MOST_CORNERS = 16 };
 /* Draws a convex polygon given in beam space; false when no sample sees it. Those that do get `mark`. */
 bool beam_draw(Beam *beam, const Vec3f *corners, int count, uint32_t mark);
+/* The same of a triangle that lies before the beam's near end, its corners as they are seen: (x, y, key). */
+bool beam_draw_seen(Beam *beam, Vec3f a, Vec3f b, Vec3f c, uint32_t mark);
 
 #endif

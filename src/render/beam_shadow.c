@@ -6,8 +6,9 @@ enum { POINTS_IN_BIN = 4, MOST_BINS_ACROSS = 128, LEAST_HALVED = 64 };
 /* The share of a window's bins that hold points. */
 static const double LEAST_FILLED = 0.4;
 
-void shadow_scratch_init(ShadowScratch *s, uint32_t points, size_t most_cells, Arena *arena) {
+void shadow_scratch_init(ShadowScratch *s, uint32_t points, Arena *arena) {
     *s = (ShadowScratch){.capacity = points,
+                         .seen = arena_new_array(arena, Vec3f, points),
                          .order = arena_new_array(arena, uint32_t, points),
                          .sorted = arena_new_array(arena, uint32_t, points),
                          .bin = arena_new_array(arena, uint32_t, points),
@@ -17,7 +18,6 @@ void shadow_scratch_init(ShadowScratch *s, uint32_t points, size_t most_cells, A
                          .y = arena_new_array(arena, float, points),
                          .key = arena_new_array(arena, float, points),
                          .limit = arena_new_array(arena, float, points)};
-    s->draft.cells = arena_new_array(arena, BeamCell, most_cells);
 }
 
 /* The rectangle around the points as the beam sees them, and the range of their keys. */
@@ -26,24 +26,24 @@ typedef struct Window {
     uint32_t count;
 } Window;
 
-static Vec3 seen_at(const Beam *beam, Vec3f p) {
+static Vec3f seen_at(const Beam *beam, Vec3f p) {
     Vec3 q = beam_vector(beam, vec3_from_f(p));
     q = vec3_add(q, beam->shift); /* of the beam from the points' origin */
-    return beam->perspective ? vec3(q.x / q.z, q.y / q.z, 1 / q.z) : q;
+    return vec3f_from(beam->perspective ? vec3(q.x / q.z, q.y / q.z, 1 / q.z) : q);
 }
 
-static Window look_through(const Beam *beam, const ShadowPoints *in, const uint32_t *order, uint32_t count) {
-    Window w = {VTS_INFINITY, -VTS_INFINITY, VTS_INFINITY, -VTS_INFINITY, VTS_INFINITY, -VTS_INFINITY, count};
+static Window look_through(const Vec3f *seen, const uint32_t *order, uint32_t count) {
+    Vec3f lo = {INFINITY, INFINITY, INFINITY}, hi = {-INFINITY, -INFINITY, -INFINITY};
     for (uint32_t i = 0; i < count; i++) {
-        Vec3 q = seen_at(beam, in->points[order[i]]);
-        w.x0 = fmin(w.x0, q.x), w.x1 = fmax(w.x1, q.x), w.y0 = fmin(w.y0, q.y), w.y1 = fmax(w.y1, q.y);
-        w.key0 = fmin(w.key0, q.z), w.key1 = fmax(w.key1, q.z);
+        Vec3f q = seen[order[i]];
+        lo = vec3f(float_min(lo.x, q.x), float_min(lo.y, q.y), float_min(lo.z, q.z));
+        hi = vec3f(float_max(hi.x, q.x), float_max(hi.y, q.y), float_max(hi.z, q.z));
     }
-    return w;
+    return (Window){(double)lo.x, (double)hi.x, (double)lo.y, (double)hi.y, (double)lo.z, (double)hi.z, count};
 }
 
-/* Scales and shifts the projection so that the window is cut into bins of a few points each. */
-static void fit_bins(Beam *beam, const Window *w) {
+/* Scales and shifts the projection so that the window is cut into bins of a few points each. Returns their side, and where the first begins. */
+static double fit_bins(Beam *beam, const Window *w, double *left, double *top) {
     double width = fmax(w->x1 - w->x0, 1e-12), height = fmax(w->y1 - w->y0, 1e-12);
     double bins = fmax(1, (double)w->count / POINTS_IN_BIN), side = sqrt(width * height / bins);
     side = fmax(side, fmax(width, height) / (MOST_BINS_ACROSS - 1));
@@ -63,19 +63,22 @@ static void fit_bins(Beam *beam, const Window *w) {
         beam->shift.x = (beam->shift.x - x0) / side;
         beam->shift.y = (beam->shift.y - y0) / side;
     }
-    beam->tolerance = (float)((double)beam->tolerance / side);
+    *left = x0, *top = y0;
+    return side;
 }
 
 /* Sorts the points into the beam's bins; returns how many of those are not empty. */
-static int sort_points(ShadowScratch *scratch, Beam *beam, const ShadowPoints *in, const uint32_t *order, uint32_t count) {
+static int sort_points(ShadowScratch *scratch, Beam *beam, const ShadowPoints *in, const uint32_t *order, const Window *w) {
+    double left, top, side = fit_bins(beam, w, &left, &top);
+    float per_bin = (float)(1 / side), x0 = (float)left, y0 = (float)top;
     BeamSamples *s = &beam->samples;
     int bins = s->columns * s->rows, filled = 0;
     *s = (BeamSamples){s->columns, s->rows, scratch->first, scratch->x, scratch->y, scratch->key, scratch->limit, scratch->mark};
     memset(s->first, 0, ((size_t)bins + 1) * sizeof *s->first);
-    uint32_t *bin_of = scratch->bin, *sorted = scratch->sorted;
+    uint32_t *bin_of = scratch->bin, *sorted = scratch->sorted, count = w->count;
     for (uint32_t i = 0; i < count; i++) {
-        Vec3 q = seen_at(beam, in->points[order[i]]);
-        int column = int_clamp((int)q.x, 0, s->columns - 1), row = int_clamp((int)q.y, 0, s->rows - 1);
+        Vec3f q = scratch->seen[order[i]];
+        int column = int_clamp((int)((q.x - x0) * per_bin), 0, s->columns - 1), row = int_clamp((int)((q.y - y0) * per_bin), 0, s->rows - 1);
         bin_of[i] = (uint32_t)(row * s->columns + column);
         s->first[bin_of[i] + 1]++;
     }
@@ -84,9 +87,9 @@ static int sort_points(ShadowScratch *scratch, Beam *beam, const ShadowPoints *i
         s->first[b + 1] += s->first[b];
     }
     for (uint32_t i = count; i-- > 0;) { /* fills each bin from its end; `first` comes back to the beginnings */
-        Vec3 q = seen_at(beam, in->points[order[i]]);
+        Vec3f q = scratch->seen[order[i]];
         uint32_t at = --s->first[bin_of[i] + 1];
-        s->x[at] = (float)q.x, s->y[at] = (float)q.y, s->key[at] = (float)q.z;
+        s->x[at] = (q.x - x0) * per_bin, s->y[at] = (q.y - y0) * per_bin, s->key[at] = q.z;
         s->mark[at] = 0;
         s->limit[at] = in->distance[order[i]];
         sorted[at] = order[i];
@@ -98,14 +101,13 @@ static int sort_points(ShadowScratch *scratch, Beam *beam, const ShadowPoints *i
 }
 
 /* Moves the points of the window's first half, across its longer side, to the front; returns how many. */
-static uint32_t halve(const Beam *beam, const Window *w, const ShadowPoints *in, uint32_t *order, uint32_t count) {
+static uint32_t halve(const Vec3f *seen, const Window *w, uint32_t *order) {
     bool across = w->x1 - w->x0 >= w->y1 - w->y0;
-    double middle = across ? (w->x0 + w->x1) / 2 : (w->y0 + w->y1) / 2;
-    uint32_t low = 0, high = count;
+    float middle = (float)(across ? (w->x0 + w->x1) / 2 : (w->y0 + w->y1) / 2);
+    uint32_t low = 0, high = w->count;
     while (low < high) {
-        Vec3 q = seen_at(beam, in->points[order[low]]);
         uint32_t other = order[low];
-        if ((across ? q.x : q.y) < middle) {
+        if ((across ? seen[other].x : seen[other].y) < middle) {
             low++;
         } else {
             order[low] = order[--high];
@@ -120,11 +122,10 @@ static uint32_t halve(const Beam *beam, const Window *w, const ShadowPoints *in,
 static void cast(ShadowScratch *scratch, const CompiledScene *compiled, const Beam *aim, const ShadowPoints *in, uint32_t *order, uint32_t count) {
     if (count == 0) return;
     Beam beam = *aim;
-    Window w = look_through(&beam, in, order, count);
-    fit_bins(&beam, &w);
-    int filled = sort_points(scratch, &beam, in, order, count);
+    Window w = look_through(scratch->seen, order, count);
+    int filled = sort_points(scratch, &beam, in, order, &w);
     if (count >= LEAST_HALVED && filled < LEAST_FILLED * beam.samples.columns * beam.samples.rows) {
-        uint32_t low = halve(aim, &w, in, order, count);
+        uint32_t low = halve(scratch->seen, &w, order);
         if (low > 0 && low < count) {
             cast(scratch, compiled, aim, in, order, low);
             cast(scratch, compiled, aim, in, order + low, count - low);
@@ -171,8 +172,8 @@ static void cast_parallel(ShadowScratch *scratch, const CompiledScene *compiled,
         if (may_be_hidden(compiled, light, in, i)) scratch->order[count++] = i;
     if (count == 0) return;
     Vec3 s = longest_across(in, scratch->order, count, light->to_light);
-    Beam beam = {.origin = in->origin, .rows = {s, vec3_cross(light->to_light, s), light->to_light}, .light = true,
-                 .tolerance = (float)in->tolerance};
+    Beam beam = {.origin = in->origin, .rows = {s, vec3_cross(light->to_light, s), light->to_light}, .light = true};
+    for (uint32_t i = 0; i < count; i++) scratch->seen[scratch->order[i]] = seen_at(&beam, in->points[scratch->order[i]]);
     cast(scratch, compiled, &beam, in, scratch->order, count);
 }
 
@@ -193,8 +194,7 @@ static void cast_central(ShadowScratch *scratch, const CompiledScene *compiled, 
         Vec3 rows[3] = {s, t, axis};
         Beam beam = {.origin = in->origin, .rows = {s, t, axis}, .perspective = true, .light = true,
                      .shift = {vec3_dot(rows[0], from), vec3_dot(rows[1], from), vec3_dot(rows[2], from)}};
-        double distance = vec3_length(from);
-        beam.tolerance = (float)(in->tolerance / fmax(distance, 1e-12));
+        for (uint32_t i = 0; i < count; i++) scratch->seen[scratch->order[i]] = seen_at(&beam, in->points[scratch->order[i]]);
         cast(scratch, compiled, &beam, in, scratch->order, count);
     }
 }

@@ -11,17 +11,18 @@ typedef struct ShadowPoints {
     const float *distance; /* of each from the eye: skins that are voxels there are left out */
     uint8_t *hidden;
     uint32_t count;
-    double tolerance;      /* scene units: how far shadows may be off */
 } ShadowPoints;
 
 typedef struct ShadowScratch {
     BeamDraft draft;       /* with room for cells; of facets nothing is kept */
+    Vec3f *seen;           /* the points as the light sees them */
     uint32_t *order, *sorted, *bin, *first, *mark;
     float *x, *y, *key, *limit;
     uint32_t capacity;     /* of points */
 } ShadowScratch;
 
-void shadow_scratch_init(ShadowScratch *scratch, uint32_t points, size_t most_cells, Arena *arena);
+/* All but the draft. */
+void shadow_scratch_init(ShadowScratch *scratch, uint32_t points, Arena *arena);
 void beam_shadow(ShadowScratch *scratch, const CompiledScene *compiled, const Light *light, const ShadowPoints *points);
 
 #endif

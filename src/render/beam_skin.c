@@ -13,15 +13,10 @@ static const float HAIR = 1e-5f;
 typedef struct CellFrame {
     const SkinCell *cell;
     float x[8], y[8], z[8];
-    float bend_ab, bend_aw, bend_bw; /* how far the middle of a line leaves its chord, for unit extents, times q.z */
+    float bend_ab, bend_aw, bend_bw; /* how far the middle of a line leaves its chord, for unit extents, scene units */
     bool affine;                     /* (u, v) → (a, b), and w' → w without a and b */
     double a_u, a_v, a_0, b_u, b_v, b_0, w_w, w_0;
 } CellFrame;
-
-static float bend_of(const CellFrame *f, const Beam *beam, int i) {
-    float depth = beam->perspective ? 0.5f * (float)(beam->samples.columns + beam->samples.rows) : 0;
-    return fabsf(f->x[i]) + fabsf(f->y[i]) + depth * fabsf(f->z[i]);
-}
 
 static void fold(CellFrame *f, int i, Vec3 c) { f->x[i] = (float)c.x, f->y[i] = (float)c.y, f->z[i] = (float)c.z; }
 
@@ -31,9 +26,11 @@ static bool frame_cell(CellFrame *f, const Beam *beam, const SkinCell *cell) {
     fold(f, 0, beam_point(beam, cell->foot.c[0]));
     for (int i = 1; i < 4; i++) fold(f, i, beam_vector(beam, cell->foot.c[i]));
     for (int i = 0; i < 4; i++) fold(f, 4 + i, beam_vector(beam, cell->height.c[i]));
-    f->bend_ab = (bend_of(f, beam, 3) + bend_of(f, beam, 7)) / 4;
-    f->bend_aw = (bend_of(f, beam, 5) + bend_of(f, beam, 7)) / 4;
-    f->bend_bw = (bend_of(f, beam, 6) + bend_of(f, beam, 7)) / 4;
+    const Vec3 *p = cell->foot.c, *h = cell->height.c;
+    double twist = vec3_length(h[3]);
+    f->bend_ab = (float)((vec3_length(p[3]) + twist) / 4);
+    f->bend_aw = (float)((vec3_length(h[1]) + twist) / 4);
+    f->bend_bw = (float)((vec3_length(h[2]) + twist) / 4);
     const double *u = cell->u.c, *v = cell->v.c, *foot = cell->w_foot.c, *tip = cell->w_tip.c;
     double det = u[1] * v[2] - u[2] * v[1], scale = fabs(u[1]) + fabs(u[2]) + fabs(v[1]) + fabs(v[2]);
     if (!(fabs(det) > 1e-12 * scale * scale)) return false;
@@ -144,6 +141,7 @@ typedef struct CopyFrame {
     const TexelCopy *copy;
     double u_x, u_z, u_0, v_x, v_z, v_0, w_y, w_0; /* (x, y, z) → (u, v, w') */
     float a_x, a_z, a_0, b_x, b_z, b_0, y_w, y_0;  /* (x, y, z) → (a, b, w) where that is affine */
+    float tolerance;                               /* of bent triangles, scene units */
 } CopyFrame;
 
 typedef struct Drawing {
@@ -277,45 +275,65 @@ static bool outside_beam(const Beam *beam, const Vec3f q[3]) {
     return outcode(beam, q[0].x, q[0].y, q[0].z) & outcode(beam, q[1].x, q[1].y, q[1].z) & outcode(beam, q[2].x, q[2].y, q[2].z);
 }
 
-/* How far the mapping bends the triangle out of its plane, in bins. */
-static float bend(const Beam *beam, const CellFrame *f, const Vec3f p[3], const Vec3f q[3]) {
+/* How far the mapping bends the triangle out of its plane, scene units. */
+static float bend(const CellFrame *f, const Vec3f p[3]) {
     float a = float_max(fabsf(p[1].x - p[0].x), float_max(fabsf(p[2].x - p[0].x), fabsf(p[2].x - p[1].x)));
     float b = float_max(fabsf(p[1].y - p[0].y), float_max(fabsf(p[2].y - p[0].y), fabsf(p[2].y - p[1].y)));
     float w = float_max(fabsf(p[1].z - p[0].z), float_max(fabsf(p[2].z - p[0].z), fabsf(p[2].z - p[1].z)));
-    float off = f->bend_ab * a * b + f->bend_aw * a * w + f->bend_bw * b * w;
-    if (!beam->perspective) return off;
-    float nearest = float_max(float_min(q[0].z, float_min(q[1].z, q[2].z)), (float)beam->nearest);
-    return off / nearest;
+    return f->bend_ab * a * b + f->bend_aw * a * w + f->bend_bw * b * w;
 }
 
-static void draw_piece(Drawing *d, const Vec3f p[3], const Vec3f q[3], bool inside, size_t layer, int depth) {
+/* One triangle of a layer, in the cell and in the beam. */
+typedef struct Piece {
+    Vec3f p[3], q[3];
+    size_t layer;
+    bool inside; /* the cell as a whole */
+} Piece;
+
+static void draw_flat(Drawing *d, const Piece *piece) {
     Beam *beam = d->draft->beam;
     const CellFrame *f = d->at.frame;
-    if (depth > 0 && outside_beam(beam, q)) return;
-    if (depth < DEEPEST_CUT && bend(beam, f, p, q) > beam->tolerance) {
-        Vec3f m[3], n[3];
-        for (int i = 0; i < 3; i++) {
-            m[i] = vec3f_scale(vec3f_add(p[i], p[(i + 1) % 3]), 0.5f);
-            n[i] = frame_point(f, m[i].x, m[i].y, m[i].z);
-        }
-        for (int i = 0; i < 3; i++)
-            draw_piece(d, (Vec3f[3]){p[i], m[i], m[(i + 2) % 3]}, (Vec3f[3]){q[i], n[i], n[(i + 2) % 3]}, inside, layer, depth + 1);
-        draw_piece(d, m, n, inside, layer, depth + 1);
-        return;
-    }
-    d->draft->triangles++;
-    bool seen;
     uint32_t mark = d->draft->facet_count + 1;
-    if (inside) {
-        seen = beam_draw(beam, q, 3, mark);
-    } else {
+    const Vec3f *q = piece->q;
+    bool seen;
+    d->draft->triangles++;
+    if (!piece->inside) {
         Vec3f part[MOST_CLIPPED];
-        int count = clip_to_cell(p, f->cell->triangle, part);
+        int count = clip_to_cell(piece->p, f->cell->triangle, part);
         if (count < 3) return;
         for (int i = 0; i < count; i++) part[i] = frame_point(f, part[i].x, part[i].y, part[i].z);
         seen = beam_draw(beam, part, count, mark);
+    } else if (beam->perspective && q[0].z >= (float)beam->nearest && q[1].z >= (float)beam->nearest && q[2].z >= (float)beam->nearest) {
+        Vec3f s[3];
+        for (int i = 0; i < 3; i++) {
+            float key = 1 / q[i].z;
+            s[i] = vec3f(q[i].x * key, q[i].y * key, key);
+        }
+        seen = beam_draw_seen(beam, s[0], s[1], s[2], mark);
+    } else {
+        seen = beam_draw(beam, q, 3, mark);
     }
-    if (seen && d->draft->facets) keep_facet(d, p, layer);
+    if (seen && d->draft->facets) keep_facet(d, piece->p, piece->layer);
+}
+
+/* Cut in four, and again, until the mapping bends it no more than is tolerated. */
+static void draw_bent(Drawing *d, const Piece *piece, int depth) {
+    const CellFrame *f = d->at.frame;
+    if (outside_beam(d->draft->beam, piece->q)) return;
+    if (depth == DEEPEST_CUT || bend(f, piece->p) <= d->at.tolerance) {
+        draw_flat(d, piece);
+        return;
+    }
+    Piece middle = {.layer = piece->layer, .inside = piece->inside};
+    for (int i = 0; i < 3; i++) {
+        middle.p[i] = vec3f_scale(vec3f_add(piece->p[i], piece->p[(i + 1) % 3]), 0.5f);
+        middle.q[i] = frame_point(f, middle.p[i].x, middle.p[i].y, middle.p[i].z);
+    }
+    for (int i = 0; i < 3; i++) {
+        Piece corner = {{piece->p[i], middle.p[i], middle.p[(i + 2) % 3]}, {piece->q[i], middle.q[i], middle.q[(i + 2) % 3]}, piece->layer, piece->inside};
+        draw_bent(d, &corner, depth + 1);
+    }
+    draw_bent(d, &middle, depth + 1);
 }
 
 /* The bit after those of outcode(): out of the cell. */
@@ -339,9 +357,10 @@ static void draw_cluster(Drawing *d, const TexelCluster *cluster) {
     for (int i = 0; i < cluster->triangle_count; i++) {
         const uint8_t *v = cluster->triangles[i];
         if (code[v[0]] & code[v[1]] & code[v[2]] & (OUT_OF_CELL - 1)) continue;
-        Vec3f tp[3], tq[3];
-        for (int k = 0; k < 3; k++) tp[k] = vec3f(a[v[k]], b[v[k]], w[v[k]]), tq[k] = q[v[k]];
-        draw_piece(d, tp, tq, !((code[v[0]] | code[v[1]] | code[v[2]]) & OUT_OF_CELL), cluster->layers[i], 0);
+        Piece piece = {.layer = cluster->layers[i], .inside = !((code[v[0]] | code[v[1]] | code[v[2]]) & OUT_OF_CELL)};
+        for (int k = 0; k < 3; k++) piece.p[k] = vec3f(a[v[k]], b[v[k]], w[v[k]]), piece.q[k] = q[v[k]];
+        if (bend(f, piece.p) <= d->at.tolerance) draw_flat(d, &piece);
+        else draw_bent(d, &piece, 0);
     }
 }
 
@@ -394,6 +413,16 @@ static void draw_copy(Drawing *d, const BeamTexel *texel) {
     }
 }
 
+/* What may be missed at the copy, seen from the eye: the same whatever beam it is drawn into. */
+static double tolerance_at(const Drawing *d) {
+    const CopyFrame *c = &d->at;
+    const BeamDraft *draft = d->draft;
+    double a = (double)(c->a_x / 2 + c->a_z / 2 + c->a_0), b = (double)(c->b_x / 2 + c->b_z / 2 + c->b_0);
+    Vec3 middle = skin_cell_position(c->frame->cell, double_clamp(a, 0, 1), double_clamp(b, 0, 1), 0.5, NULL);
+    double size = d->skin->tile_size, distance = vec3_length(vec3_sub(middle, draft->eye));
+    return draft->tolerance * (draft->width + draft->spread * fmax(distance - 0.7 * size, 0.05 * size));
+}
+
 static void draw_texel_at(Drawing *d, const CellFrame *f, const PlacedTexel *placed, int64_t iu, int64_t iv) {
     int side = 2 * placed->reach + 1;
     TexelCopy copy;
@@ -406,7 +435,10 @@ static void draw_texel_at(Drawing *d, const CellFrame *f, const PlacedTexel *pla
         to = (int)double_clamp(ceil(fmax(foot[0], tip[0]) + reach) - 1, -64, 64);
     }
     for (int period = from; period <= to; period++)
-        if (frame_copy(&d->at, f, placed, &copy, period)) draw_copy(d, copy.texel->beam);
+        if (frame_copy(&d->at, f, placed, &copy, period)) {
+            d->at.tolerance = (float)tolerance_at(d);
+            draw_copy(d, copy.texel->beam);
+        }
 }
 
 /* Tiles [u0, u1) × [v0, v1). */

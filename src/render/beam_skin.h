@@ -24,6 +24,9 @@ typedef struct BeamCell {
 /* What drawing needs, of one worker. */
 typedef struct BeamDraft {
     Beam *beam;
+    Vec3 eye;                 /* the camera's; and what a pixel is wide, at the eye and for each unit of distance from it */
+    double width, spread;
+    double tolerance;         /* in pixels: how far triangles may leave what the mapping makes of them. All beams of a picture cut them alike */
     BeamFacet *facets;        /* of the camera's beam: samples' marks are 1 + their numbers here. Of a light's NULL */
     uint32_t facet_count, facet_capacity;
     uint32_t *renumber;       /* [facet_capacity + 1] */

@@ -5,9 +5,10 @@
 #include <string.h>
 
 enum { NOTHING = -1, EDGE = BEAM_TILE + 2 };
-/* How far triangles may leave what the mapping makes of them, in pixels; and how far beside a place shadows begin, in pixels and tiles:
- * more than the triangles that light meets may differ from those that the eye sees. */
-static const double TOLERANCE = 0.02, BIAS_PIXELS = 0.03, BIAS_TILES = 3e-4;
+/* How far beside a place its shadow begins, in pixels and tiles. */
+static const double BIAS_PIXELS = 0.02, BIAS_TILES = 3e-4;
+/* How far triangles may leave what the mapping makes of them, in pixels, with so many samples: as they are fewer, their noise hides more. */
+static double tolerance_for(int samples) { return double_clamp(2 / sqrt(samples), 0.125, 2); }
 
 /* An explicit surface, as one ray has met it. */
 typedef struct SeenSurface {
@@ -61,7 +62,6 @@ BeamTracer *beam_tracer_create(const CompiledScene *compiled, int samples, uint6
     tr->samples = samples;
     tr->seed = seed;
     tracer_init(&tr->volumes, compiled, arena);
-    shadow_scratch_init(&tr->shadow, (uint32_t)all, most_cells, arena);
     BeamSamples *s = &tr->beam.samples;
     s->first = arena_new_array(arena, uint32_t, BEAM_TILE * BEAM_TILE + 1);
     s->x = arena_new_array(arena, float, all);
@@ -73,6 +73,14 @@ BeamTracer *beam_tracer_create(const CompiledScene *compiled, int samples, uint6
     tr->draft.facets = arena_new_array(arena, BeamFacet, tr->draft.facet_capacity);
     tr->draft.renumber = arena_new_array(arena, uint32_t, tr->draft.facet_capacity + 1);
     tr->draft.cells = arena_new_array(arena, BeamCell, most_cells);
+    Cone middle = view_cone(&compiled->view, compiled->view.width / 2.0, compiled->view.height / 2.0, 1);
+    tr->draft.eye = compiled->view.camera.location;
+    tr->draft.width = middle.width;
+    tr->draft.spread = middle.spread;
+    tr->draft.tolerance = tolerance_for(samples);
+    shadow_scratch_init(&tr->shadow, (uint32_t)all, arena);
+    tr->shadow.draft = tr->draft; /* which cuts triangles alike, */
+    tr->shadow.draft.facets = NULL; /* and keeps nothing */
     tr->surfaces = arena_new_array(arena, SeenSurface, all);
     tr->fade = arena_new_array(arena, float, all);
     tr->surface = arena_new_array(arena, int32_t, all);
@@ -112,7 +120,6 @@ static void aim(BeamTracer *tr) {
         b->rows[0] = vec3_madd(b->rows[0], to_d, sx);
         b->rows[1] = vec3_madd(b->rows[1], to_d, sy);
     }
-    b->tolerance = (float)TOLERANCE;
     b->samples.columns = tr->columns;
     b->samples.rows = tr->rows;
 }
@@ -414,12 +421,7 @@ static void add_light(BeamTracer *tr, const Light *light) {
         float through = through_voxels(tr, sight, &cone, &ray);
         sight->tone = vec3f_scale(sight->tone, through);
     }
-    double nearest = VTS_INFINITY;
-    for (uint32_t k = 0; k < tr->sight_count; k++) nearest = fmin(nearest, (double)tr->sights[k].t);
-    Cone first = pixel_cone(tr, 0);
-    double tolerance = TOLERANCE * cone_diameter(&first, isfinite(nearest) ? nearest : 0);
-    ShadowPoints points = {.origin = tr->beam.origin, .points = tr->points, .distance = tr->distance, .hidden = tr->hidden, .count = count,
-                           .tolerance = tolerance};
+    ShadowPoints points = {.origin = tr->beam.origin, .points = tr->points, .distance = tr->distance, .hidden = tr->hidden, .count = count};
     beam_shadow(&tr->shadow, tr->compiled, light, &points);
     for (uint32_t k = 0; k < tr->sight_count; k++) {
         Sight *sight = &tr->sights[k];

@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+/* 1/√2: where the first of the samples goes over; the last does twice as far away. */
+static const double LEAST_FADE = 0.70710678118654752;
 enum { NOTHING = -1, EDGE = BEAM_TILE + 2 };
 /* How far beside a place its shadow begins, in pixels and tiles. */
 static const double BIAS_PIXELS = 0.02, BIAS_TILES = 3e-4;
@@ -28,6 +30,8 @@ typedef struct Sight {
     Vec3f color, light;   /* pigment; what it sends to the eye, so far */
     Vec3f tone;           /* of the light that is being asked for, without shadows */
     uint32_t begin;       /* of its points */
+    bool asked;           /* whether it has any */
+    Vec3 point;           /* of the first sample */
 } Sight;
 
 struct BeamTracer {
@@ -36,6 +40,9 @@ struct BeamTracer {
     uint64_t seed;
     Tracer volumes;
     Beam beam;
+    Vec3 corner, right, down; /* the line through (x, y): along corner + right·x + down·y, or from there */
+    Cone cones[BEAM_TILE * BEAM_TILE]; /* of the pixels */
+    uint8_t shade[BEAM_TILE * BEAM_TILE]; /* what of a pixel explicit objects shadow: some of it, none of it */
     BeamDraft draft;
     ShadowScratch shadow;
     /* of the tile's pixels and a border of one around */
@@ -120,6 +127,10 @@ static void aim(BeamTracer *tr) {
         b->rows[0] = vec3_madd(b->rows[0], to_d, sx);
         b->rows[1] = vec3_madd(b->rows[1], to_d, sy);
     }
+    double s = tr->x0 / w - 0.5, t = 0.5 - tr->y0 / h;
+    tr->corner = vec3_madd(vec3_madd(b->perspective ? c->direction : c->location, c->right, s), c->up, t);
+    tr->right = vec3_scale(c->right, 1 / w);
+    tr->down = vec3_scale(c->up, -1 / h);
     b->samples.columns = tr->columns;
     b->samples.rows = tr->rows;
 }
@@ -131,13 +142,9 @@ typedef struct Line {
 } Line;
 
 static Line line_at(const BeamTracer *tr, double x, double y) {
-    const View *view = &tr->compiled->view;
-    const Camera *c = &view->camera;
-    double s = (tr->x0 + x) / view->width - 0.5, t = 0.5 - (tr->y0 + y) / view->height;
-    Vec3 offset = vec3_madd(vec3_scale(c->right, s), c->up, t);
-    Line line = {c->location, c->direction, 0};
-    if (c->kind == CAMERA_PERSPECTIVE) line.direction = vec3_add(c->direction, offset);
-    else line.origin = vec3_add(c->location, offset);
+    Vec3 to = vec3_madd(vec3_madd(tr->corner, tr->right, x), tr->down, y);
+    Line line = {tr->beam.origin, to, 0};
+    if (!tr->beam.perspective) line = (Line){to, tr->compiled->view.camera.direction, 0};
     line.length = vec3_length(line.direction);
     return line;
 }
@@ -162,7 +169,7 @@ static void lay_samples(BeamTracer *tr) {
                 s->x[i] = (float)(column + x);
                 s->y[i] = (float)(row + y);
                 s->mark[i] = 0;
-                tr->fade[i] = (float)exp2(f - 0.5);
+                tr->fade[i] = (float)(LEAST_FADE * (1 + f));
                 tr->surface[i] = NOTHING;
             }
         }
@@ -243,7 +250,9 @@ static void draw_skins(BeamTracer *tr) {
     tr->draft.beam = &tr->beam;
     tr->draft.facet_count = 0;
     if (tr->beam.perspective) {
-        for (uint32_t i = 0; i < count; i++) s->limit[i] = (float)line_at(tr, (double)s->x[i], (double)s->y[i]).length / tr->fade[i];
+        if (isfinite(tr->compiled->all_exact_to))
+            for (uint32_t i = 0; i < count; i++) s->limit[i] = (float)line_at(tr, (double)s->x[i], (double)s->y[i]).length / tr->fade[i];
+        else memset(s->limit, 0, count * sizeof *s->limit);
         tr->beam.nearest = tr->compiled->nearest;
         tr->beam.farthest = VTS_INFINITY;
     } else { /* everything is as wide: a skin is exact as a whole, or voxels */
@@ -316,9 +325,7 @@ static Vec3 sample_point(const BeamTracer *tr, uint32_t i, double *t) {
     return vec3_madd(line.origin, line.direction, *t / line.length);
 }
 
-static Cone pixel_cone(const BeamTracer *tr, int pixel) {
-    return view_cone(&tr->compiled->view, tr->x0 + pixel % tr->columns + 0.5, tr->y0 + pixel / tr->columns + 0.5, 1);
-}
+static Cone pixel_cone(const BeamTracer *tr, int pixel) { return tr->cones[pixel]; }
 
 /* Two explicit hits of one pixel that may share their shading. */
 static bool same_surface(const SeenSurface *a, const SeenSurface *b) {
@@ -352,6 +359,7 @@ static void gather_sights(BeamTracer *tr) {
             double t;
             Vec3 point = sample_point(tr, i, &t);
             sight->t = (float)t;
+            sight->point = point;
             Cone cone = pixel_cone(tr, pixel);
             double width = cone_diameter(&cone, t);
             if (s->mark[i]) see_facet(tr, &tr->draft.facets[s->mark[i] - 1], point, width, sight);
@@ -366,8 +374,7 @@ static float luminance(Vec3f c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f
 
 /* What the light would send to the eye if nothing were in its way. */
 static Vec3f tone_of(const Sight *sight, const Cone *cone, const Light *light, LightRay *ray) {
-    Vec3 point = cone_point(cone, (double)sight->t);
-    *ray = light_ray(light, point);
+    *ray = light_ray(light, sight->point);
     NdfShade shade = sheet_shade(sight->normal, vec3f_from(vec3_negate(cone->direction)), vec3f_from(ray->direction), &sight->look->sheet);
     if (shade.diffuse <= 0 && shade.highlight <= 0) return vec3f(0, 0, 0);
     return vec3f_mul(shade_tone(&shade, sight->look, sight->color), ray->color);
@@ -387,12 +394,38 @@ static uint32_t add_points(BeamTracer *tr, const Sight *sight, const LightRay *r
     return count;
 }
 
-static void hide_by_surfaces(BeamTracer *tr, const Sight *sight, const LightRay *ray, uint32_t begin) {
-    double bias = (double)vec3f_length(sight->bias);
-    for (int i = 0; i < sight->count; i++) {
-        Ray shadow = {vec3_add(tr->beam.origin, vec3_from_f(tr->points[begin + (uint32_t)i])), ray->direction};
-        tr->counters.shadow_rays++;
-        tr->hidden[begin + (uint32_t)i] = hierarchy_occluded(tr->compiled->hierarchy, &shadow, bias, ray->distance);
+static bool hidden_by_surfaces(BeamTracer *tr, const Sight *sight, Vec3 to_light, double distance, uint32_t point) {
+    Ray shadow = {vec3_add(tr->beam.origin, vec3_from_f(tr->points[point])), to_light};
+    tr->counters.shadow_rays++;
+    return hierarchy_occluded(tr->compiled->hierarchy, &shadow, (double)vec3f_length(sight->bias), distance);
+}
+
+enum { SOME_HIDDEN = 1, SOME_LIT = 2 };
+
+/* One ray for each sight; all of its samples where that and the pixels around do not agree: there an edge of a shadow passes. */
+static void hide_by_surfaces(BeamTracer *tr, const Light *light) {
+    memset(tr->shade, 0, sizeof tr->shade);
+    for (uint32_t k = 0; k < tr->sight_count; k++) {
+        const Sight *sight = &tr->sights[k];
+        if (!sight->asked) continue;
+        LightRay ray = light_ray(light, sight->point);
+        bool hidden = hidden_by_surfaces(tr, sight, ray.direction, ray.distance, sight->begin);
+        memset(tr->hidden + sight->begin, hidden, (size_t)sight->count);
+        tr->shade[sight->pixel] |= hidden ? SOME_HIDDEN : SOME_LIT;
+    }
+    for (uint32_t k = 0; k < tr->sight_count; k++) {
+        const Sight *sight = &tr->sights[k];
+        if (!sight->asked || sight->count == 1) continue;
+        int column = sight->pixel % tr->columns, row = sight->pixel / tr->columns;
+        unsigned around = tr->shade[sight->pixel];
+        if (column > 0) around |= tr->shade[sight->pixel - 1];
+        if (column + 1 < tr->columns) around |= tr->shade[sight->pixel + 1];
+        if (row > 0) around |= tr->shade[sight->pixel - tr->columns];
+        if (row + 1 < tr->rows) around |= tr->shade[sight->pixel + tr->columns];
+        if (around != (SOME_HIDDEN | SOME_LIT)) continue;
+        LightRay ray = light_ray(light, sight->point);
+        for (uint32_t i = 1; i < (uint32_t)sight->count; i++)
+            tr->hidden[sight->begin + i] = hidden_by_surfaces(tr, sight, ray.direction, ray.distance, sight->begin + i);
     }
 }
 
@@ -411,16 +444,18 @@ static void add_light(BeamTracer *tr, const Light *light) {
         Sight *sight = &tr->sights[k];
         sight->tone = vec3f(0, 0, 0);
         sight->begin = count;
+        sight->asked = false;
         if (!sight->look) continue;
         Cone cone = pixel_cone(tr, sight->pixel);
         LightRay ray;
         sight->tone = tone_of(sight, &cone, light, &ray);
         if (light->shadowless || !(luminance(sight->tone) > 0)) continue;
         count = add_points(tr, sight, &ray, count);
-        hide_by_surfaces(tr, sight, &ray, sight->begin);
+        sight->asked = true;
         float through = through_voxels(tr, sight, &cone, &ray);
         sight->tone = vec3f_scale(sight->tone, through);
     }
+    hide_by_surfaces(tr, light);
     ShadowPoints points = {.origin = tr->beam.origin, .points = tr->points, .distance = tr->distance, .hidden = tr->hidden, .count = count};
     beam_shadow(&tr->shadow, tr->compiled, light, &points);
     for (uint32_t k = 0; k < tr->sight_count; k++) {
@@ -466,6 +501,8 @@ static Radiance see_sight(BeamTracer *tr, const Sight *sight) {
 void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out) {
     tr->x0 = x0, tr->y0 = y0, tr->columns = x1 - x0, tr->rows = y1 - y0;
     aim(tr);
+    for (int i = 0; i < tr->columns * tr->rows; i++)
+        tr->cones[i] = view_cone(&tr->compiled->view, x0 + i % tr->columns + 0.5, y0 + i / tr->columns + 0.5, 1);
     lay_samples(tr);
     see_surfaces(tr);
     draw_skins(tr);

@@ -141,7 +141,7 @@ static void cast(ShadowScratch *scratch, const CompiledScene *compiled, const Be
     }
     beam_close(&beam);
     scratch->draft.beam = &beam;
-    beam_draw_skins(&scratch->draft, compiled);
+    beam_draw_cells(&scratch->draft, compiled, beam_gather(&scratch->draft, compiled));
     for (uint32_t i = 0; i < count; i++) in->hidden[scratch->sorted[i]] |= (uint8_t)beam.samples.mark[i];
 }
 

@@ -560,14 +560,18 @@ static void draw_in_limit(Beam *beam) {
     if (least > 0 && 1 / (double)least < beam->farthest) beam->farthest = 1 / (double)least;
 }
 
-void beam_draw_skins(BeamDraft *draft, const CompiledScene *compiled) {
-    enum { CELLS_BETWEEN_LIMITS = 4 };
-    Beam *beam = draft->beam;
+uint32_t beam_gather(BeamDraft *draft, const CompiledScene *compiled) {
     Gathering g = {draft, compiled, 0, 0};
     box_tree_descend(compiled->skin_tree, meets, gather_skin, &g);
+    return g.count;
+}
+
+void beam_draw_cells(BeamDraft *draft, const CompiledScene *compiled, uint32_t count) {
+    enum { CELLS_BETWEEN_LIMITS = 4 };
+    Beam *beam = draft->beam;
     bool sorted = ordered(beam);
-    if (sorted) qsort(draft->cells, g.count, sizeof *draft->cells, nearer_first);
-    for (uint32_t i = 0; i < g.count; i++) {
+    if (sorted) qsort(draft->cells, count, sizeof *draft->cells, nearer_first);
+    for (uint32_t i = 0; i < count; i++) {
         const BeamCell *at = &draft->cells[i];
         const CompiledSkin *skin = &compiled->skins[at->skin];
         if (sorted && (double)at->nearest > beam->farthest) break;

@@ -36,7 +36,9 @@ typedef struct BeamDraft {
 
 /* How many cells all skins have that are drawn by beams. */
 size_t beam_most_cells(const CompiledScene *compiled);
-/* Draws all exact geometry that lies in the beam. */
-void beam_draw_skins(BeamDraft *draft, const CompiledScene *compiled);
+/* The cells with exact geometry that lie in the beam; returns how many. */
+uint32_t beam_gather(BeamDraft *draft, const CompiledScene *compiled);
+/* Draws those cells, nearest first. */
+void beam_draw_cells(BeamDraft *draft, const CompiledScene *compiled, uint32_t count);
 
 #endif

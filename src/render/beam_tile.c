@@ -59,6 +59,8 @@ struct BeamTracer {
     Sight *sights;
     uint32_t sight_count;
     int x0, y0, columns, rows;
+    bool bounded;
+    Box3 explicit_bounds;
     TraceCounters counters;
 };
 
@@ -85,6 +87,8 @@ BeamTracer *beam_tracer_create(const CompiledScene *compiled, int samples, uint6
     tr->draft.width = middle.width;
     tr->draft.spread = middle.spread;
     tr->draft.tolerance = tolerance_for(samples);
+    tr->draft.beam = &tr->beam;
+    tr->bounded = hierarchy_bounds(compiled->hierarchy, &tr->explicit_bounds);
     shadow_scratch_init(&tr->shadow, (uint32_t)all, arena);
     tr->shadow.draft = tr->draft; /* which cuts triangles alike, */
     tr->shadow.draft.facets = NULL; /* and keeps nothing */
@@ -133,6 +137,9 @@ static void aim(BeamTracer *tr) {
     tr->down = vec3_scale(c->up, -1 / h);
     b->samples.columns = tr->columns;
     b->samples.rows = tr->rows;
+    b->nearest = b->perspective ? tr->compiled->nearest : 0;
+    b->farthest = b->perspective ? VTS_INFINITY : -VTS_INFINITY;
+    beam_close(b);
 }
 
 /* Of the line through (x, y) of the tile: from `origin` along `direction`, whose length is that of one unit of q.z. */
@@ -244,24 +251,29 @@ static void see_surfaces(BeamTracer *tr) {
 
 /* ---- skins ---- */
 
-static void draw_skins(BeamTracer *tr) {
+static void draw_skins(BeamTracer *tr, uint32_t cells) {
     BeamSamples *s = &tr->beam.samples;
     uint32_t count = s->first[tr->columns * tr->rows];
-    tr->draft.beam = &tr->beam;
     tr->draft.facet_count = 0;
-    if (tr->beam.perspective) {
-        if (isfinite(tr->compiled->all_exact_to))
-            for (uint32_t i = 0; i < count; i++) s->limit[i] = (float)line_at(tr, (double)s->x[i], (double)s->y[i]).length / tr->fade[i];
-        else memset(s->limit, 0, count * sizeof *s->limit);
-        tr->beam.nearest = tr->compiled->nearest;
-        tr->beam.farthest = VTS_INFINITY;
-    } else { /* everything is as wide: a skin is exact as a whole, or voxels */
+    if (!tr->beam.perspective) { /* everything is as wide: a skin is exact as a whole, or voxels */
         for (uint32_t i = 0; i < count; i++) s->limit[i] = -INFINITY;
-        tr->beam.nearest = 0;
-        tr->beam.farthest = -VTS_INFINITY;
+    } else if (isfinite(tr->compiled->all_exact_to)) {
+        for (uint32_t i = 0; i < count; i++) s->limit[i] = (float)line_at(tr, (double)s->x[i], (double)s->y[i]).length / tr->fade[i];
+    } else {
+        memset(s->limit, 0, count * sizeof *s->limit);
     }
-    beam_close(&tr->beam);
-    beam_draw_skins(&tr->draft, tr->compiled);
+    beam_draw_cells(&tr->draft, tr->compiled, cells);
+}
+
+/* The sky's pixels, where there is nothing else. */
+static bool see_sky(const BeamTracer *tr, Radiance *out) {
+    const Scene *scene = tr->compiled->scene;
+    if (!tr->bounded || beam_meets_box(&tr->beam, &tr->explicit_bounds) || !isinf(tr->compiled->all_exact_to)) return false;
+    for (int i = 0; i < tr->columns * tr->rows; i++) {
+        Vec3f color = sky_radiance(scene, tr->cones[i].direction, tr->cones[i].spread);
+        out[i] = (Radiance){fog_over(scene, color, 1, VTS_INFINITY), 0};
+    }
+    return true;
 }
 
 /* ---- what each sample sees ---- */
@@ -503,9 +515,11 @@ void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out) {
     aim(tr);
     for (int i = 0; i < tr->columns * tr->rows; i++)
         tr->cones[i] = view_cone(&tr->compiled->view, x0 + i % tr->columns + 0.5, y0 + i / tr->columns + 0.5, 1);
+    uint32_t cells = beam_gather(&tr->draft, tr->compiled);
+    if (cells == 0 && see_sky(tr, out)) return;
     lay_samples(tr);
     see_surfaces(tr);
-    draw_skins(tr);
+    draw_skins(tr, cells);
     gather_sights(tr);
     for (uint32_t k = 0; k < tr->sight_count; k++) {
         Sight *s = &tr->sights[k];

@@ -325,6 +325,18 @@ void hierarchy_destroy(Hierarchy *h) {
 }
 
 size_t hierarchy_object_count(const Hierarchy *h) { return h->parts.count + h->planes.count; }
+bool hierarchy_bounds(const Hierarchy *h, Box3 *box) {
+    struct RTCBounds b;
+    *box = box3_empty();
+    if (h->planes.count) return false;
+    if (!h->parts.count) return true;
+    rtcGetSceneBounds(h->scene, &b);
+    Vec3 lower = vec3((double)b.lower_x, (double)b.lower_y, (double)b.lower_z), upper = vec3((double)b.upper_x, (double)b.upper_y, (double)b.upper_z);
+    double margin = 1e-6 * vec3_length(vec3_sub(upper, lower));
+    *box = (Box3){vec3_sub(vec3_add(h->origin, lower), vec3_splat(margin)), vec3_add(vec3_add(h->origin, upper), vec3_splat(margin))};
+    return vec3_is_finite(box->min) && vec3_is_finite(box->max);
+}
+
 void *hierarchy_device(const Hierarchy *h) { return h->device; }
 
 static struct RTCRay to_embree(const Hierarchy *h, const Ray *ray, double t_min, double t_max, unsigned mask) {

@@ -23,6 +23,8 @@ void hierarchy_destroy(Hierarchy *hierarchy);
 size_t hierarchy_object_count(const Hierarchy *hierarchy);
 void *hierarchy_device(const Hierarchy *hierarchy);
 
+/* A box around everything that is drawn, empty if nothing is; false when there is something endless. */
+bool hierarchy_bounds(const Hierarchy *hierarchy, Box3 *box);
 /* Nearest hit with t in (t_min, t_max); unit direction. */
 bool hierarchy_intersect(const Hierarchy *hierarchy, const Ray *ray, double t_min, double t_max, SurfaceHit *hit);
 /* Whether anything that casts shadows lies between. */

@@ -19,7 +19,7 @@ typedef struct SideList {
 
 typedef struct LeafMesh {
     TriangleSoup whole; /* in the set's space */
-    size_t first;       /* number of its first triangle among those of all leaves */
+    const BoxTree *boxes; /* over its triangles */
     bool flat;          /* triangles are the surface itself */
 } LeafMesh;
 
@@ -29,8 +29,7 @@ typedef struct Cutter {
     SetTree tree;
     Box3 region;      /* holds all that may be seen */
     LeafMesh *meshes; /* per leaf */
-    const BoxTree *boxes; /* over all triangles of all leaves */
-    uint32_t *owner;      /* leaf of each of them */
+    const BoxTree *boxes; /* over the leaves */
     double step;          /* length of edges that cross a border */
     double reach, slack;  /* how far from a point of the triangles the surface is looked for; how far it may be */
     size_t first_surface;
@@ -111,22 +110,23 @@ static bool mesh_leaf(Cutter *c, uint32_t index) {
     return true;
 }
 
+/* A tree over the triangles of each leaf, and one over the leaves: a surface that is cut passes its own by. */
 static void gather_boxes(Cutter *c) {
-    size_t count = 0, n = 0;
-    for (size_t i = 0; i < c->tree.leaf_count; i++) count += c->meshes[i].whole.triangles.count;
-    Box3 *boxes = arena_new_array(c->walk->arena, Box3, count);
-    c->owner = arena_new_array(c->walk->arena, uint32_t, count);
+    Arena *arena = c->walk->arena;
+    Box3 *whole = arena_new_array(arena, Box3, c->tree.leaf_count);
     for (uint32_t i = 0; i < c->tree.leaf_count; i++) {
         const TriangleSoup *soup = &c->meshes[i].whole;
-        c->meshes[i].first = n;
-        for (size_t t = 0; t < soup->triangles.count; t++, n++) {
-            boxes[n] = box3_empty();
+        Box3 *boxes = arena_new_array(arena, Box3, soup->triangles.count);
+        whole[i] = box3_empty();
+        for (size_t t = 0; t < soup->triangles.count; t++) {
+            boxes[t] = box3_empty();
             for (int k = 0; k < 3; k++)
-                boxes[n] = box3_add_point(boxes[n], soup->vertices.items[soup->triangles.items[t].vertex[k]].position);
-            c->owner[n] = i;
+                boxes[t] = box3_add_point(boxes[t], soup->vertices.items[soup->triangles.items[t].vertex[k]].position);
+            whole[i] = box3_union(whole[i], boxes[t]);
         }
+        c->meshes[i].boxes = box_tree_build(boxes, soup->triangles.count, arena);
     }
-    c->boxes = box_tree_build(boxes, count, c->walk->arena);
+    c->boxes = box_tree_build(whole, c->tree.leaf_count, arena);
 }
 
 /* ---- sides ---- */
@@ -160,28 +160,35 @@ static int side_of(Cutter *c, uint32_t vertex) {
 
 typedef struct Neighbourhood {
     const Cutter *cutter;
+    Box3 box;
     Vec3 middle;
     double reach;
+    const TriangleSoup *soup; /* of the leaf that is looked at */
 } Neighbourhood;
 
 /* A box of a slanting triangle is large: its plane has to pass, too. */
-static bool another_passes(void *context, uint32_t item) {
+static bool triangle_passes(void *context, uint32_t item) {
     const Neighbourhood *here = context;
-    const Cutter *c = here->cutter;
-    uint32_t owner = c->owner[item];
-    if (owner == c->leaf) return false;
-    const TriangleSoup *soup = &c->meshes[owner].whole;
-    const uint32_t *v = soup->triangles.items[item - c->meshes[owner].first].vertex;
-    Vec3 a = soup->vertices.items[v[0]].position;
-    Vec3 n = vec3_cross(vec3_sub(soup->vertices.items[v[1]].position, a), vec3_sub(soup->vertices.items[v[2]].position, a));
+    const SoupVertex *vertices = here->soup->vertices.items;
+    const uint32_t *v = here->soup->triangles.items[item].vertex;
+    Vec3 a = vertices[v[0]].position;
+    Vec3 n = vec3_cross(vec3_sub(vertices[v[1]].position, a), vec3_sub(vertices[v[2]].position, a));
     return fabs(vec3_dot(n, vec3_sub(here->middle, a))) <= here->reach * (fabs(n.x) + fabs(n.y) + fabs(n.z));
+}
+
+static bool leaf_passes(void *context, uint32_t leaf) {
+    Neighbourhood *here = context;
+    const LeafMesh *mesh = &here->cutter->meshes[leaf];
+    if (leaf == here->cutter->leaf || mesh->whole.triangles.count == 0) return false;
+    here->soup = &mesh->whole;
+    return box_tree_touch(mesh->boxes, &here->box, triangle_passes, here);
 }
 
 /* The ball about the middle of an edge holds all triangles of which it is the longest. */
 static bool others_are_near(const Cutter *c, Vec3 a, Vec3 b, double length) {
-    Neighbourhood here = {c, vec3_scale(vec3_add(a, b), 0.5), 0.87 * length + c->slack};
-    const Box3 box = {vec3_sub(here.middle, vec3_splat(here.reach)), vec3_add(here.middle, vec3_splat(here.reach))};
-    return box_tree_touch(c->boxes, &box, another_passes, &here);
+    Neighbourhood here = {.cutter = c, .middle = vec3_scale(vec3_add(a, b), 0.5), .reach = 0.87 * length + c->slack};
+    here.box = (Box3){vec3_sub(here.middle, vec3_splat(here.reach)), vec3_add(here.middle, vec3_splat(here.reach))};
+    return box_tree_touch(c->boxes, &here.box, leaf_passes, &here);
 }
 
 static bool split_edge(void *context, const TriangleSoup *soup, uint32_t a, uint32_t b) {

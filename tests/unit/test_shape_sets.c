@@ -249,6 +249,49 @@ static void faces_that_coincide(void **state) {
     check_measures(SET(OBJECT_MERGE, ball, ball, ball), 4 * VTS_PI / 3 * 0.343, 4 * VTS_PI * 0.49);
 }
 
+/* ---- the rarer solids, of bodies with closed forms ---- */
+
+static const Object *rare(Solid solid) {
+    Solid *own = arena_copy(&arena, &solid, sizeof solid);
+    solid_rehash(own);
+    Object object = {.kind = OBJECT_SOLID, .as.solid = own};
+    return kept(object, NULL);
+}
+
+static void rare_solids_have_their_volume(void **state) {
+    (void)state;
+    static const SweepSphere capsule[] = {{{0, 0, 0}, 0.4}, {{0, 1, 0}, 0.4}};
+    static const Point2 square[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}, {0.25, 0.25}, {0.75, 0.25}, {0.75, 0.75}, {0.25, 0.75}, {0.25, 0.25}};
+    static const Point2 cone[] = {{0, 0}, {1, 0}, {0, 1}};
+    static const double ball[] = {1, 0, 0, 0, 1, 0, 0, 1, 0, -1};
+    const BlobPart part = {{0, 0, 0}, {0, 0, 0}, 1, 1, transform_identity()};
+    double r = sqrt(1 - sqrt(0.25)); /* where (1 - r²)² is the threshold */
+    check_body(rare((Solid){.kind = SOLID_SUPERELLIPSOID, .as.superellipsoid = {1, 1}}), 4 * VTS_PI / 3, 4 * VTS_PI);
+    check_body(rare((Solid){.kind = SOLID_SWEEP, .as.sweep = {CURVE_LINEAR, capsule, 2}}), VTS_PI * 0.16 * (1 + 1.6 / 3),
+               2 * VTS_PI * 0.4 * 1.8);
+    check_body(rare((Solid){.kind = SOLID_PRISM, .as.prism = {CURVE_LINEAR, false, false, 0, 2, square, 10}}), 1.5, 2 * 0.75 + 2 * 6);
+    check_body(rare((Solid){.kind = SOLID_LATHE, .as.turned = {CURVE_LINEAR, cone, 3, false}}), VTS_PI / 3, VTS_PI * (1 + sqrt(2)));
+    check_body(rare((Solid){.kind = SOLID_BLOB, .as.blob = {0.25, arena_copy(&arena, &part, sizeof part), 1}}),
+               4 * VTS_PI / 3 * r * r * r, 4 * VTS_PI * r * r);
+    const Object *poly = rare((Solid){.kind = SOLID_POLYNOMIAL, .as.polynomial = {2, ball, 10}});
+    check_body(SET(OBJECT_INTERSECTION, poly, plane(vec3(0, 1, 0), 0), box(vec3(-2, -2, -2), vec3(2, 2, 2))), 2 * VTS_PI / 3, 3 * VTS_PI);
+}
+
+static void what_is_degenerate_gives_nothing(void **state) {
+    (void)state;
+    TriangleSoup soup;
+    ShapeRefusal refusal;
+    const double nan = (double)NAN;
+    const Object *ball = sphere(vec3(0, 0, 0), 1), *bad[] = {
+        SET(OBJECT_INTERSECTION, ball, sphere(vec3(5, 0, 0), 1)), SET(OBJECT_INTERSECTION, ball, sphere(vec3(2, 0, 0), 1)),
+        SET(OBJECT_DIFFERENCE, ball, sphere(vec3(0, 0, 0), nan)), SET(OBJECT_INTERSECTION, ball, sphere(vec3(nan, 0, 0), 1)),
+        group(OBJECT_INTERSECTION, 0, NULL), SET(OBJECT_DIFFERENCE, sphere(vec3(0, 0, 0), 0), ball)};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(bad); i++) mesh(bad[i], TOLERANCE, &soup, &refusal);
+    const Object *deep = ball;
+    for (int i = 0; i < 300; i++) deep = SET(OBJECT_DIFFERENCE, deep, sphere(vec3(1, 0.001 * i, 0), 0.3));
+    mesh(deep, 0.05, &soup, &refusal);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(an_eighth_of_a_ball, set_up, tear_down),
@@ -257,6 +300,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(a_merge_has_no_walls_inside, set_up, tear_down),
         cmocka_unit_test_setup_teardown(planes_bound_a_body_together, set_up, tear_down),
         cmocka_unit_test_setup_teardown(faces_that_coincide, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(rare_solids_have_their_volume, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_is_degenerate_gives_nothing, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

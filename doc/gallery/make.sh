@@ -15,6 +15,7 @@ size_of() {
   case $1 in
     meadow_ball) echo 400x400 ;;
     hillside) echo 480x320 ;;
+    teddy) echo 480x480 ;;
     *) echo 480x360 ;;
   esac
 }

@@ -57,7 +57,7 @@ typedef struct VtsOptions {
     double clock_delta;              /* from one frame to the next; default 1 */
     unsigned long long seed;         /* for sampling */
     double max_error;                /* RMSE a user accepts; 0: what the scene says, else 1/255 */
-    int samples;                     /* sub-pixels per pixel side² where the picture needs several; 0: by max_error */
+    int samples;                     /* a pixel where it needs several, 1 to 256; 0: by max_error */
     int reference_samples;           /* rays of a pixel of vts_reference(), 1 to 65536; default 64 */
     double exposure;                 /* EV, the picture is multiplied by 2^exposure */
     bool alpha;                      /* transparent background */

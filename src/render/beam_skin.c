@@ -20,9 +20,23 @@ typedef struct CellFrame {
 
 static void fold(CellFrame *f, int i, Vec3 c) { f->x[i] = (float)c.x, f->y[i] = (float)c.y, f->z[i] = (float)c.z; }
 
-/* False where texture coordinates are singular: there is no way back from them. */
+/* Whether the box over the cell has no room: its height vectors vanish or lie in the surface. */
+static bool is_flat(const SkinCell *cell) {
+    double largest = 0, size = 0;
+    for (int i = 0; i < 4; i++) {
+        Mat3 j;
+        if (cell->triangle && i == 3) break;
+        skin_cell_position(cell, i & 1, i >> 1, 0.5, &j);
+        largest = fmax(largest, fabs(mat3_determinant(&j)));
+        size = fmax(size, vec3_length(j.c[0]) * vec3_length(j.c[1]) * (vec3_length(j.c[0]) + vec3_length(j.c[1])));
+    }
+    return !(largest > 1e-9 * size);
+}
+
+/* False where the mapping is singular, or texture coordinates are: there is no way back from them. */
 static bool frame_cell(CellFrame *f, const Beam *beam, const SkinCell *cell) {
     f->cell = cell;
+    if (is_flat(cell)) return false;
     fold(f, 0, beam_point(beam, cell->foot.c[0]));
     for (int i = 1; i < 4; i++) fold(f, i, beam_vector(beam, cell->foot.c[i]));
     for (int i = 0; i < 4; i++) fold(f, 4 + i, beam_vector(beam, cell->height.c[i]));

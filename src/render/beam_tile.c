@@ -10,6 +10,9 @@ enum { NOTHING = -1, EDGE = BEAM_TILE + 2 };
 /* How far beside a place its shadow begins, in pixels and tiles. */
 static const double BIAS_PIXELS = 0.02, BIAS_TILES = 3e-4;
 /* How far triangles may leave what the mapping makes of them, in pixels, with so many samples: as they are fewer, their noise hides more. */
+enum { MOST_IN_PASS = 32 };
+/* The error of a mean from how far the means of its halves are apart: 1/2 if they were random. Measured: test_analytic_sessions. */
+static const double HALVES_TO_ERROR = 0.42;
 static double tolerance_for(int samples) { return double_clamp(2 / sqrt(samples), 0.125, 2); }
 
 /* An explicit surface, as one ray has met it. */
@@ -28,6 +31,8 @@ typedef struct Sight {
     const Look *look;     /* NULL: the sky */
     const SurfaceHit *surface;
     Vec3f color, light;   /* pigment; what it sends to the eye, so far */
+    int odd;              /* how many of its samples have odd numbers, and what these alone see of the light */
+    Vec3f odd_light;
     Vec3f tone;           /* of the light that is being asked for, without shadows */
     uint32_t begin;       /* of its points */
     bool asked;           /* whether it has any */
@@ -36,7 +41,11 @@ typedef struct Sight {
 
 struct BeamTracer {
     const CompiledScene *compiled;
-    int samples;
+    int samples;           /* a pixel, of the pass that is being made */
+    int before;            /* of the passes before */
+    BeamPlan plan;
+    double squared_error;  /* summed over the pixels of all tiles */
+    uint64_t pixel_count;
     uint64_t seed;
     Tracer volumes;
     Beam beam;
@@ -64,11 +73,11 @@ struct BeamTracer {
     TraceCounters counters;
 };
 
-BeamTracer *beam_tracer_create(const CompiledScene *compiled, int samples, uint64_t seed, Arena *arena) {
+BeamTracer *beam_tracer_create(const CompiledScene *compiled, const BeamPlan *plan, uint64_t seed, Arena *arena) {
     BeamTracer *tr = arena_new(arena, BeamTracer);
-    size_t all = (size_t)samples * BEAM_TILE * BEAM_TILE, most_cells = beam_most_cells(compiled);
+    size_t all = (size_t)int_min(plan->most, MOST_IN_PASS) * BEAM_TILE * BEAM_TILE, most_cells = beam_most_cells(compiled);
     tr->compiled = compiled;
-    tr->samples = samples;
+    tr->plan = *plan;
     tr->seed = seed;
     tracer_init(&tr->volumes, compiled, arena);
     BeamSamples *s = &tr->beam.samples;
@@ -78,7 +87,7 @@ BeamTracer *beam_tracer_create(const CompiledScene *compiled, int samples, uint6
     s->key = arena_new_array(arena, float, all);
     s->limit = arena_new_array(arena, float, all);
     s->mark = arena_new_array(arena, uint32_t, all);
-    tr->draft.facet_capacity = (uint32_t)(2 * all + 64);
+    tr->draft.facet_capacity = (uint32_t)(all + 64);
     tr->draft.facets = arena_new_array(arena, BeamFacet, tr->draft.facet_capacity);
     tr->draft.renumber = arena_new_array(arena, uint32_t, tr->draft.facet_capacity + 1);
     tr->draft.cells = arena_new_array(arena, BeamCell, most_cells);
@@ -86,7 +95,7 @@ BeamTracer *beam_tracer_create(const CompiledScene *compiled, int samples, uint6
     tr->draft.eye = compiled->view.camera.location;
     tr->draft.width = middle.width;
     tr->draft.spread = middle.spread;
-    tr->draft.tolerance = tolerance_for(samples);
+    tr->draft.tolerance = tolerance_for(plan->first < plan->most ? 4 * plan->first : plan->first);
     tr->draft.beam = &tr->beam;
     tr->bounded = hierarchy_bounds(compiled->hierarchy, &tr->explicit_bounds);
     shadow_scratch_init(&tr->shadow, (uint32_t)all, arena);
@@ -168,7 +177,8 @@ static void lay_samples(BeamTracer *tr) {
     for (int row = 0; row < tr->rows; row++)
         for (int column = 0; column < tr->columns; column++) {
             uint64_t bits = random_hash((uint64_t)(tr->x0 + column), (uint64_t)(tr->y0 + row), 0, tr->seed);
-            double x = random_unit(bits), y = random_unit(random_mix(bits)), f = random_unit(random_mix(bits + 1));
+            double x = random_unit(bits) + tr->before * step_x, y = random_unit(random_mix(bits)) + tr->before * step_y;
+            double f = random_unit(random_mix(bits + 1)) + tr->before * 0.6180339887498949;
             s->first[row * tr->columns + column] = i;
             for (int k = 0; k < tr->samples; k++, i++) {
                 x += step_x, y += step_y, f += 0.6180339887498949;
@@ -226,7 +236,7 @@ static const SeenSurface *surface_of(const BeamTracer *tr, int pixel, uint32_t s
 
 static void see_surfaces(BeamTracer *tr) {
     BeamSamples *s = &tr->beam.samples;
-    for (int row = -1; row <= tr->rows; row++)
+    for (int row = -1; row <= tr->rows && tr->before == 0; row++)
         for (int column = -1; column <= tr->columns; column++)
             see_surface(tr, column + 0.5, row + 0.5, &tr->pixels[(row + 1) * EDGE + column + 1]);
     tr->surface_count = 0;
@@ -362,10 +372,11 @@ static void gather_sights(BeamTracer *tr) {
                 tr->next[i] = sight->first;
                 sight->first = (int)i;
                 sight->count++;
+                sight->odd += (int)((i - s->first[pixel]) & 1);
                 continue;
             }
             tr->sight_count++;
-            *sight = (Sight){.pixel = pixel, .first = (int)i, .count = 1, .t = INFINITY};
+            *sight = (Sight){.pixel = pixel, .first = (int)i, .count = 1, .odd = (int)((i - s->first[pixel]) & 1), .t = INFINITY};
             tr->next[i] = NOTHING;
             if (!s->mark[i] && !surface->found) continue;
             double t;
@@ -473,10 +484,14 @@ static void add_light(BeamTracer *tr, const Light *light) {
     for (uint32_t k = 0; k < tr->sight_count; k++) {
         Sight *sight = &tr->sights[k];
         if (!(luminance(sight->tone) > 0)) continue;
-        int seen = sight->count;
-        if (!light->shadowless)
-            for (int i = 0; i < sight->count; i++) seen -= tr->hidden[sight->begin + (uint32_t)i];
-        sight->light = vec3f_madd(sight->light, sight->tone, (float)seen / (float)sight->count);
+        int hidden = 0, odd_hidden = 0;
+        uint32_t at = sight->begin, pixel_first = tr->beam.samples.first[sight->pixel];
+        for (int i = sight->first; i != NOTHING && sight->asked; i = tr->next[i], at++) {
+            hidden += tr->hidden[at];
+            odd_hidden += (((uint32_t)i - pixel_first) & 1) ? tr->hidden[at] : 0;
+        }
+        sight->light = vec3f_madd(sight->light, sight->tone, 1 - (float)hidden / (float)sight->count);
+        if (sight->odd) sight->odd_light = vec3f_madd(sight->odd_light, sight->tone, 1 - (float)odd_hidden / (float)sight->odd);
     }
 }
 
@@ -493,45 +508,109 @@ static bool starts_of(const BeamTracer *tr, const Sight *sight, ConeStart *start
     return tr->compiled->all_exact_to * (double)first < (double)sight->t;
 }
 
-static Radiance see_sight(BeamTracer *tr, const Sight *sight) {
+/* What a sight sends through fog and voxels, to all of its samples and to the odd ones. */
+static void see_sight(BeamTracer *tr, const Sight *sight, Radiance *all, Vec3f *odd) {
     const Scene *scene = tr->compiled->scene;
     Cone cone = pixel_cone(tr, sight->pixel);
-    Radiance out = {sight->light, sight->look ? 1 : 0};
-    if (!sight->look) out.color = sky_radiance(scene, cone.direction, cone.spread);
     double t = sight->look ? (double)sight->t : VTS_INFINITY;
-    out.color = fog_over(scene, out.color, 1, t);
+    Vec3f sky = {0, 0, 0};
+    if (!sight->look) sky = sky_radiance(scene, cone.direction, cone.spread);
+    *all = (Radiance){fog_over(scene, sight->look ? sight->light : sky, 1, t), sight->look ? 1 : 0};
+    *odd = fog_over(scene, sight->look ? sight->odd_light : sky, 1, t);
     ConeStart start;
-    if (!starts_of(tr, sight, &start)) return out;
+    if (!starts_of(tr, sight, &start)) return;
     float transmittance;
     tr->volumes.seed = random_hash((uint64_t)(tr->x0 + sight->pixel % tr->columns), (uint64_t)(tr->y0 + sight->pixel / tr->columns), 1, tr->seed);
     Vec3f matter = trace_skins(&tr->volumes, &cone, &start, t, &transmittance);
-    out.color = vec3f_madd(matter, out.color, transmittance);
-    out.alpha = 1 - transmittance * (1 - out.alpha);
-    return out;
+    all->color = vec3f_madd(matter, all->color, transmittance);
+    all->alpha = 1 - transmittance * (1 - all->alpha);
+    *odd = vec3f_madd(matter, *odd, transmittance);
 }
 
-void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out) {
-    tr->x0 = x0, tr->y0 = y0, tr->columns = x1 - x0, tr->rows = y1 - y0;
-    aim(tr);
-    for (int i = 0; i < tr->columns * tr->rows; i++)
-        tr->cones[i] = view_cone(&tr->compiled->view, x0 + i % tr->columns + 0.5, y0 + i / tr->columns + 0.5, 1);
+static float clamped_difference(Vec3f a, Vec3f b) {
+    float x = float_clamp(a.x, 0, 1) - float_clamp(b.x, 0, 1), y = float_clamp(a.y, 0, 1) - float_clamp(b.y, 0, 1);
+    float z = float_clamp(a.z, 0, 1) - float_clamp(b.z, 0, 1);
+    return (x * x + y * y + z * z) / 3;
+}
+
+/* One pass of tr->samples a pixel: adds to the means so far. Returns the RMSE to be expected of this pass alone. */
+static double see_pass(BeamTracer *tr, Radiance *out) {
+    int pixels = tr->columns * tr->rows;
     uint32_t cells = beam_gather(&tr->draft, tr->compiled);
-    if (cells == 0 && see_sky(tr, out)) return;
+    if (cells == 0 && tr->before == 0 && see_sky(tr, out)) return 0;
     lay_samples(tr);
     see_surfaces(tr);
     draw_skins(tr, cells);
     gather_sights(tr);
     for (uint32_t k = 0; k < tr->sight_count; k++) {
         Sight *s = &tr->sights[k];
-        if (s->look) s->light = vec3f_mul(vec3f_add(s->look->ambient, s->look->emission), s->color);
+        if (s->look) s->light = s->odd_light = vec3f_mul(vec3f_add(s->look->ambient, s->look->emission), s->color);
     }
     for (size_t l = 0; l < tr->compiled->scene->light_count; l++) add_light(tr, &tr->compiled->scene->lights[l]);
-    memset(out, 0, (size_t)(tr->columns * tr->rows) * sizeof *out);
-    for (uint32_t k = 0; k < tr->sight_count; k++) {
-        const Sight *s = &tr->sights[k];
-        Radiance seen = see_sight(tr, s);
-        float share = (float)s->count / (float)tr->samples;
-        out[s->pixel].color = vec3f_madd(out[s->pixel].color, seen.color, share);
-        out[s->pixel].alpha += seen.alpha * share;
+    /* Sights come pixel by pixel. */
+    double squares = 0;
+    float weight = (float)tr->samples / (float)(tr->before + tr->samples), odds = (float)(tr->samples / 2), evens = (float)tr->samples - odds;
+    uint32_t k = 0;
+    for (int pixel = 0; pixel < pixels; pixel++) {
+        Vec3f sum = {0, 0, 0}, odd_sum = {0, 0, 0};
+        float alpha = 0;
+        for (; k < tr->sight_count && tr->sights[k].pixel == pixel; k++) {
+            const Sight *s = &tr->sights[k];
+            Radiance seen;
+            Vec3f odd;
+            see_sight(tr, s, &seen, &odd);
+            sum = vec3f_madd(sum, seen.color, (float)s->count);
+            odd_sum = vec3f_madd(odd_sum, odd, (float)s->odd);
+            alpha += seen.alpha * (float)s->count;
+        }
+        Radiance *mean = &out[pixel];
+        mean->color = vec3f_madd(vec3f_scale(mean->color, 1 - weight), sum, weight / (float)tr->samples);
+        mean->alpha = mean->alpha * (1 - weight) + alpha * weight / (float)tr->samples;
+        if (odds > 0) squares += (double)clamped_difference(vec3f_scale(odd_sum, 1 / odds), vec3f_scale(vec3f_sub(sum, odd_sum), 1 / evens));
     }
+    return HALVES_TO_ERROR * sqrt(squares / pixels);
+}
+
+/* How the error of a tile falls with the samples: error·(samples/n)^power for n of them. */
+typedef struct ErrorLaw {
+    double error, samples, power;
+} ErrorLaw;
+
+static int samples_for(const ErrorLaw *law, double error, int most) {
+    if (!(error > 0) || law->error <= error) return 0;
+    return (int)fmin(ceil(law->samples * pow(law->error / error, 1 / law->power)), most);
+}
+
+/* A larger pass tells more: of edges the error falls with the power 3/4, of what is random on the scale of a pixel with 1/2. */
+static void learn(ErrorLaw *law, double error, int samples) {
+    double more = samples / law->samples;
+    if (more >= 2 && error > 0 && law->error > 0) law->power = double_clamp(log(law->error / error) / log(more), 0.5, 0.8);
+    if (more > 1) law->error = error, law->samples = samples;
+}
+
+/* Passes until the error should be small enough. */
+void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out) {
+    int pixels = (x1 - x0) * (y1 - y0), wanted = tr->plan.first;
+    tr->x0 = x0, tr->y0 = y0, tr->columns = x1 - x0, tr->rows = y1 - y0;
+    aim(tr);
+    for (int i = 0; i < pixels; i++) tr->cones[i] = view_cone(&tr->compiled->view, x0 + i % tr->columns + 0.5, y0 + i / tr->columns + 0.5, 1);
+    memset(out, 0, (size_t)pixels * sizeof *out);
+    ErrorLaw law = {.samples = 0, .power = 0.75};
+    for (tr->before = 0; tr->before < wanted; tr->before += tr->samples) {
+        tr->samples = int_min(wanted - tr->before, MOST_IN_PASS);
+        if (tr->before) aim(tr); /* drawing has narrowed the beam */
+        double error = see_pass(tr, out);
+        if (tr->before) learn(&law, error, tr->samples);
+        else law.error = error, law.samples = tr->samples;
+        wanted = int_max(tr->before + tr->samples, samples_for(&law, tr->plan.max_error, tr->plan.most));
+        if (tr->plan.first == tr->plan.most) wanted = tr->plan.most;
+    }
+    double error = law.error * pow(law.samples / tr->before, law.power);
+    tr->squared_error += error * error * pixels;
+    tr->pixel_count += (uint64_t)pixels;
+}
+
+double beam_tracer_error(const BeamTracer *tr, uint64_t *pixels) {
+    *pixels = tr->pixel_count;
+    return tr->squared_error;
 }

@@ -13,10 +13,19 @@ enum { BEAM_TILE = FILM_TILE, MOST_BEAM_SAMPLES = 256 };
 
 typedef struct BeamTracer BeamTracer;
 
-/* Of one worker; `samples` a pixel, at most MOST_BEAM_SAMPLES. All memory comes from the arena, now. */
-BeamTracer *beam_tracer_create(const CompiledScene *compiled, int samples, uint64_t seed, Arena *arena);
+/* Samples a pixel: of the first pass over each tile, and after it as many, up to `most`, as bring the RMSE of the tile below max_error
+ * (0: the first pass is all). */
+typedef struct BeamPlan {
+    int first, most; /* at least 1, at most MOST_BEAM_SAMPLES */
+    double max_error;
+} BeamPlan;
+
+/* Of one worker. All memory comes from the arena, now. */
+BeamTracer *beam_tracer_create(const CompiledScene *compiled, const BeamPlan *plan, uint64_t seed, Arena *arena);
 /* What the pixels of [x0, x1) × [y0, y1), at most BEAM_TILE each way, see; rows of `out` are x1 − x0 long. */
 void beam_tile(BeamTracer *tracer, int x0, int y0, int x1, int y1, Radiance *out);
+/* The expected square of the error of what was drawn, summed over *pixels pixels: of noise alone. */
+double beam_tracer_error(const BeamTracer *tracer, uint64_t *pixels);
 void beam_tracer_count(const BeamTracer *tracer, TraceCounters *sum);
 
 #endif

@@ -97,7 +97,8 @@ static void choose_detail(double max_error, OpacityModel opacity, RayPath path, 
     out->shadow_march = out->march;
     out->shadow_march.voxel_width *= 1.4f; /* shadows are parts of pixels (Neyret 1998 sec. IV-B: "a rougher level") */
     out->shadow_march.step = (float)double_clamp(2 * root, 1, 2.5);
-    out->samples = (int)double_clamp(round(16 * pow(e, -1.2)), 2, 64);
+    out->max_error = max_error;
+    out->samples = (int)double_clamp(round(8 * pow(e, -1)), 2, 16);
     out->split = (int)double_clamp(round(4 * pow(e, -0.35)), 2, 12);
 }
 

@@ -45,7 +45,8 @@ typedef struct CompiledScene {
     Quadrature quadrature;
     TexelFiltering filtering;
     double shadow_aperture;
-    int samples;          /* a pixel, of what is drawn by beams */
+    double max_error;     /* the RMSE that is accepted */
+    int samples;          /* a pixel, of the first pass of what is drawn by beams */
     int split;            /* cones per pixel side where explicit edges cross the pixel */
     double build_seconds;
     Box3 exact_bounds;    /* of the skins that beams draw */

@@ -98,6 +98,16 @@ static bool has_exact_skins(const CompiledScene *compiled) {
     return false;
 }
 
+static double expected_error(const Frame *frame, int workers) {
+    double squares = 0;
+    uint64_t pixels = 0, count;
+    for (int i = 0; i < workers; i++) {
+        squares += beam_tracer_error(frame->beams[i], &count);
+        pixels += count;
+    }
+    return pixels ? sqrt(squares / (double)pixels) : 0;
+}
+
 bool render_picture(const CompiledScene *compiled, const RenderOptions *options, MemoryBudget *memory, Image *out,
                     RenderStats *stats, StrBuf *error) {
     /* Workspace from the scene's arena: should memory run out half way, its owner releases it. */
@@ -105,15 +115,17 @@ bool render_picture(const CompiledScene *compiled, const RenderOptions *options,
     int workers = pool_threads(options->pool);
     Frame frame = {.compiled = compiled, .options = options, .split_pixels = arena_new_array(compiled->arena, uint64_t, (size_t)workers)};
     if (has_exact_skins(compiled)) {
-        int samples = int_clamp(options->samples > 0 ? options->samples : compiled->samples, 1, MOST_BEAM_SAMPLES);
+        BeamPlan plan = {.first = compiled->samples, .most = MOST_BEAM_SAMPLES, .max_error = compiled->max_error};
+        if (options->samples > 0) plan = (BeamPlan){.first = options->samples, .most = options->samples};
         frame.beams = arena_new_array(compiled->arena, BeamTracer *, (size_t)workers);
-        for (int i = 0; i < workers; i++) frame.beams[i] = beam_tracer_create(compiled, samples, options->seed, compiled->arena);
+        for (int i = 0; i < workers; i++) frame.beams[i] = beam_tracer_create(compiled, &plan, options->seed, compiled->arena);
     } else {
         frame.tracers = arena_new_array(compiled->arena, Tracer, (size_t)workers);
         for (int i = 0; i < workers; i++) tracer_init(&frame.tracers[i], compiled, compiled->arena);
     }
     bool done = film_expose(options, "render", see_tile, &frame, memory, out, error);
-    *stats = (RenderStats){0};
+    *stats = (RenderStats){.error_estimate = -1};
+    if (frame.beams && isinf(compiled->all_exact_to)) stats->error_estimate = expected_error(&frame, workers);
     for (int i = 0; i < workers; i++) {
         if (frame.beams) beam_tracer_count(frame.beams[i], &stats->counters);
         else trace_counters_add(&stats->counters, &frame.tracers[i].counters);

@@ -9,6 +9,7 @@
 typedef struct RenderStats {
     TraceCounters counters;
     uint64_t split_pixels; /* traced by several cones */
+    double error_estimate; /* the RMSE to be expected; negative: not known, as voxels are seen */
 } RenderStats;
 
 /* Renders the region into `out` (R G B, or R G B A with alpha; initialised here). The pixels do not depend on the number of

@@ -30,7 +30,9 @@ static void add_frame(StrBuf *out, const FrameReport *f) {
                 (unsigned long long)c->camera_rays, (unsigned long long)c->shadow_rays, (unsigned long long)c->voxels_visited);
     strbuf_adds(out, "\"function_evaluations\":0,\"evaluations_per_ray\":0,");
     add_texels(out, f->compiled);
-    strbuf_addf(out, ",\"error_estimate\":null,\"stages\":{\"parse_s\":%.4f,\"build_s\":%.4f,\"render_s\":%.4f,\"write_s\":%.4f,"
+    if (f->stats->error_estimate >= 0) strbuf_addf(out, ",\"error_estimate\":%.6f", f->stats->error_estimate);
+    else strbuf_adds(out, ",\"error_estimate\":null");
+    strbuf_addf(out, ",\"stages\":{\"parse_s\":%.4f,\"build_s\":%.4f,\"render_s\":%.4f,\"write_s\":%.4f,"
                      "\"march_steps\":%llu,\"split_pixels\":%llu}}",
                 f->parse_s, f->build_s, f->render_s, f->write_s, (unsigned long long)c->steps, (unsigned long long)f->stats->split_pixels);
 }

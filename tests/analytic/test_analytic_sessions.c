@@ -116,6 +116,46 @@ static void the_report_counts_what_was_done(void **state) {
     vts_session_destroy(session);
 }
 
+/* What the report expects of the error is what it is, to a factor of two, and max_error is kept: against pictures of many samples and
+ * another seed, of scenes that the estimate was not tuned with. */
+static void the_error_is_as_expected(void **state) {
+    static const char hair[] =
+        "camera { location <0, 0.7, -3> look_at <0, 0, 0> right x up y angle 45 }\n"
+        "light_source { <-20, 30, -25> rgb 1 parallel point_at 0 }\n"
+        "#declare S = seed(8);\n"
+        "#declare Hair = texel { cyclic x + z layer { particles { count 20 { position <rand(S), 0, rand(S)>\n"
+        "  velocity <0.4*rand(S)-0.2, 1, 0.4*rand(S)-0.2> acceleration <0.3, -0.3, 0> life 0.9 width 0.05, 0.01 } }\n"
+        "  texture { pigment { rgb <0.6, 0.4, 0.2> } finish { diffuse 0.8 specular 0.3 } } } }\n"
+        "skin { surface { sphere { 0, 1 } } texel { Hair } mapping { repeat <30, 15> height 0.3 } jitter { direction 0.4 scale 0.3 seed 2 } }\n"
+        "sphere { 0, 1 }\n";
+    static const char *const scenes[] = {meadow, hair};
+    for (size_t k = 0; k < VTS_ARRAY_COUNT(scenes); k++) {
+        VtsOptions o = options_of_size(64, 64);
+        o.samples = 256;
+        o.seed = 77;
+        Picture truth = bench_render(*state, &o, scenes[k]);
+        static const struct { int samples; double max_error; } cases[] = {{4, 0}, {12, 0}, {0, .03}, {0, .01}};
+        for (size_t i = 0; i < VTS_ARRAY_COUNT(cases); i++) {
+            o = options_of_size(64, 64);
+            o.samples = cases[i].samples;
+            o.max_error = cases[i].max_error;
+            const Bench *b = *state;
+            bench_write(b, scenes[k]);
+            VtsSession *session = vts_session_create(&o, NULL);
+            assert_int_equal(vts_render(session, b->scene, b->output), VTS_OK);
+            double expected = number_after(vts_report(session), "error_estimate");
+            vts_session_destroy(session);
+            Picture p = picture_read(b->output);
+            double rms = picture_difference(&truth, &p).rms;
+            picture_free(&p);
+            printf("%d samples, max_error %g: RMSE %.4f, expected %.4f\n", cases[i].samples, cases[i].max_error, rms, expected);
+            assert_true(expected > rms / 2 && expected < rms * 2);
+            assert_true(cases[i].samples || rms < 1.3 * cases[i].max_error);
+        }
+        picture_free(&truth);
+    }
+}
+
 /* ---- limits ---- */
 
 /* Whatever the limit cuts short, the session ends well and another one works. */
@@ -205,6 +245,7 @@ int main(void) {
         cmocka_unit_test(threads_do_not_change_pixels),
         cmocka_unit_test(texels_are_kept_from_call_to_call),
         cmocka_unit_test(the_report_counts_what_was_done),
+        cmocka_unit_test(the_error_is_as_expected),
         cmocka_unit_test(memory_runs_out_anywhere_without_harm),
         cmocka_unit_test(interruption_from_another_thread),
         cmocka_unit_test(alpha_is_coverage),

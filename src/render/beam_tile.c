@@ -1,6 +1,7 @@
 #include "render/beam_tile.h"
 
 #include "base/random.h"
+#include "render/beam_sky.h"
 
 #include <string.h>
 
@@ -27,6 +28,7 @@ typedef struct Sight {
     int pixel;            /* in the tile */
     int first, count;     /* its samples are linked: next[] */
     float t;              /* of the first; VTS_INFINITY of the sky */
+    Vec3f up;             /* of the layer; zero of explicit objects */
     Vec3f normal, flat, bias; /* bias: to add to a place on it so that it lies on the side of the eye */
     const Look *look;     /* NULL: the sky */
     const SurfaceHit *surface;
@@ -65,6 +67,9 @@ struct BeamTracer {
     Vec3f *points;         /* where the light is asked for */
     uint8_t *hidden;
     float *distance;
+    SkyScratch sky;        /* and what goes with it: for scenes with light of the sky alone */
+    Vec3f *sky_up, *sky_flat;
+    uint8_t *sky_turn;
     Sight *sights;
     uint32_t sight_count;
     int x0, y0, columns, rows;
@@ -109,6 +114,12 @@ BeamTracer *beam_tracer_create(const CompiledScene *compiled, const BeamPlan *pl
     tr->hidden = arena_new_array(arena, uint8_t, all);
     tr->distance = arena_new_array(arena, float, all);
     tr->sights = arena_new_array(arena, Sight, all);
+    if (compiled->scene->settings.sky_light) {
+        sky_scratch_init(&tr->sky, (uint32_t)all, arena);
+        tr->sky_up = arena_new_array(arena, Vec3f, all);
+        tr->sky_flat = arena_new_array(arena, Vec3f, all);
+        tr->sky_turn = arena_new_array(arena, uint8_t, all);
+    }
     return tr;
 }
 
@@ -311,11 +322,20 @@ static Vec3 facet_place(const BeamFacet *f, Vec3 point, const Vec3 p[3], Vec3 no
     return vec3_add(b.min, vec3_mul(in, vec3_sub(b.max, b.min)));
 }
 
+/* Across the layer, away from the surface. */
+static Vec3f layer_up(const BeamFacet *f) {
+    Vec3f middle = vec3f_scale(vec3f_add(f->corner[0], vec3f_add(f->corner[1], f->corner[2])), 1.0f / 3);
+    SkinPoint at = {0, (double)middle.x, (double)middle.y, (double)middle.z};
+    TexturePlace place = skin_texture_place(f->cell, &at);
+    return vec3f_from(vec3_normalize(place.grad_layer));
+}
+
 static void see_facet(BeamTracer *tr, const BeamFacet *f, Vec3 point, double width, Sight *sight) {
     Vec3 p[3] = {facet_corner(f, 0), facet_corner(f, 1), facet_corner(f, 2)};
     Vec3 normal = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0])), unit = vec3_normalize(normal);
     Vec3 view = vec3_normalize(vec3_sub(tr->beam.origin, point));
     if (vec3_dot(unit, view) < 0) unit = vec3_negate(unit);
+    sight->up = layer_up(f);
     const Look *own = &f->copy.texel->matter[f->layer].look;
     sight->look = f->placed->look ? f->placed->look : own;
     sight->normal = sight->flat = vec3f_from(unit);
@@ -461,6 +481,18 @@ static float through_voxels(BeamTracer *tr, const Sight *sight, const Cone *cone
     return skin_light_through_voxels(&tr->volumes.light, &shadow, ray->distance, (double)sight->t);
 }
 
+/* The share of a sight's points that are not hidden, of all and of those with odd numbers. */
+static void shares_seen(const BeamTracer *tr, const Sight *sight, float *all, float *odd) {
+    int hidden = 0, odd_hidden = 0;
+    uint32_t at = sight->begin, first = tr->beam.samples.first[sight->pixel];
+    for (int i = sight->first; i != NOTHING; i = tr->next[i], at++) {
+        hidden += tr->hidden[at];
+        odd_hidden += (((uint32_t)i - first) & 1) ? tr->hidden[at] : 0;
+    }
+    *all = 1 - (float)hidden / (float)sight->count;
+    *odd = sight->odd ? 1 - (float)odd_hidden / (float)sight->odd : *all;
+}
+
 static void add_light(BeamTracer *tr, const Light *light) {
     uint32_t count = 0;
     for (uint32_t k = 0; k < tr->sight_count; k++) {
@@ -484,14 +516,41 @@ static void add_light(BeamTracer *tr, const Light *light) {
     for (uint32_t k = 0; k < tr->sight_count; k++) {
         Sight *sight = &tr->sights[k];
         if (!(luminance(sight->tone) > 0)) continue;
-        int hidden = 0, odd_hidden = 0;
-        uint32_t at = sight->begin, pixel_first = tr->beam.samples.first[sight->pixel];
-        for (int i = sight->first; i != NOTHING && sight->asked; i = tr->next[i], at++) {
-            hidden += tr->hidden[at];
-            odd_hidden += (((uint32_t)i - pixel_first) & 1) ? tr->hidden[at] : 0;
+        float seen = 1, odd_seen = 1;
+        if (sight->asked) shares_seen(tr, sight, &seen, &odd_seen);
+        sight->light = vec3f_madd(sight->light, sight->tone, seen);
+        sight->odd_light = vec3f_madd(sight->odd_light, sight->tone, odd_seen);
+    }
+}
+
+/* Ambient and emitted light. Of the former, where the scene asks for it, the sky's share that is seen. */
+static void add_ambient(BeamTracer *tr) {
+    bool sky = tr->compiled->scene->settings.sky_light;
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < tr->sight_count && sky; k++) {
+        Sight *sight = &tr->sights[k];
+        sight->begin = count;
+        if (!sight->look || vec3f_length(sight->up) == 0) continue;
+        uint32_t first = tr->beam.samples.first[sight->pixel];
+        uint32_t turn = (uint32_t)random_hash((uint64_t)(tr->x0 + sight->pixel % tr->columns), (uint64_t)(tr->y0 + sight->pixel / tr->columns), 2, tr->seed);
+        for (int i = sight->first; i != NOTHING; i = tr->next[i], count++) {
+            double t;
+            tr->points[count] = vec3f_from(vec3_sub(sample_point(tr, (uint32_t)i, &t), tr->beam.origin));
+            tr->distance[count] = (float)t;
+            tr->sky_up[count] = sight->up;
+            tr->sky_flat[count] = sight->bias;
+            tr->sky_turn[count] = (uint8_t)((turn + (uint32_t)tr->before + (uint32_t)i - first) % SKY_PAIRS);
         }
-        sight->light = vec3f_madd(sight->light, sight->tone, 1 - (float)hidden / (float)sight->count);
-        if (sight->odd) sight->odd_light = vec3f_madd(sight->odd_light, sight->tone, 1 - (float)odd_hidden / (float)sight->odd);
+    }
+    SkySamples samples = {tr->beam.origin, tr->points, tr->sky_up, tr->sky_flat, tr->distance, tr->sky_turn, tr->hidden, count};
+    if (count) beam_sky(&tr->sky, &tr->shadow, tr->compiled, &samples);
+    for (uint32_t k = 0; k < tr->sight_count; k++) {
+        Sight *s = &tr->sights[k];
+        if (!s->look) continue;
+        float seen = 1, odd_seen = 1;
+        if (sky && vec3f_length(s->up) > 0) shares_seen(tr, s, &seen, &odd_seen);
+        s->light = vec3f_mul(vec3f_madd(s->look->emission, s->look->ambient, seen), s->color);
+        s->odd_light = vec3f_mul(vec3f_madd(s->look->emission, s->look->ambient, odd_seen), s->color);
     }
 }
 
@@ -542,10 +601,7 @@ static double see_pass(BeamTracer *tr, Radiance *out) {
     see_surfaces(tr);
     draw_skins(tr, cells);
     gather_sights(tr);
-    for (uint32_t k = 0; k < tr->sight_count; k++) {
-        Sight *s = &tr->sights[k];
-        if (s->look) s->light = s->odd_light = vec3f_mul(vec3f_add(s->look->ambient, s->look->emission), s->color);
-    }
+    add_ambient(tr);
     for (size_t l = 0; l < tr->compiled->scene->light_count; l++) add_light(tr, &tr->compiled->scene->lights[l]);
     /* Sights come pixel by pixel. */
     double squares = 0;

@@ -178,7 +178,6 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
         if (skin_compile(skins.items[i], out, diags, &out->skins[out->skin_count])) out->skin_count++;
     if (diags->error_count > errors) return COMPILE_FAILED;
     Detail detail = detail_of(scene->settings.detail);
-    if (detail == DETAIL_AUTO && scene->settings.sky_light) detail = DETAIL_VOXELS; /* beams know nothing of the sky */
     CompileStatus status = build_texels(options, detail, diags, out);
     if (status != COMPILE_OK) return status;
     out->skin_tree = tree_over_skins(out);

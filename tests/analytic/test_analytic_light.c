@@ -99,7 +99,7 @@ static void exact_geometry_sees_the_sky(void **state) {
     static char text[8192];
     for (size_t i = 0; i < VTS_ARRAY_COUNT(views); i++) {
         int n = snprintf(text, sizeof text, "%s", GRASS);
-        snprintf(text + n, sizeof text - (size_t)n, FIELD, 6.0, "detail exact sky_light on", 0.5, views[i][0], views[i][1], views[i][2], -1800.0, 0.0, 160.0, 160.0, 0.9);
+        snprintf(text + n, sizeof text - (size_t)n, FIELD, 6.0, "detail exact sky_light on", 0.5 - views[i][1], views[i][0], views[i][1], views[i][2], -1800.0, 0.0, 160.0, 160.0, 0.9);
         double drawn = mean_of(*state, text, false), truth = mean_of(*state, text, true);
         printf("sky on exact grass: %.4f of the reference\n", drawn / truth);
         assert_true(fabs(drawn / truth - 1) < .03);

@@ -438,9 +438,8 @@ static double tolerance_at(const Drawing *d) {
 }
 
 static void draw_texel_at(Drawing *d, const CellFrame *f, const PlacedTexel *placed, int64_t iu, int64_t iv) {
-    int side = 2 * placed->reach + 1;
     TexelCopy copy;
-    if (!texel_copy_near(placed, iu, iv, side * placed->reach + placed->reach, &copy) || !copy.texel->beam) return;
+    if (!texel_copy_of(placed, iu, iv, &copy) || !copy.texel->beam) return;
     int from = 0, to = 0;
     if (copy.texel->beam->cyclic[1]) {
         const double *foot = f->cell->w_foot.c, *tip = f->cell->w_tip.c;
@@ -509,7 +508,7 @@ static bool tiles_of_cell(const SkinCell *cell, int reach, TileRange *r) {
 static void draw_cell(BeamDraft *draft, const CompiledSkin *skin, const SkinCell *cell) {
     CellFrame f;
     Drawing d = {.draft = draft, .skin = skin};
-    if (!frame_cell(&f, draft->beam, cell)) return;
+    if (cell->side == CELL_FLAT || !frame_cell(&f, draft->beam, cell)) return; /* a layer without height holds nothing */
     for (size_t i = 0; i < skin->texel_count; i++) {
         const PlacedTexel *placed = &skin->texels[i];
         TileRange range;

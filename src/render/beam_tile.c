@@ -32,6 +32,7 @@ typedef struct Sight {
     Vec3f normal, flat, bias; /* bias: to add to a place on it so that it lies on the side of the eye */
     const Look *look;     /* NULL: the sky */
     const SurfaceHit *surface;
+    Vec3f view;           /* from the first sample to the eye: across a horizon the pixel's own direction is another side's */
     Vec3f color, light;   /* pigment; what it sends to the eye, so far */
     int odd;              /* how many of its samples have odd numbers, and what these alone see of the light */
     Vec3f odd_light;
@@ -330,11 +331,10 @@ static Vec3f layer_up(const BeamFacet *f) {
     return vec3f_from(vec3_normalize(place.grad_layer));
 }
 
-static void see_facet(BeamTracer *tr, const BeamFacet *f, Vec3 point, double width, Sight *sight) {
+static void see_facet(const BeamFacet *f, Vec3 point, double width, Sight *sight) {
     Vec3 p[3] = {facet_corner(f, 0), facet_corner(f, 1), facet_corner(f, 2)};
     Vec3 normal = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0])), unit = vec3_normalize(normal);
-    Vec3 view = vec3_normalize(vec3_sub(tr->beam.origin, point));
-    if (vec3_dot(unit, view) < 0) unit = vec3_negate(unit);
+    if (vec3f_dot(vec3f_from(unit), sight->view) < 0) unit = vec3_negate(unit);
     sight->up = layer_up(f);
     const Look *own = &f->copy.texel->matter[f->layer].look;
     sight->look = f->placed->look ? f->placed->look : own;
@@ -348,10 +348,10 @@ static void see_facet(BeamTracer *tr, const BeamFacet *f, Vec3 point, double wid
     sight->color = vec3f_mul(color, f->copy.tint);
 }
 
-static void see_explicit(const SeenSurface *seen, Vec3 point, Vec3 view, double width, double t, Sight *sight) {
+static void see_explicit(const SeenSurface *seen, Vec3 point, double width, double t, Sight *sight) {
     const SurfaceHit *hit = &seen->hit;
     Vec3 local = transform_point_back(hit->space, point), local_normal = vec3_normalize(mat3_apply_transposed(&hit->space->linear, hit->normal));
-    double shrink = cbrt(fabs(mat3_determinant(&hit->space->inverse_linear))), facing = fmax(0.05, vec3_dot(hit->normal, view));
+    double shrink = cbrt(fabs(mat3_determinant(&hit->space->inverse_linear))), facing = fmax(0.05, vec3_dot(hit->normal, vec3_from_f(sight->view)));
     sight->look = hit->look;
     sight->surface = hit;
     sight->normal = vec3f_from(hit->normal);
@@ -360,9 +360,13 @@ static void see_explicit(const SeenSurface *seen, Vec3 point, Vec3 view, double 
     sight->color = hit->look->uniform ? hit->look->color : look_color(hit->look, local, local_normal, width / facing * shrink);
 }
 
+static Line sample_line(const BeamTracer *tr, uint32_t i) {
+    return line_at(tr, (double)tr->beam.samples.x[i], (double)tr->beam.samples.y[i]);
+}
+
 static Vec3 sample_point(const BeamTracer *tr, uint32_t i, double *t) {
     const BeamSamples *s = &tr->beam.samples;
-    Line line = line_at(tr, (double)s->x[i], (double)s->y[i]);
+    Line line = sample_line(tr, i);
     *t = distance_of(tr, &line, s->key[i]);
     return vec3_madd(line.origin, line.direction, *t / line.length);
 }
@@ -403,10 +407,11 @@ static void gather_sights(BeamTracer *tr) {
             Vec3 point = sample_point(tr, i, &t);
             sight->t = (float)t;
             sight->point = point;
+            sight->view = vec3f_from(vec3_normalize(vec3_negate(sample_line(tr, i).direction)));
             Cone cone = pixel_cone(tr, pixel);
             double width = cone_diameter(&cone, t);
-            if (s->mark[i]) see_facet(tr, &tr->draft.facets[s->mark[i] - 1], point, width, sight);
-            else see_explicit(surface, point, vec3_negate(cone.direction), width, t, sight);
+            if (s->mark[i]) see_facet(&tr->draft.facets[s->mark[i] - 1], point, width, sight);
+            else see_explicit(surface, point, width, t, sight);
         }
     }
 }
@@ -416,9 +421,9 @@ static void gather_sights(BeamTracer *tr) {
 static float luminance(Vec3f c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
 /* What the light would send to the eye if nothing were in its way. */
-static Vec3f tone_of(const Sight *sight, const Cone *cone, const Light *light, LightRay *ray) {
+static Vec3f tone_of(const Sight *sight, const Light *light, LightRay *ray) {
     *ray = light_ray(light, sight->point);
-    NdfShade shade = sheet_shade(sight->normal, vec3f_from(vec3_negate(cone->direction)), vec3f_from(ray->direction), &sight->look->sheet);
+    NdfShade shade = sheet_shade(sight->normal, sight->view, vec3f_from(ray->direction), &sight->look->sheet);
     if (shade.diffuse <= 0 && shade.highlight <= 0) return vec3f(0, 0, 0);
     return vec3f_mul(shade_tone(&shade, sight->look, sight->color), ray->color);
 }
@@ -503,7 +508,7 @@ static void add_light(BeamTracer *tr, const Light *light) {
         if (!sight->look) continue;
         Cone cone = pixel_cone(tr, sight->pixel);
         LightRay ray;
-        sight->tone = tone_of(sight, &cone, light, &ray);
+        sight->tone = tone_of(sight, light, &ray);
         if (light->shadowless || !(luminance(sight->tone) > 0)) continue;
         count = add_points(tr, sight, &ray, count);
         sight->asked = true;

@@ -145,6 +145,8 @@ typedef struct TexelCopy {
     Vec3f tint; /* 1, 1, 1: none */
 } TexelCopy;
 enum { MOST_REACH = 2, MOST_COPIES = 25 };
+/* The copy that is tile (iu, iv)'s own, wherever it was moved to; false when it has none. */
+bool texel_copy_of(const PlacedTexel *placed, int64_t iu, int64_t iv, TexelCopy *copy);
 /* Candidate k, 0 … (2·reach + 1)² − 1, of the copies whose unit squares may cover some point of tile (iu, iv); false when
  * there is none there. */
 bool texel_copy_near(const PlacedTexel *placed, int64_t iu, int64_t iv, int k, TexelCopy *copy);

@@ -36,7 +36,7 @@ static double chance(const PlacedTexel *placed, int64_t iu, int64_t iv, uint64_t
     return random_unit(random_hash((uint64_t)iu, (uint64_t)iv, what, placed->seed));
 }
 
-static bool make_copy(const PlacedTexel *placed, int64_t iu, int64_t iv, TexelCopy *copy) {
+bool texel_copy_of(const PlacedTexel *placed, int64_t iu, int64_t iv, TexelCopy *copy) {
     const InstanceJitter *jitter = &placed->jitter;
     double share = placed->density * (placed->cyclic || !jitter->present ? 1 : jitter->density);
     if (share < 1 && chance(placed, iu, iv, CHANCE_DENSITY) >= share) return false;
@@ -79,5 +79,5 @@ static bool may_cover(const TexelCopy *copy, int64_t iu, int64_t iv) {
 bool texel_copy_near(const PlacedTexel *placed, int64_t iu, int64_t iv, int k, TexelCopy *copy) {
     int reach = placed->reach, side = 2 * reach + 1;
     int64_t du = k % side - reach, dv = k / side - reach;
-    return make_copy(placed, iu + du, iv + dv, copy) && (reach == 0 || may_cover(copy, iu, iv));
+    return texel_copy_of(placed, iu + du, iv + dv, copy) && (reach == 0 || may_cover(copy, iu, iv));
 }

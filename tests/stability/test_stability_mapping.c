@@ -33,14 +33,14 @@ static void crushed(void **state) {
     try_trials(trials, VTS_ARRAY_COUNT(trials));
 }
 
-/* Matter pressed into a sheet: boxes without volume hold none for rays, and show as a film where triangles are drawn. */
+/* Matter pressed into a sheet: boxes without volume hold none. */
 static void flat(void **state) {
     (void)state;
     static const Trial trials[] = {
         {"no height", GROUND FROM_ABOVE "plane { y, -0.5 } skin { surface { Flat(2) } texel { Leaves(30, 0.12) } mapping { repeat <8, 8> height 0 } }", .003, .001, 0},
         {"height vectors laid flat", GROUND FROM_ABOVE "plane { y, -0.5 } skin { surface { Flat(3) } texel { Leaves(30, 0.12) } mapping { repeat <8, 8> height 0.4 comb <1, -1, 0> } }", .003, .001, 0},
     };
-    try_voxels(trials, VTS_ARRAY_COUNT(trials));
+    try_trials(trials, VTS_ARRAY_COUNT(trials));
 }
 
 static void stretched(void **state) {

@@ -112,11 +112,10 @@ static const MeshData *write_out(SkinScene *s, size_t texel, const Bed *bed, con
     const PlacedTexel *placed = &s->compiled.skins[0].texels[texel];
     size_t most = (size_t)((to - from) * (to - from)) * CONTENT * (size_t)(cuts * cuts);
     Explicit e = {arena_new_array(&s->arena, Vec3, 3 * most), arena_push(&s->arena, most * sizeof *e.triangles), 0, 0, most};
-    int own = ((2 * placed->reach + 1) * (2 * placed->reach + 1)) / 2;
     for (int i = from; i < to; i++)
         for (int j = from; j < to; j++) {
             TexelCopy copy;
-            if (!texel_copy_near(placed, i, j, own, &copy)) continue;
+            if (!texel_copy_of(placed, i, j, &copy)) continue;
             for (int k = 0; k < CONTENT; k++) {
                 Vec3 corner[3];
                 for (int m = 0; m < 3; m++) corner[m] = out_of_copy(&copy, content->corner[k][m]);

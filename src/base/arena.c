@@ -57,13 +57,15 @@ static bool take_spare(Arena *arena, size_t at_least) {
     return true;
 }
 
-static void add_block(Arena *arena, size_t at_least) {
-    if (take_spare(arena, at_least)) return;
+/* Whether its memory is known to be zero: what is made for one large piece comes so from the system, page by page as it is touched. */
+static bool add_block(Arena *arena, size_t at_least) {
+    if (take_spare(arena, at_least)) return false;
+    bool zeroed = at_least > arena->block_size;
     size_t size = size_max(at_least, arena->block_size);
     if (size > SIZE_MAX - sizeof(ArenaBlock)) memory_budget_fail(arena->budget);
     size_t bytes = sizeof(ArenaBlock) + size;
     if (!memory_budget_take(arena->budget, bytes)) memory_budget_fail(arena->budget);
-    ArenaBlock *block = malloc(bytes);
+    ArenaBlock *block = zeroed ? calloc(1, bytes) : malloc(bytes);
     if (!block) {
         memory_budget_give_back(arena->budget, bytes);
         memory_budget_fail(arena->budget);
@@ -74,15 +76,17 @@ static void add_block(Arena *arena, size_t at_least) {
     arena->used = 0;
     arena->total += bytes;
     if (arena->block_size < LARGEST_DOUBLED_BLOCK) arena->block_size *= 2;
+    return zeroed;
 }
 
 void *arena_push(Arena *arena, size_t size) {
     if (size > SIZE_MAX - ALIGNMENT) memory_budget_fail(arena->budget);
     size_t rounded = size == 0 ? ALIGNMENT : (size + ALIGNMENT - 1) & ~(size_t)(ALIGNMENT - 1);
-    if (!arena->block || arena->block->size - arena->used < rounded) add_block(arena, rounded);
+    bool full = !arena->block || arena->block->size - arena->used < rounded;
+    bool zeroed = full && add_block(arena, rounded);
     void *result = arena->block->data + arena->used;
     arena->used += rounded;
-    return memset(result, 0, size);
+    return zeroed ? result : memset(result, 0, size);
 }
 
 void *arena_push_array_(Arena *arena, size_t count, size_t size) {

@@ -137,12 +137,27 @@ Flow run_statement(Eval *ev, Program *program, uint32_t *at, uint32_t end, Sink 
     return run_node(ev, s->node, sink);
 }
 
+static bool block_holds_objects(const Eval *ev, Name block) {
+    Keyword keyword = block ? keyword_of(&ev->keywords, block) : KW_NONE;
+    return keyword == KW_union || keyword == KW_merge || keyword == KW_intersection ||
+           keyword == KW_difference;
+}
+
+/* Where numbers and vectors may follow each other with commas between them. */
+static bool takes_lists(const Eval *ev, const Sink *sink) {
+    if (ev->options->expand_always) return false;
+    return sink->kind == SINK_ARRAY || (sink->kind == SINK_ITEMS && !block_holds_objects(ev, sink->block));
+}
+
 static Flow run_tokens(Eval *ev, const Body *body, Sink *sink) {
     Flow flow = FLOW_NEXT;
     Program *program = eval_program(ev, body->tokens);
     uint64_t outer = ev->body;
+    bool lists = takes_lists(ev, sink);
     ev->body = ++ev->body_count;
     for (uint32_t at = body->begin; at < body->end && flow == FLOW_NEXT;) {
+        if (lists) at = run_literals(ev, body, at, sink);
+        if (at >= body->end || ev->stopped) break;
         ArenaMark mark = arena_mark(&ev->temp);
         uint32_t begin = at;
         flow = run_statement(ev, program, &at, body->end, sink);
@@ -154,7 +169,7 @@ static Flow run_tokens(Eval *ev, const Body *body, Sink *sink) {
         if (ev->stopped) flow = FLOW_STOP;
     }
     ev->body = outer;
-    return flow;
+    return ev->stopped ? FLOW_STOP : flow;
 }
 
 /* The tree of a body that is one statement known from an earlier run, as branches and macros of programs mostly are; else NULL. */
@@ -482,12 +497,6 @@ static void run_value(Eval *ev, const Node *node, Sink *sink) {
         }
     }
     sink_value(ev, sink, v, node->span);
-}
-
-static bool block_holds_objects(const Eval *ev, Name block) {
-    Keyword keyword = block ? keyword_of(&ev->keywords, block) : KW_NONE;
-    return keyword == KW_union || keyword == KW_merge || keyword == KW_intersection ||
-           keyword == KW_difference;
 }
 
 /* Commas separate values; a semicolon ends a directive, which takes it along, and a second one after #declare is let pass. */

@@ -370,6 +370,11 @@ bool eval_has_memory(Eval *ev, size_t more, Span span);
 bool eval_step(Eval *ev, Span span);
 Flow run_loop_guard(Eval *ev, uint64_t *passes, size_t errors, Span span);
 
+/* ---- eval_literal.c ---- */
+/* Gives the sink the numbers and vectors that stand at token `at` of the body, each with a comma or the body's end behind it. Returns the
+ * token to go on with. */
+uint32_t run_literals(Eval *ev, const Body *body, uint32_t at, Sink *sink);
+
 /* ---- eval_sink.c ---- */
 void sink_value(Eval *ev, Sink *sink, Value value, Span span);
 void sink_word(Eval *ev, Sink *sink, const Node *node);

@@ -116,20 +116,51 @@ static bool is_word_start(char c) { return isalpha((unsigned char)c) || c == '_'
 static bool is_word_part(char c) { return isalnum((unsigned char)c) || c == '_'; }
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
+/* Digits as they are read, without the point. */
+typedef struct Decimal {
+    uint64_t digits; /* as a whole number, as long as it is exact */
+    int count;       /* of digits after leading zeros */
+    int after_point;
+} Decimal;
+
+static void take_digits(Lexer *lx, Decimal *d) {
+    for (char c; is_digit(c = lx->text[lx->at]); lx->at++) {
+        d->count += d->count || c != '0';
+        if (d->count <= 18) d->digits = d->digits * 10 + (uint64_t)(c - '0');
+    }
+}
+
+/* Clinger 1990: whole numbers below 2^53 and powers of ten to 10^22 are exact doubles, and so one division of them rounds as it
+ * should. Other numbers are left to strtod(). */
+static bool short_decimal(const Decimal *d, double *out) {
+    static const double powers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                    1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+    if (d->count > 15 || d->after_point > 22) return false;
+    *out = (double)d->digits / powers[d->after_point];
+    return true;
+}
+
 /* number = (digits ["." [digits]] | "." digits) [("e" | "E") ["+" | "-"] [digits]] */
 static void lex_number(Lexer *lx) {
     uint32_t begin = lx->at;
     const char *text = lx->text;
-    while (is_digit(text[lx->at])) lx->at++;
-    if (text[lx->at] == '.') lx->at++;
-    while (is_digit(text[lx->at])) lx->at++;
+    Decimal d = {0};
+    double value;
+    take_digits(lx, &d);
+    if (text[lx->at] == '.') {
+        uint32_t point = ++lx->at;
+        take_digits(lx, &d);
+        d.after_point = (int)size_min(lx->at - point, 1000);
+    }
+    bool simple = short_decimal(&d, &value);
     if (text[lx->at] == 'e' || text[lx->at] == 'E') {
         uint32_t exponent = lx->at + 1;
+        simple = false;
         if (text[exponent] == '+' || text[exponent] == '-') exponent++;
         if (!is_word_part(text[exponent]) || is_digit(text[exponent])) lx->at = exponent;
         while (is_digit(text[lx->at])) lx->at++;
     }
-    push(lx, TOKEN_NUMBER, begin)->as.number = strtod(text + begin, NULL);
+    push(lx, TOKEN_NUMBER, begin)->as.number = simple ? value : strtod(text + begin, NULL);
 }
 
 static void add_utf8(StrBuf *out, unsigned code) {
@@ -291,6 +322,10 @@ static void lex_unknown(Lexer *lx) {
     push(lx, '$', begin);
 }
 
+static bool is_symbol(char c) {
+    return c && strchr(",<>-+*/^!=&|?:.;()[]{}", c);
+}
+
 static void lex_one(Lexer *lx) {
     char c = lx->text[lx->at];
     if (is_digit(c) || (c == '.' && is_digit(lx->text[lx->at + 1])))
@@ -301,14 +336,35 @@ static void lex_one(Lexer *lx) {
         lex_string(lx);
     else if (c == '#')
         lex_directive(lx);
-    else if (strchr("+-*/^!=<>&|?:.,;()[]{}", c))
+    else if (is_symbol(c))
         lex_symbol(lx);
     else
         lex_unknown(lx);
 }
 
+/* Large texts are data. A list that grows by doubling would leave behind as much as it takes, so their tokens are counted first: by
+ * rules that are right for lists of numbers and near enough elsewhere. */
+static size_t expected_tokens(const SourceFile *file) {
+    enum { LARGE_TEXT = 1 << 16 };
+    size_t count = 0;
+    bool within = false; /* a word or a number */
+    if (file->size < LARGE_TEXT) return 0;
+    for (const char *c = file->text, *end = c + file->size; c < end; c++) {
+        bool part = is_word_part(*c) || *c == '.';
+        count += part ? !within : is_symbol(*c);
+        within = part;
+        if (c[0] == '/' && c[1] == '/') {
+            const char *line_end = memchr(c, '\n', (size_t)(end - c));
+            c = line_end ? line_end : end - 1;
+        }
+    }
+    return count + 2;
+}
+
 TokenList *lexer_run(const SourceFile *file, const KeywordTable *keywords, Arena *arena) {
     Lexer lx = {.file = file, .keywords = keywords, .arena = arena, .text = file->text, .size = file->size};
+    lx.tokens.capacity = expected_tokens(file);
+    if (lx.tokens.capacity) lx.tokens.items = arena_new_array(arena, Token, lx.tokens.capacity);
     if (lx.size >= 3 && memcmp(lx.text, "\xEF\xBB\xBF", 3) == 0) lx.at = 3;
     for (skip_blanks(&lx); lx.at < lx.size; skip_blanks(&lx)) lex_one(&lx);
     /* The end is blamed for what is missing: it lies right after the last token, not behind blank lines. */

@@ -100,8 +100,9 @@ void beam_plan_skin(CompiledSkin *skin, bool everything, CompiledScene *compiled
     double width = skin->tile_size * sqrt(MOST_TRIANGLES_A_PIXEL / fmax(triangles, 1));
     double to = cone.spread > 0 ? width / cone.spread : cone.width <= width ? VTS_INFINITY : 0;
     seen_range(skin, view, &nearest, &farthest);
-    if (everything || 0.7 * to >= farthest) to = VTS_INFINITY;
-    if (1.42 * to <= nearest) return;
+    bool out_of_sight = farthest == 0; /* its shadows may be seen */
+    if (everything || out_of_sight || 0.7 * to >= farthest) to = VTS_INFINITY;
+    if (1.42 * to <= nearest && !out_of_sight) return;
     Box3 *boxes = arena_new_array(compiled->arena, Box3, skin->cell_count);
     for (size_t i = 0; i < skin->cell_count; i++) boxes[i] = skin->cells[i].bounds;
     skin->boxes = box_tree_build(boxes, skin->cell_count, compiled->arena);

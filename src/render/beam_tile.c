@@ -50,7 +50,7 @@ struct BeamTracer {
     double squared_error;  /* summed over the pixels of all tiles */
     uint64_t pixel_count;
     uint64_t seed;
-    Tracer volumes;
+    Tracer volumes;        /* empty where no voxels are seen */
     Beam beam;
     Vec3 corner, right, down; /* the line through (x, y): along corner + right·x + down·y, or from there */
     Cone cones[BEAM_TILE * BEAM_TILE]; /* of the pixels */
@@ -85,7 +85,7 @@ BeamTracer *beam_tracer_create(const CompiledScene *compiled, const BeamPlan *pl
     tr->compiled = compiled;
     tr->plan = *plan;
     tr->seed = seed;
-    tracer_init(&tr->volumes, compiled, arena);
+    if (!isinf(compiled->all_exact_to)) tracer_init(&tr->volumes, compiled, arena);
     BeamSamples *s = &tr->beam.samples;
     s->first = arena_new_array(arena, uint32_t, BEAM_TILE * BEAM_TILE + 1);
     s->x = arena_new_array(arena, float, all);
@@ -565,6 +565,7 @@ static void add_ambient(BeamTracer *tr) {
 static bool starts_of(const BeamTracer *tr, const Sight *sight, ConeStart *start) {
     float first = INFINITY;
     start->count = 0;
+    if (isinf(tr->compiled->all_exact_to)) return false;
     for (int i = sight->first; i != NOTHING; i = tr->next[i]) {
         start->factors[start->count++] = tr->fade[i];
         first = float_min(first, tr->fade[i]);

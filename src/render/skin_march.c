@@ -19,7 +19,12 @@ static const double TANGENT_VOXELS = 1;
 
 void skin_march_init_confined(SkinMarch *m, const CompiledSkin *skin, Arena *arena) {
     m->skin = skin;
-    m->tiles = arena_new_array(arena, TileCopies, skin->texel_count * TILES_KEPT);
+    m->tiles_kept = skin->cell_count == 1 ? 1 : TILES_KEPT; /* thousands of them may stand in a scene */
+    m->tiles = arena_new_array(arena, TileCopies, skin->texel_count * (size_t)m->tiles_kept);
+    for (size_t i = 0; i < skin->texel_count; i++) {
+        size_t around = (size_t)(2 * skin->texels[i].reach + 1) * (size_t)(2 * skin->texels[i].reach + 1);
+        for (int k = 0; k < m->tiles_kept; k++) m->tiles[i * (size_t)m->tiles_kept + (size_t)k].copies = arena_new_array(arena, CopyOnWay, around);
+    }
     m->confined = true;
     m->sheets = NULL;
 }
@@ -361,7 +366,7 @@ static int64_t tile_number(double x) { return isfinite(x) ? (int64_t)double_clam
 static TileCopies *copies_at(SkinMarch *m, size_t i, int64_t iu, int64_t iv) {
     const PlacedTexel *placed = &m->skin->texels[i];
     if (placed->alike) iu = iv = 0;
-    TileCopies *tile = &m->tiles[i * TILES_KEPT + (size_t)((iu & 3) | (iv & 3) << 2)];
+    TileCopies *tile = &m->tiles[i * (size_t)m->tiles_kept + ((size_t)((iu & 3) | (iv & 3) << 2) & (size_t)(m->tiles_kept - 1))];
     if (tile->placed == placed && tile->iu == iu && tile->iv == iv) return tile;
     tile->placed = placed;
     tile->iu = iu;

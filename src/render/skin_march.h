@@ -69,7 +69,7 @@ typedef struct TileCopies {
     const PlacedTexel *placed; /* NULL: nothing kept */
     int64_t iu, iv;
     int count;
-    CopyOnWay copies[MOST_COPIES];
+    CopyOnWay *copies; /* room for all that may be around it */
 } TileCopies;
 enum { TILES_KEPT = 16 }; /* by the low bits of iu and iv; they stay from cone to cone, whose neighbours meet the same tiles */
 
@@ -112,7 +112,8 @@ typedef struct SkinMarch {
     bool fitted;          /* span.step is of this cone */
     int coarser;          /* levels above what fits */
     uint32_t number;      /* of the cone and its levels, counted up by each begin */
-    TileCopies *tiles;    /* [texel][TILES_KEPT] */
+    TileCopies *tiles;    /* [texel][tiles_kept] */
+    int tiles_kept;       /* TILES_KEPT, or 1 of a texel that is placed as an object */
     bool confined;        /* to its stretch */
     struct SkinSheets *sheets; /* of a skin that overlaps, else NULL: all else then only says where they begin */
 } SkinMarch;

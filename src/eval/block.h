@@ -55,12 +55,21 @@ typedef struct BlockItem {
     struct { const Object **items; size_t count, capacity; } objects; /* ITEM_OBJECTS; each says itself where it stands */
 } BlockItem;
 
+/* A float or a vector of a long list. */
+typedef struct ListedNumber {
+    Span span;
+    uint32_t size; /* 1 to 3 */
+    double components[3]; /* of a float three times the same */
+} ListedNumber;
+
 struct EvalBlock {
     Name word;       /* the keyword before the brace */
     Span word_span;
     Span span;       /* from the keyword to the closing brace */
     const BlockItem *items;
     size_t count;
+    const ListedNumber *numbers; /* NULL, or instead of items: a list of a mesh that holds nothing else */
+    size_t number_count;
     Name outer;       /* the word of the block in which this one stands, or NULL */
     Name declared_as; /* the name of `#declare Name = texel { … }` when the block is its whole right side; else NULL */
 };
@@ -80,6 +89,9 @@ typedef struct BuildContext {
     bool names_missing;  /* an include was not found: what it declares is missing, without a word */
     void *eval;          /* for the evaluator itself */
 } BuildContext;
+
+/* The same block with items; what they point to lives as long as both. Readers do this by themselves. */
+const EvalBlock *block_with_items(Arena *arena, const EvalBlock *block);
 
 /* A copy with all its items that lives as long as `arena`: for what stays a block. */
 const EvalBlock *block_keep(Arena *arena, const EvalBlock *block);

@@ -39,7 +39,26 @@ static const Vec3 *read_vectors(Reader *reader, const char *what, size_t *count)
     return vectors;
 }
 
+/* Likewise, of a list in which nothing is wrong; NULL where something is, which the slower way tells. */
+static const Vec3 *listed_vectors(Reader *reader, const EvalBlock *body, size_t *count) {
+    const ListedNumber *n = body->numbers;
+    if (!n || n->size != 1 || n->components[0] != (double)(body->number_count - 1)) return NULL;
+    ArenaMark mark = arena_mark(reader->context->arena);
+    *count = body->number_count - 1;
+    Vec3 *vectors = arena_new_array(reader->context->arena, Vec3, *count);
+    for (size_t i = 0; i < *count; i++) {
+        const double *c = (++n)->components;
+        vectors[i] = vec3(c[0], c[1], c[2]);
+        if (vec3_is_finite(vectors[i])) continue;
+        arena_reset_to(reader->context->arena, mark);
+        return NULL;
+    }
+    return vectors;
+}
+
 const Vec3 *vectors_read(Reader *reader, const EvalBlock *body, const char *what, size_t *count) {
+    const Vec3 *listed = listed_vectors(reader, body, count);
+    if (listed) return listed;
     Reader inner = reader_nested(reader, body);
     const Vec3 *vectors = read_vectors(&inner, what, count);
     reader_end_nested(reader, &inner);
@@ -164,14 +183,47 @@ typedef struct FaceList {
     size_t count;
 } FaceList;
 
+/* A vector of indices, or false. */
+static bool listed_triangle(const ListedNumber *n, double limit, Triangle out) {
+    for (int i = 0; i < 3; i++) {
+        double index = n->components[i];
+        if (!(index >= 0 && index < limit && index == floor(index))) return false;
+        out[i] = (uint32_t)index;
+    }
+    return n->size > 1;
+}
+
+/* read_faces() of a list in which nothing is wrong; false where something is, which the slower way tells. */
+static bool listed_faces(Reader *reader, const EvalBlock *body, size_t limit, size_t texture_limit, FaceList *out) {
+    const ListedNumber *n = body->numbers, *end = n + body->number_count;
+    if (!n || n->size != 1 || !(n->components[0] >= 0 && n->components[0] < (double)body->number_count)) return false;
+    size_t count = (size_t)n->components[0], found = 0;
+    if ((double)count != n->components[0]) return false;
+    Triangle *triangles = arena_push_array_(reader->context->arena, count, sizeof(Triangle));
+    uint32_t *textures = NULL;
+    for (n++; n < end && found < count; found++) {
+        if (!listed_triangle(n++, (double)limit, triangles[found])) return false;
+        for (int i = 0; n < end && n->size == 1; i++, n++) {
+            double index = n->components[0];
+            if (!(index >= 0 && index < (double)texture_limit)) return false;
+            if (!textures) textures = arena_new_array(reader->context->arena, uint32_t, count);
+            if (i == 0) textures[found] = (uint32_t)index;
+        }
+    }
+    if (n < end || found < count) return false;
+    *out = (FaceList){.triangles = triangles, .count = count, .textures = textures};
+    return true;
+}
+
 static bool read_faces(Reader *parent, const EvalBlock *body, const char *what, size_t limit,
                        size_t texture_limit, FaceList *out) {
+    if (listed_faces(parent, body, limit, texture_limit, out)) return true;
     Reader reader = reader_nested(parent, body);
     bool used = false;
     if (stated_count(&reader, "triangles", &out->count)) {
-        if (out->count > body->count) /* before memory is taken for a slip of the keyboard */
+        if (out->count > reader.block->count) /* before memory is taken for a slip of the keyboard */
             reader_error(&reader, body->word_span, "'%s' announces %zu triangles, but at most %zu follow",
-                         body->word->text, out->count, body->count - 1);
+                         body->word->text, out->count, reader.block->count - 1);
         out->triangles =
             arena_push_array_(parent->context->arena, reader.failed ? 0 : out->count, sizeof(Triangle));
         out->textures = arena_new_array(parent->context->arena, uint32_t, reader.failed ? 0 : out->count);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 Reader reader_begin(BuildContext *context, const EvalBlock *block) {
+    if (block && block->numbers) block = block_with_items(context->arena, block);
     return (Reader){.context = context, .block = block};
 }
 

@@ -10,14 +10,40 @@ static bool gathers(Name word) {
     return false;
 }
 
+/* Blocks of which mesh2 and surfaces read the numbers as they are. */
+static bool lists(Name word) {
+    static const char *const words[] = {"vertex_vectors", "normal_vectors", "uv_vectors",     "height_vectors",
+                                        "w_vectors",      "face_indices",   "normal_indices", "uv_indices"};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(words); i++)
+        if (strcmp(words[i], word->text) == 0) return true;
+    return false;
+}
+
 const EvalBlock *eval_block_items(Eval *ev, Name word, Span word_span, Span span, const Body *body) {
     ItemList items = {0};
-    Sink sink = {.kind = SINK_ITEMS, .block = word, .gathers = gathers(word), .items = &items};
+    Sink sink = {.kind = SINK_ITEMS, .block = word, .gathers = gathers(word), .lists = lists(word), .items = &items};
     run_body(ev, body, &sink);
     EvalBlock *block = arena_new(&ev->blocks, EvalBlock);
     *block = (EvalBlock){
         .word = word, .word_span = word_span, .span = span, .items = items.items, .count = items.count};
+    block->numbers = sink.numbers.items;
+    block->number_count = sink.numbers.count;
     return block;
+}
+
+const EvalBlock *block_with_items(Arena *arena, const EvalBlock *from) {
+    EvalBlock *to = arena_copy(arena, from, sizeof *from);
+    BlockItem *items = arena_new_array(arena, BlockItem, from->number_count);
+    for (size_t i = 0; i < from->number_count; i++) {
+        const ListedNumber *n = &from->numbers[i];
+        Value v = {.kind = VALUE_VECTOR, .size = (uint8_t)n->size, .as.components = n->components};
+        if (n->size == 1) v = value_float(n->components[0]);
+        items[i] = (BlockItem){.kind = ITEM_VALUE, .span = n->span, .value = v};
+    }
+    to->items = items;
+    to->count = from->number_count;
+    to->numbers = NULL;
+    return to;
 }
 
 static Value keep_value(Arena *arena, Value v) {
@@ -29,6 +55,7 @@ static Value keep_value(Arena *arena, Value v) {
 const EvalBlock *block_keep(Arena *arena, const EvalBlock *from) {
     if (!from) return NULL;
     EvalBlock *to = arena_copy(arena, from, sizeof *from);
+    if (from->numbers) to->numbers = arena_copy(arena, from->numbers, from->number_count * sizeof *from->numbers);
     BlockItem *items = arena_new_array(arena, BlockItem, from->count);
     for (size_t i = 0; i < from->count; i++) {
         items[i] = from->items[i];

@@ -45,7 +45,28 @@ static bool joins_objects(Eval *ev, const Sink *sink, const Value *v) {
     return true;
 }
 
+/* A list keeps its numbers without an item each. */
+static bool joins_list(Eval *ev, Sink *sink, const Value *v, Span span) {
+    if (!sink->lists || (v->kind != VALUE_FLOAT && v->kind != VALUE_VECTOR) || v->size > 3) return false;
+    ListedNumber *n = list_push(&ev->blocks, &sink->numbers);
+    *n = (ListedNumber){.span = span, .size = v->kind == VALUE_FLOAT ? 1 : v->size};
+    for (int i = 0; i < 3; i++) n->components[i] = value_component(v, i);
+    return true;
+}
+
+/* Something else stands in it: from here on it is a block like others. */
+static void unlist(Eval *ev, Sink *sink) {
+    sink->lists = false;
+    if (sink->numbers.count == 0) return;
+    const EvalBlock list = {.numbers = sink->numbers.items, .number_count = sink->numbers.count};
+    const EvalBlock *block = block_with_items(&ev->blocks, &list);
+    *sink->items = (ItemList){(BlockItem *)(uintptr_t)block->items, block->count, block->count};
+    sink->numbers = (NumberList){0};
+}
+
 static void add_item(Eval *ev, Sink *sink, Value v, Span span) {
+    if (joins_list(ev, sink, &v, span)) return;
+    unlist(ev, sink);
     v = keep(ev, v);
     if (joins_objects(ev, sink, &v)) return;
     if (continues_word(ev, sink, &v))
@@ -194,6 +215,7 @@ void sink_word(Eval *ev, Sink *sink, const Node *node) {
         sink->filled = sink->filled || sink->kind == SINK_SINGLE;
         return;
     }
+    unlist(ev, sink);
     bool ok = true;
     BlockItem item = {.kind = ITEM_WORD,
                       .span = node->span,
@@ -225,6 +247,7 @@ void sink_entry(Eval *ev, Sink *sink, const Node *node) {
         diag_error(ev->diags, node->span, "[ … ] has no meaning here");
         return;
     }
+    unlist(ev, sink);
     BlockItem item = {.kind = ITEM_ENTRY, .span = node->span};
     item.entry = eval_block_items(ev, sink->block, node->span, node->span, node->as.block.body);
     *list_push(&ev->blocks, sink->items) = item;

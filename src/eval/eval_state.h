@@ -79,11 +79,18 @@ typedef struct ItemList {
     size_t count, capacity;
 } ItemList;
 
+typedef struct NumberList {
+    ListedNumber *items;
+    size_t count, capacity;
+} NumberList;
+
 typedef struct Sink {
     SinkKind kind;
     Name block;         /* SINK_ITEMS */
     ItemList *items;    /* SINK_ITEMS */
     bool gathers;       /* SINK_ITEMS: a block of objects, of which there may be very many */
+    bool lists;         /* SINK_ITEMS: a list of a mesh, with nothing but numbers so far */
+    NumberList numbers; /* SINK_ITEMS: these */
     uint64_t word_body; /* SINK_ITEMS: the run of a body that brought the last word */
     Value value;        /* SINK_SINGLE */
     bool filled;

@@ -8,6 +8,8 @@
 
 #include "lexer/lexer.h"
 
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct Lexed {
@@ -55,6 +57,55 @@ static void test_numbers(void **state) {
     assert_true(at(&l, 0)->as.number == 1 && at(&l, 1)->as.number == 2 && at(&l, 2)->as.number == 3);
     assert_int_equal(at(&l, 3)->kind, TOKEN_WORD);
     arena_destroy(&l.arena);
+}
+
+/* Short decimals have a way of their own, which must round as strtod() does. */
+static void test_decimals(void **state) {
+    (void)state;
+    static const char *const texts[] = {"0.1",
+                                        "0.30000000000000004",
+                                        "9007199254740993",
+                                        "9007199254740992.5",
+                                        "123456789012345",
+                                        "999999999999999.9",
+                                        "0.0000000000000000000001",
+                                        "0.00000000000000000000012345",
+                                        "000000000000000000000000000.5",
+                                        "100000000000000000000000",
+                                        "0.000000000000000000000000000",
+                                        "1e22",
+                                        "1.7976931348623157e308",
+                                        "4.9e-324"};
+    char text[64];
+    uint64_t seed = 1;
+    for (size_t i = 0; i < 20000; i++) {
+        seed = seed * 6364136223846793005u + 1442695040888963407u;
+        int digits = (int)(seed >> 60) + 1;
+        snprintf(text, sizeof text, "%.*f", digits, (double)(seed >> 20 & 0xFFFFFFFF) / (double)(1 + (seed & 0xFFFFF)));
+        const char *t = i < VTS_ARRAY_COUNT(texts) ? texts[i] : text;
+        Lexed l;
+        lex(&l, t);
+        assert_int_equal(l.list->count, 2);
+        assert_true(at(&l, 0)->as.number == strtod(t, NULL));
+        arena_destroy(&l.arena);
+    }
+}
+
+/* Tokens of large texts are counted beforehand, by rules that other texts than lists of numbers break. */
+static void test_large_text(void **state) {
+    (void)state;
+    static const char *const parts[] = {"<1.5,-2,.3>,", "A.x.y.z+", "\"a, b\"", "/* a.b */", "1.2.3.4 ", "x=y ", "// a, b c\n"};
+    static const uint32_t tokens[] = {9, 8, 1, 0, 3, 3, 0};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(parts); i++) {
+        enum { TIMES = 20000 };
+        StrBuf text = {0};
+        for (int k = 0; k < TIMES; k++) strbuf_adds(&text, parts[i]);
+        Lexed l;
+        lex(&l, text.data);
+        assert_int_equal(l.list->count, TIMES * tokens[i] + 1);
+        arena_destroy(&l.arena);
+        strbuf_free(&text);
+    }
 }
 
 static void test_strings(void **state) {
@@ -145,6 +196,8 @@ static void test_garbage_is_kept_for_the_parser(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_numbers),
+        cmocka_unit_test(test_decimals),
+        cmocka_unit_test(test_large_text),
         cmocka_unit_test(test_strings),
         cmocka_unit_test(test_comments_and_directives),
         cmocka_unit_test(test_keywords_are_reserved_and_others_not),

@@ -1,9 +1,8 @@
 /* How exact the mapping of skins is: inversion of prisms and hexahedra, folded ones too; what a chord, and a quadratic through the middle,
  * miss of a ray's curved way through texture space; rays aimed at edges and vertices, whose ways through the layer must be as long as
- * geometry says. `bench/bench_mapping [rays]`. */
-#include "../tests/unit/skin_scenes.h"
+ * geometry says. `bench/bench_mapping [rays [boxes [ways]]]`. */
+#include "../tests/unit/mapping_measures.h"
 #include "base/stopwatch.h"
-#include "render/skin_fold.h"
 #include "render/skin_walk.h"
 
 #include <stdio.h>
@@ -128,9 +127,40 @@ static void leaks_of_hexahedra(uint64_t rays) {
     skin_scene_end(&s);
 }
 
+/* ---- places and ways ---- */
+
+static double percent(uint64_t part, uint64_t whole) { return 100 * (double)part / (double)whole; }
+
+static void places(bool triangle, uint64_t boxes) {
+    static const double kinds[][2] = {{.1, .3}, {.5, .3}, {.5, 1}, {1, 1}, {1.5, 2}};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(kinds); i++) {
+        double start = stopwatch_cpu();
+        PlaceCounts c = measure_places(triangle, kinds[i][0], kinds[i][1], boxes, 1 + i);
+        printf("%s, spread %.1f, height %.1f: %llu boxes, %.1f %% folded, %.2f %% of points in several places; missed %llu, and on folds (|det J| "
+               "< 1e-4) %llu; Newton's method alone: %.2f steps, %.2f %% fail, %.2f %% wrong, %llu of either in unfolded boxes; %.1f s\n",
+               triangle ? "prisms" : "hexahedra", kinds[i][0], kinds[i][1], (unsigned long long)c.boxes, percent(c.folded, c.boxes),
+               percent(c.several, c.boxes), (unsigned long long)c.missed, (unsigned long long)c.missed_on_folds, c.newton_steps,
+               percent(c.newton_fails, c.boxes), percent(c.newton_wrong, c.boxes), (unsigned long long)c.wrong_unfolded, stopwatch_cpu() - start);
+    }
+}
+
+static void ways(size_t prisms) {
+    static const double kinds[][2] = {{.1, .3}, {.3, .3}, {.5, .5}, {.5, 1}};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(kinds); i++) {
+        WayErrors e = measure_ways(prisms, kinds[i][0], kinds[i][1], 11 + i);
+        printf("spread %.1f, height %.1f, %zu ways, off by voxels of 128^3 (median / 95 %%):", kinds[i][0], kinds[i][1], e.ways);
+        for (int k = 0; k < MEASURE_WAYS; k++) printf("%s %s %.3f / %.3f", k ? "," : "", measure_way_names[k], e.median[k], e.percentile_95[k]);
+        printf("\n");
+    }
+}
+
 int main(int argc, char **argv) {
-    uint64_t rays = argc > 1 ? strtoull(argv[1], NULL, 10) : 1000000;
+    uint64_t rays = argc > 1 ? strtoull(argv[1], NULL, 10) : 1000000, boxes = argc > 2 ? strtoull(argv[2], NULL, 10) : 1000000;
+    size_t prisms = argc > 3 ? strtoull(argv[3], NULL, 10) : 2000;
     leaks_of_prisms(rays / 2);
     leaks_of_hexahedra(rays / 2);
+    places(true, boxes / 5);
+    places(false, boxes / 500);
+    ways(prisms);
     return 0;
 }

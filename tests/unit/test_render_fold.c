@@ -1,7 +1,5 @@
 /* Folded boxes: all places of a point, the sign of det J over a box, pieces of rays; and that the two roads agree. */
-#include "skin_scenes.h"
-
-#include "render/skin_fold.h"
+#include "mapping_measures.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -119,8 +117,34 @@ static void pieces_are_as_many_as_places(void **state) {
     assert_true(different <= asked / 100);
 }
 
+/* What Newton's method alone makes of the same points: the cubic and the subdivision are not there for nothing. */
+static void newton_alone_goes_astray(void **state) {
+    (void)state;
+    PlaceCounts mild = measure_places(true, .5, .3, 20000, 1), wild = measure_places(true, 1.5, 2, 20000, 2), cubes = measure_places(false, 1.5, 2, 300, 3);
+    printf("Newton's method alone: %.2f steps in prisms that do not fold, %.2f in wild ones, of whose points it finds %.1f %% elsewhere\n",
+           mild.newton_steps, wild.newton_steps, 100 * (double)wild.newton_wrong / (double)wild.boxes);
+    assert_true(mild.folded == 0 && mild.newton_steps < 4 && mild.wrong_unfolded == 0 && mild.several == 0);
+    assert_true(wild.newton_wrong > wild.boxes / 20);
+    assert_true(mild.missed == 0 && wild.missed == 0 && cubes.missed == 0);
+}
+
+/* Chords miss whole voxels, quadratics a fraction of one. */
+static void ways_are_true_to_a_fraction_of_a_voxel(void **state) {
+    (void)state;
+    enum { CHORD, QUADRATIC, STRAIGHT, BOX, EXACT };
+    WayErrors mild = measure_ways(200, .3, .3, 1), wild = measure_ways(200, .5, .5, 2);
+    for (int k = 0; k < MEASURE_WAYS; k++)
+        printf("%s is off by %.3f and %.3f voxels in the middle, %.3f and %.3f at 95 %%\n", measure_way_names[k], mild.median[k], wild.median[k],
+               mild.percentile_95[k], wild.percentile_95[k]);
+    assert_true(mild.ways > 150 && wild.ways > 150);
+    assert_true(wild.percentile_95[CHORD] > 2 && fabs(wild.percentile_95[STRAIGHT] / wild.percentile_95[CHORD] - 1) < .05);
+    assert_true(wild.percentile_95[BOX] < .3 && wild.percentile_95[BOX] <= wild.percentile_95[QUADRATIC] && mild.percentile_95[BOX] < .1);
+    assert_true(wild.percentile_95[EXACT] < .01);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_place_of_a_point_is_found), cmocka_unit_test(folds_are_decided),
-                                       cmocka_unit_test(pieces_are_as_many_as_places)};
+                                       cmocka_unit_test(pieces_are_as_many_as_places), cmocka_unit_test(newton_alone_goes_astray),
+                                       cmocka_unit_test(ways_are_true_to_a_fraction_of_a_voxel)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,6 +14,8 @@ static const double LAYER_STEP = 0.3;
 static const double SPAN_TILES = 1.0, SPAN_BEND_VOXELS = 1;
 /* Steps are shorter by this where the cone is thinner than the finest voxels. */
 static const float NEAR_STEP = 0.5f;
+/* Of this mean gamma on, that of solids not counted, steps are halved. */
+static const float SHEET_GAMMA = 0.85f;
 /* Empty way is looked for along the tangent as far as the path stays this near to it, in voxels. */
 static const double TANGENT_VOXELS = 1;
 
@@ -484,7 +486,7 @@ static Sym3f to_world(const Sym3f *s, const TexelCopy *copy, const TexturePlace 
 typedef struct StepSample {
     double t0, t1;
     Vec3 middle, difference; /* texture coordinates */
-    float depth, area, gamma_area;
+    float depth, area, gamma_area, sheet_area;
 } StepSample;
 
 /* Directions over the hemisphere about y, each for the same solid angle: two rings at the middles of equal heights. */
@@ -534,6 +536,7 @@ static void sample_copy(SkinMarch *m, size_t i, const CopyOnWay *on_way, StepSam
         float area = opacity_area(&v, along);
         step->area += area;
         step->gamma_area += area * (v.gamma + v.solid * (1 - v.gamma)); /* walls of solids are sheets */
+        step->sheet_area += area * v.gamma * (1 - v.solid);
         if (!m->shade || out->hit_count == MOST_MATTER_HITS) continue;
         MatterHit *hit = &out->hits[out->hit_count++];
         *hit = (MatterHit){.matter = &texel->matter[k], .look = placed->look ? placed->look : &texel->matter[k].look,
@@ -563,6 +566,7 @@ static void sample(SkinMarch *m, double t0, double t1, SkinSegment *out) {
     out->depth = step.depth;
     out->area = step.area;
     out->gamma_area = step.gamma_area;
+    out->sheet_area = step.sheet_area;
     out->transmittance = step.depth > 0 ? expf(-step.depth) : 1;
     out->voxel_world = span->voxel_world;
 }
@@ -572,6 +576,11 @@ void skin_march_coarsen(SkinMarch *m, int levels) {
     m->coarser = levels;
     m->number++; /* what was known to be empty need not be with wider voxels */
     if (m->inside || m->t < m->span.t1) fit_span(m, &m->span.place, (m->span.t0 + m->span.t1) / 2, &m->span);
+}
+
+/* A sheet is blurred over two voxels, and most of its opacity over one: samples a step apart may both miss that. */
+static bool misses_sheets(const SkinSegment *segment) {
+    return segment->transmittance < 1 && segment->sheet_area > SHEET_GAMMA * segment->area;
 }
 
 bool skin_march_next(SkinMarch *m, SkinSegment *segment) {
@@ -602,6 +611,10 @@ bool skin_march_next(SkinMarch *m, SkinSegment *segment) {
         m->t = t1;
         m->counters->steps++;
         sample(m, t0, t1, segment);
+        if (misses_sheets(segment) && t1 - t0 > 0.75 * m->span.step) {
+            m->t = (t0 + t1) / 2;
+            sample(m, t0, m->t, segment);
+        }
         if (segment->transmittance >= 1) continue;
         return true;
     }

@@ -51,6 +51,7 @@ typedef struct SkinSegment {
     float depth;          /* −ln of it */
     float area;           /* of matter as seen along the cone, for each unit of area across it; some of it hides behind other */
     float gamma_area;     /* area weighted by gamma, texel.h's: whether it is one sheet or many pieces */
+    float sheet_area;     /* the same without walls and insides of solids */
     float voxel_world;    /* side of the voxels used, in scene units, along the cone */
     MatterHit hits[MOST_MATTER_HITS];
     int hit_count;

@@ -120,7 +120,36 @@ void voxel_cell_merge(VoxelCell *parent, const VoxelCell *child, const VoxelMerg
     for (int axis = 0; axis < 3; axis++) merge_rays(parent, child, step, corner, axis);
 }
 
+/* How many times the same sheet lies in the cell: 1 unless its matter is flat, and each ray that meets any meets as many, all of which
+ * face one way if they are walls. What repeats itself, or is modelled twice, may lie upon itself; nobody can see more than one. */
+static float count_coincident(const VoxelCell *cell) {
+    static const double FLAT = 0.05;
+    static const float WHOLE = 0.02f;
+    int axis = 0;
+    for (int k = 1; k < 3; k++)
+        if (cell->met[k] > cell->met[axis]) axis = k;
+    float rays = (float)count_bits(cell->cover[axis]), met = cell->met[axis], times = rays > 0 ? rintf(met / rays) : 1;
+    if (times < 2 || fabsf(met - times * rays) > WHOLE * met) return 1;
+    if (cell->solid > 0 && (cell->sheet > 0 || fabsf(cell->net[axis]) < (1 - WHOLE) * met)) return 1;
+    double m[6], s[3];
+    normal_matrix(cell, m, s);
+    return s[1] < FLAT * s[0] ? times : 1;
+}
+
+static void take_once(VoxelCell *cell, float times) {
+    cell->sheet /= times;
+    cell->solid /= times;
+    cell->walls /= times;
+    for (int i = 0; i < 6; i++) cell->normals[i] /= times;
+    for (int axis = 0; axis < 3; axis++) {
+        cell->met[axis] /= times;
+        if (cell->solid > 0) cell->inside[axis] = cell->cover[axis];
+    }
+}
+
 void voxel_cell_close_finest(VoxelCell *cell) {
+    float times = count_coincident(cell);
+    if (times > 1) take_once(cell, times);
     for (int axis = 0; axis < 3; axis++) cell->met[axis] /= 64;
     for (int axis = 0; axis < 3; axis++) cell->single += (float)count_bits(cell->inside[axis]);
     cell->apart = cell->walls;
@@ -249,28 +278,38 @@ static float fit_alone(const AxisLight *light, float density) {
 }
 
 /* Walls before the inside of a solid, which stops the light, only smooth its outline: at full strength they would fatten it by nearly
- * half a voxel all around. Thin solids have no inside; a ray meets both walls, and at full strength each would count twice. */
-static const float BACKED_WALL = -0.43f, THIN_WALL = 0.6f;
+ * half a voxel all around. Thin solids have no inside; a ray meets both walls, and at full strength each would count twice. Flat walls whose inside no voxel
+ * of their level stands for, as those of a floor that is half a voxel thick, are sheets. */
+static const float BACKED_WALL = -0.43f, THIN_WALL = 0.6f, MOSTLY_THICK = 0.2f;
+
+/* 1 where all faces one way, 0 for an eighth of a sphere and what is rounder. */
+static float flatness(const VoxelCell *cell) {
+    static const float ROUND = 0.6f;
+    const float *n = cell->normals;
+    float trace = n[0] + n[1] + n[2];
+    float squares = n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + 2 * (n[3] * n[3] + n[4] * n[4] + n[5] * n[5]);
+    return trace > 0 ? float_clamp((squares / (trace * trace) - ROUND) / (1 - ROUND), 0, 1) : 0;
+}
 
 /* Sheets go on into the next voxels; thin solids and clumps end in this one. */
 static float fit_gamma(const VoxelCell *cell, const VoxelSurround *around, const AxisLight *light,
-                       float density, float thin) {
+                       float density, float thin, bool backed) {
     float sheet = fit_sheet(light), alone = fit_alone(light, density),
           solid = cell->solid / (cell->solid + cell->sheet);
     float ending = sheet > 0 ? float_min(THIN_WALL * sheet, alone) : float_min(alone, 0);
     float whole = sheet > 0 ? sheet * fit_continuation(cell, around) : ending;
-    float wall = BACKED_WALL + thin * (ending - BACKED_WALL);
+    float thick = BACKED_WALL + (backed ? 0 : flatness(cell) * (whole - BACKED_WALL)), wall = thick + thin * (ending - thick);
     return whole + solid * (wall - whole);
 }
 
 VoxelMatter voxel_cell_matter(const VoxelCell *cell, const VoxelSurround *around, const float sides[3],
-                              float side, float thin) {
+                              float side, float thin, bool backed) {
     VoxelMatter matter = {.root = unit_root(cell)};
     float area = cell->sheet + cell->solid * (1 - 0.5f * thin);
     /* Cauchy: an area is seen as half of itself, on the mean over directions. */
     matter.density = area / (2 * sides[0] * sides[1] * sides[2]) * side;
     AxisLight light = axis_light(cell, &matter.root, matter.density, sides, side);
-    matter.gamma = fit_gamma(cell, around, &light, matter.density, thin);
-    matter.wall = thin < 0.05f && cell->solid > cell->sheet;
+    matter.gamma = fit_gamma(cell, around, &light, matter.density, thin, backed);
+    matter.wall = backed && thin < MOSTLY_THICK && cell->solid > cell->sheet;
     return matter;
 }

@@ -14,6 +14,7 @@ typedef struct VoxelCell {
     float normals[6];   /* sum of area · n nᵗ: xx yy zz xy xz yz. With TEXEL_FILTER_PUBLISHED, in an open merged cell: sum of area · Q⁻¹ */
     float fill;         /* the share of it that lies within solids, of the finest voxels' middles */
     float met[3];       /* how often the rays along an axis met anything, on the mean over them */
+    float net[3];       /* until the finest cell is closed: walls that its rays left a solid by, less those that they entered by */
     float walls;        /* walls that the finest level's rays met in the cell */
     float single;       /* of these, without the other one of their pair in the cell */
     float
@@ -66,10 +67,10 @@ typedef struct VoxelSurround {
     const VoxelCell *near[3][2];
 } VoxelSurround;
 
-/* sides: lengths of the cell; side: the length h that opacity.h is told; thin: the parent's thinness. The two walls of a
- * thin solid count once. */
+/* sides: lengths of the cell; side: the length h that opacity.h is told; thin: the parent's thinness; backed: the cell or one around it is
+ * the inside of a solid. The two walls of a thin solid count once. */
 VoxelMatter voxel_cell_matter(const VoxelCell *cell, const VoxelSurround *around, const float sides[3],
-                              float side, float thin);
+                              float side, float thin, bool backed);
 /* Square root of the S of a cell within a solid: as the walls around it are turned, rounded so that it is seen from everywhere. */
 Sym3f voxel_cell_root_inside(const VoxelCell *parent);
 

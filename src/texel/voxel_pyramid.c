@@ -45,6 +45,37 @@ static void fill_finest(const Pyramid *p, const int at[3], VoxelCell *cells) {
         }
 }
 
+/* Whether the middle of a voxel lies within a solid; what is cut off at the border goes on there. */
+static bool is_filled(const Pyramid *p, const int voxel[3]) {
+    int at[3];
+    for (int k = 0; k < 3; k++) {
+        int size = p->layer->level[0].size[k];
+        at[k] = p->layer->cyclic[k] ? (voxel[k] + size) % size : int_clamp(voxel[k], 0, size - 1);
+    }
+    return voxel_fill_column(p->fill, at[0], at[1], at[2]) & 1;
+}
+
+/* Whether all is filled around a voxel, across the walls in it. */
+static bool is_hidden(const Pyramid *p, const int voxel[3], const VoxelCell *cell) {
+    static const float FACING = 0.02f; /* share of the area that turns to an axis */
+    float trace = cell->normals[0] + cell->normals[1] + cell->normals[2];
+    int reach[3], by[3];
+    for (int k = 0; k < 3; k++) reach[k] = cell->normals[k] > FACING * trace;
+    for (by[2] = -reach[2]; by[2] <= reach[2]; by[2]++)
+        for (by[1] = -reach[1]; by[1] <= reach[1]; by[1]++)
+            for (by[0] = -reach[0]; by[0] <= reach[0]; by[0]++)
+                if (!is_filled(p, (const int[3]){voxel[0] + by[0], voxel[1] + by[1], voxel[2] + by[2]})) return false;
+    return true;
+}
+
+/* Walls and sheets within solids, as where solids reach into each other or into their own copies: no ray comes there. */
+static void drop_hidden(const Pyramid *p, const int at[3], VoxelCell *cells) {
+    for (int i = 0; i < BRICK_VOXELS; i++) {
+        const int voxel[3] = {at[0] * BRICK_SIDE + (i & 7), at[1] * BRICK_SIDE + (i >> 3 & 7), at[2] * BRICK_SIDE + (i >> 6)};
+        if (cells[i].fill > 0 && !voxel_cell_is_empty(&cells[i]) && is_hidden(p, voxel, &cells[i])) cells[i] = (VoxelCell){.fill = 1};
+    }
+}
+
 static void close_cells(VoxelCell *cells, int level, TexelFiltering filtering) {
     for (int i = 0; i < BRICK_VOXELS; i++) {
         if (voxel_cell_is_empty(&cells[i])) continue;
@@ -167,9 +198,10 @@ static VoxelSurround look_around(const BrickBlock *block, const int brick[3], co
 
 /* Where a solid is so thin that no voxel lies within it as a whole, those that nearly do stand for its inside; their little area is
  * left out. At fine levels the share that is inside is known too roughly for that. */
+enum { LEAST_LEVEL = 2 };
+static const float NEARLY_INSIDE = 0.95f;
+
 static bool is_inside(const BrickBlock *block, int level, const int brick[3], const VoxelCell *cells, int i) {
-    enum { LEAST_LEVEL = 2 };
-    static const float NEARLY_INSIDE = 0.95f;
     if (voxel_cell_is_empty(&cells[i])) return voxel_cell_is_inside(&cells[i]);
     if (level < LEAST_LEVEL || cells[i].fill < NEARLY_INSIDE) return false;
     for (int side = 0; side < 27; side++) {
@@ -180,6 +212,20 @@ static bool is_inside(const BrickBlock *block, int level, const int brick[3], co
         if (near && voxel_cell_is_inside(near)) return false;
     }
     return true;
+}
+
+/* Whether the wall of a solid has a voxel of its inside beside it, or may have one that is not known. */
+static bool is_backed(const BrickBlock *block, int level, const int brick[3], const VoxelCell *cell, int i) {
+    if (!(cell->solid > 0)) return false;
+    for (int side = 0; side < 27; side++) {
+        int at[3] = {brick[0] * BRICK_SIDE + (i & 7) + side % 3 - 1, brick[1] * BRICK_SIDE + (i >> 3 & 7) + side / 3 % 3 - 1,
+                     brick[2] * BRICK_SIDE + (i >> 6) + side / 9 - 1};
+        for (int k = 0; k < 3; k++)
+            if (block->cyclic[k]) at[k] = (at[k] + block->level->size[k]) % block->level->size[k];
+        const VoxelCell *near = block_cell(block, at);
+        if (!near || voxel_cell_is_inside(near) || (level >= LEAST_LEVEL && near->fill >= NEARLY_INSIDE)) return true;
+    }
+    return false;
 }
 
 /* Deep within a solid nothing is stored: no ray comes there. Where a voxel is not known, its brick may have walls. */
@@ -221,8 +267,8 @@ static VoxelCode code_inside(const VoxelCell *parent) {
 }
 
 static VoxelCode code_matter(const VoxelCell *cell, const VoxelSurround *around, const VoxelLevel *l,
-                             bool scattered, float thin) {
-    VoxelMatter m = voxel_cell_matter(cell, around, l->sides, 1 / l->density_unit, thin);
+                             bool scattered, float thin, bool backed) {
+    VoxelMatter m = voxel_cell_matter(cell, around, l->sides, 1 / l->density_unit, thin, backed);
     VoxelCode code = voxel_code_pack(m.density, scattered ? 0 : m.gamma, &m.root);
     return m.wall ? voxel_code_wall(code) : code;
 }
@@ -250,7 +296,7 @@ static void code_brick(const BrickBlock *block, int level, const bool halved[3],
         VoxelCode *code = grow_buffer_add(&out->codes, 1, sizeof *code);
         if (!code) return;
         if (!inside && thin[above] < 0) thin[above] = thinness_around(parent, above);
-        *code = inside ? code_inside(&parent[above]) : code_matter(&cells[i], &around, l, block->scattered, thin[above]);
+        *code = inside ? code_inside(&parent[above]) : code_matter(&cells[i], &around, l, block->scattered, thin[above], is_backed(block, level, at, &cells[i], i));
         brick.slice[i >> 6] |= (uint64_t)1 << (i & 63);
     }
     brick.count = out->codes.count - brick.first;
@@ -319,7 +365,10 @@ void pyramid_build_brick(const Pyramid *p, int level, const int at[3], bool from
     } else if (level == 0) {
         build_finest(p, at, cells);
         if (p->field) add_field(p, at, cells);
-        if (p->fill->start) fill_finest(p, at, cells);
+        if (p->fill->start) {
+            fill_finest(p, at, cells);
+            drop_hidden(p, at, cells);
+        }
         close_cells(cells, 0, p->layer->filtering);
     } else {
         build_from_children(p, level, at, from_top, cells, scratch, out);

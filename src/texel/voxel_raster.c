@@ -48,12 +48,14 @@ static double ray_offset(int row) {
     return offsets[row & 7];
 }
 
-static void meet(VoxelCell *cell, int axis, uint64_t rays, bool solid) {
+/* turn: +1 or −1, which way the triangle faces. */
+static void meet(VoxelCell *cell, int axis, uint64_t rays, bool solid, float turn) {
     float count = (float)count_bits(rays);
     cell->cover[axis] |= rays;
     cell->met[axis] += count;
     if (!solid) return;
     cell->walls += count;
+    cell->net[axis] += turn * count;
     cell->inside[axis] ^= rays;
 }
 
@@ -61,6 +63,7 @@ static void meet(VoxelCell *cell, int axis, uint64_t rays, bool solid) {
 typedef struct RayRow {
     int row, begin, end; /* columns */
     int64_t depth, step; /* at column `begin`; per column */
+    float turn;
 } RayRow;
 
 /* Planes so steep, or so far off, that they cannot be met within a brick but by rounding. */
@@ -76,13 +79,13 @@ static void add_row(VoxelCell *cells, const RayRow *r, bool solid, const int siz
         if ((uint64_t)depth >= limit) continue;
         int cell = base + ((int)(depth >> 32) << along) + (column >> 3 << across);
         if (cell != current) {
-            if (rays) meet(&cells[current], axis, rays, solid);
+            if (rays) meet(&cells[current], axis, rays, solid, r->turn);
             current = cell;
             rays = 0;
         }
         rays |= first << (column & 7);
     }
-    if (rays) meet(&cells[current], axis, rays, solid);
+    if (rays) meet(&cells[current], axis, rays, solid, r->turn);
 }
 
 static void add_rays(VoxelCell *cells, const ClipPolygon *t, bool solid, const int size[3], int axis) {
@@ -99,6 +102,7 @@ static void add_rays(VoxelCell *cells, const ClipPolygon *t, bool solid, const i
         double at = (row + 0.5) / 8, lo, hi, offset = ray_offset(row);
         scan_row(&outline, at, &lo, &hi);
         RayRow r = {.row = row,
+                    .turn = facing > 0 ? 1.0f : -1.0f,
                     .begin = scan_ceil(double_clamp(8 * lo - offset, 0, width)),
                     .end = scan_ceil(double_clamp(8 * hi - offset, 0, width))};
         if (r.begin >= r.end) continue;

@@ -15,6 +15,12 @@
 #define BRIGHT "texture { pigment { rgb <0.9, 0.3, 0.1> } finish { ambient 1 diffuse 0 } }"
 #define WHOLE "texel { cyclic x + z resolution 32 layer { box { <-0.5, -0.1, -0.5>, <1.5, 0.5, 1.5> } " BRIGHT " } }"
 #define SHEET "texel { cyclic x + z resolution 32 layer { mesh { triangle { <-1, 0.5, -1>, <3, 0.5, -1>, <-1, 0.5, 3> } } " BRIGHT " } }"
+/* The same in the sun, as single sheets, and as some that lie upon their own copies; a floor whose copies touch. */
+#define LIT_WHOLE "texel { cyclic x + z resolution 32 layer { box { <-0.5, -0.1, -0.5>, <1.5, 0.5, 1.5> } } }"
+#define LIT_FLOOR "texel { cyclic x + z resolution 32 layer { box { <0, -0.1, 0>, <1, 0.51, 1> } } }"
+#define LIT_SHEETS "texel { cyclic x + z resolution 32 layer { mesh { triangle { <-1, 0.5, -1>, <3, 0.5, -1>, <-1, 0.5, 3> } } } }"
+#define LIT_SHEET "texel { cyclic x + z resolution 32 layer { mesh { triangle { <0, 0.51, 0>, <1, 0.51, 0>, <0, 0.51, 1> }" \
+                  " triangle { <1, 0.51, 1>, <1, 0.51, 0>, <0, 0.51, 1> } } } }"
 #define NEXT_TO_NOTHING "texel { cyclic x + z resolution 32 layer { mesh { triangle { <0.5, 0.5, 0.5>, <0.5001, 0.5, 0.5>, <0.5, 0.5001, 0.5> } } } }"
 #define NOTHING "texel { cyclic x + z resolution 32 layer { mesh { triangle { <5, 5, 5>, <6, 5, 5>, <5, 6, 5> } } } }"
 
@@ -27,12 +33,19 @@ static void distributions(void **state) {
 
 static void opacities(void **state) {
     (void)state;
-    static const Trial trials[] = {SCALES("solid", WHOLE, .08, .08, .12, .02), SCALES("sheet", SHEET, .08, .08, .05, .02),
+    static const Trial trials[] = {SCALES("solid", WHOLE, .08, .08, .06, .02), SCALES("sheet", SHEET, .08, .08, .05, .02),
                                    SCALES("next to nothing", NEXT_TO_NOTHING, .004, .004, .004, 0), SCALES("nothing", NOTHING, 1e-6, 1e-6, 1e-6, 0)};
     try_trials(trials, VTS_ARRAY_COUNT(trials));
 }
 
+static void lit_matter(void **state) {
+    (void)state;
+    static const Trial trials[] = {SCALES("lit solid", LIT_WHOLE, .07, .04, .04, .02), SCALES("lit floor", LIT_FLOOR, .07, .04, .04, .02),
+                                   SCALES("lit sheets", LIT_SHEETS, .045, .04, .04, .02), SCALES("lit sheet", LIT_SHEET, .045, .04, .04, .02)};
+    try_trials(trials, VTS_ARRAY_COUNT(trials));
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(distributions), cmocka_unit_test(opacities)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(distributions), cmocka_unit_test(opacities), cmocka_unit_test(lit_matter)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

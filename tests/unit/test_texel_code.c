@@ -153,7 +153,7 @@ static void test_cells_have_unit_mean(void **state) {
             const double squares[6] = {d.x * d.x, d.y * d.y, d.z * d.z, d.x * d.y, d.x * d.z, d.y * d.z};
             for (int k = 0; k < 6; k++) cell.normals[k] += (float)(w * squares[k]);
         }
-        VoxelMatter m = voxel_cell_matter(&cell, &(VoxelSurround){0}, sides, 1, 0);
+        VoxelMatter m = voxel_cell_matter(&cell, &(VoxelSurround){0}, sides, 1, 0, true);
         double sum = 0;
         enum { N = 4000 };
         for (int k = 0; k < N; k++) {

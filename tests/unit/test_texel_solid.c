@@ -169,7 +169,7 @@ static AreaError mixture_error(const Facet *facets, int count) {
     VoxelCell cell = {.sheet = 0};
     for (int i = 0; i < count; i++) add_facet(&cell, &facets[i], 1.0f / (float)count);
     const float sides[3] = {1, 1, 1};
-    VoxelMatter m = voxel_cell_matter(&cell, &(VoxelSurround){0}, sides, 1, 0);
+    VoxelMatter m = voxel_cell_matter(&cell, &(VoxelSurround){0}, sides, 1, 0, true);
     AreaError e = {0};
     for (int k = 0; k < MEASURE_DIRECTIONS * 4; k++) {
         Vec3 d = scene_spread_direction(k, MEASURE_DIRECTIONS * 4);
@@ -242,7 +242,7 @@ static void test_zero_matrices(void **state) {
     const float sides[3] = {1, 1, 1};
     for (int i = 0; i < 4; i++) {
         VoxelCell cell = {.sheet = i & 1 ? 1e-30f : 1, .normals = {i & 2 ? 1e-30f : 1e-38f, 0, 0, 0, 0, 0}};
-        VoxelMatter m = voxel_cell_matter(&cell, &(VoxelSurround){0}, sides, 1, 1);
+        VoxelMatter m = voxel_cell_matter(&cell, &(VoxelSurround){0}, sides, 1, 1, true);
         VoxelCode code = voxel_code_pack(m.density, m.gamma, &m.root);
         VoxelSample v;
         voxel_code_unpack(code, &v);

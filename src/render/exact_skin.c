@@ -1,5 +1,6 @@
 #include "render/exact_skin.h"
 
+#include "render/embree_ray.h"
 #include "render/skin_cross.h"
 #include "render/skin_fold.h"
 
@@ -462,7 +463,7 @@ static bool begin_walk(Walk *w, const ExactSkins *exact, const Ray *ray, double 
     Vec3 o = vec3_sub(vec3_madd(ray->origin, ray->direction, near), exact->origin), d = ray->direction;
     *embree = (struct RTCRay){.org_x = (float)o.x, .org_y = (float)o.y, .org_z = (float)o.z, .dir_x = (float)d.x, .dir_y = (float)d.y,
                               .dir_z = (float)d.z, .tfar = t_max - near < 1e30 ? (float)(t_max - near) : INFINITY, .mask = 0xFFFFFFFFu};
-    return true;
+    return embree_takes(embree);
 }
 
 /* Normals transform by the transposed map world → texel. */

@@ -2,6 +2,7 @@
 
 #include "grow/particles.h"
 #include "pattern/pattern.h"
+#include "render/embree_ray.h"
 #include "shape/extent.h"
 #include "shape/intersect.h"
 #include "shape/surface_mesh.h"
@@ -368,7 +369,7 @@ bool hierarchy_intersect(const Hierarchy *h, const Ray *ray, double t_min, doubl
     for (size_t i = 0; i < h->planes.count; i++) try_part(&query, h->planes.items[i]);
     const Part *plane = query.part;
     struct RTCRayHit rayhit = {.ray = to_embree(h, ray, t_min, query.t, MASK_CAMERA), .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
-    rtcIntersect1(h->scene, &query.context, &rayhit);
+    if (embree_takes(&rayhit.ray)) rtcIntersect1(h->scene, &query.context, &rayhit);
     const Part *part = plane;
     if (rayhit.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
         part = h->parts.items[rayhit.hit.geomID];
@@ -407,6 +408,6 @@ bool hierarchy_occluded(const Hierarchy *h, const Ray *ray, double t_min, double
     for (size_t i = 0; i < h->planes.count && !query.part; i++) try_part(&query, h->planes.items[i]);
     if (query.part) return true;
     struct RTCRay shadow = to_embree(h, ray, t_min, t_max, MASK_SHADOW);
-    rtcOccluded1(h->scene, &query.context, &shadow);
+    if (embree_takes(&shadow)) rtcOccluded1(h->scene, &query.context, &shadow);
     return shadow.tfar < 0;
 }

@@ -1,6 +1,7 @@
 /* World ↔ skin space: evaluating and inverting the mapping of a cell, going from cell to cell, entering the layer. */
 #include "render/skin.h"
 
+#include "render/embree_ray.h"
 #include "render/skin_fold.h"
 
 #include <embree3/rtcore.h>
@@ -230,7 +231,7 @@ int skin_first_pieces(const CompiledSkin *skin, const Ray *ray, double t_min, do
                 .dir_x = (float)ray->direction.x, .dir_y = (float)ray->direction.y, .dir_z = (float)ray->direction.z,
                 .tnear = float_below(double_max(t_min, 0)), .tfar = float_above(t_max), .mask = 0xFFFFFFFFu},
         .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
-    rtcIntersect1(skin->tree->scene, &query.context, &rayhit);
+    if (embree_takes(&rayhit.ray)) rtcIntersect1(skin->tree->scene, &query.context, &rayhit);
     return query.count;
 }
 

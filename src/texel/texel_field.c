@@ -13,6 +13,8 @@ enum { MOST_SAMPLES = 8, FLAKE_CELLS = 128 };
 static const double LEAST_DENSITY = 1.0 / 512;
 /* Cells of this optical depth, all around, let nothing of what is within be seen: e to the power of its negative is 1/1000. */
 static const double HIDING_DEPTH = 7;
+/* Of one sample: denser than voxels can tell, and squares of sums of it are floats. */
+static const double MOST_AREA = 1e12;
 
 typedef struct FieldMatter {
     const DensityField *field;
@@ -91,7 +93,7 @@ static void fill(const void *context, Vec3f lo, Vec3f sides, float *area, float 
                 FieldValue v = look_at(m, sample_place(lo, sides, n, i, j, k));
                 sum += v.value;
                 /* Cauchy: flakes are seen with half of their area, on the mean over directions. */
-                if (v.value > 0) add_matter(m, &v, 2 * m->field->extinction * v.value * volume, area, normals);
+                if (v.value > 0) add_matter(m, &v, double_min(2 * m->field->extinction * v.value * volume, MOST_AREA), area, normals);
             }
     if (sum >= LEAST_DENSITY * n[0] * n[1] * n[2]) return;
     *area = 0;

@@ -4,7 +4,8 @@
 
 #include <assert.h>
 
-static uint32_t whole(float x, float lo, float hi) { return (uint32_t)(float_clamp(x, lo, hi) + 0.5f); }
+/* What is no number counts as the least. */
+static uint32_t whole(float x, float lo, float hi) { return (uint32_t)((x > lo ? float_min(x, hi) : lo) + 0.5f); }
 static uint32_t diagonal(float b) { return whole(b * 127.5f, 0, 255); }
 static uint32_t mixed(float b) { return whole(b * 127.5f + 128, 0, 255); }
 

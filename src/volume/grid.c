@@ -67,10 +67,10 @@ GridRange grid_range(const DensityGrid *grid, Arena *arena) {
 double grid_range_most(const GridRange *range, unsigned cyclic, Box3 box) {
     int lo[3], hi[3];
     for (int k = 0; k < 3; k++) {
-        double from = vec3_get(box.min, k), to = vec3_get(box.max, k), size = range->grid->size[k];
-        bool round = cyclic >> k & 1 && (from < 0 || to > 1);
-        lo[k] = round ? 0 : double_to_int((from * size - 1) / BLOCK, 0, range->size[k] - 1);
-        hi[k] = round ? range->size[k] - 1 : double_to_int((to * size + 1) / BLOCK, 0, range->size[k] - 1);
+        double size = range->grid->size[k], from = vec3_get(box.min, k) * size - 1, to = vec3_get(box.max, k) * size + 1;
+        bool round = cyclic >> k & 1 && (from < 0 || to > size);
+        lo[k] = round ? 0 : double_to_int(from / BLOCK, 0, range->size[k] - 1);
+        hi[k] = round ? range->size[k] - 1 : double_to_int(to / BLOCK, 0, range->size[k] - 1);
     }
     double most = 0;
     for (int z = lo[2]; z <= hi[2]; z++)

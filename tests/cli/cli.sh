@@ -571,6 +571,22 @@ case_sources() {
   for f in scene.png part.ppm link.png; do cmp -s scene.vts $f || fail "$f was overwritten"; done
 }
 
+# A camera beyond what floats hold sees nothing, in whichever way it is drawn.
+case_far() {
+  local mode
+  scene
+  sed -i 's/^camera.*/camera { location <1e200, 1e200, 1e200> look_at 0 }/' scene.vts
+  grep -q 1e200 scene.vts || fail "the scene has no camera of its own"
+  cat >>scene.vts <<'END'
+#declare T = texel { resolution 8 layer { sphere { 0.5, 0.4 } } }
+skin { surface { patch_grid 2, 2 function(u, v) { <u, 0, v> } } texel { T } mapping { tile 0.5 height 0.5 } }
+END
+  for mode in auto exact voxels; do
+    run render scene.vts -s 8x6 --set detail=$mode -o far.ppm; want_status 0
+  done
+  run reference scene.vts -s 8x6 --samples 1 -o far.ppm; want_status 0
+}
+
 # A part is the same pixels as in the whole.
 case_region() {
   scene

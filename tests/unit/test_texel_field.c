@@ -180,6 +180,38 @@ static void the_range_bounds_the_grid(void **state) {
     end(&m);
 }
 
+static float at_far_rim(int x, int y, int z) {
+    (void)y, (void)z;
+    return x == 31 ? 1 : 0;
+}
+
+/* Between the last cell and the first of a cyclic axis there is the half of a cell on both sides. */
+static void the_range_sees_across_the_rim(void **state) {
+    (void)state;
+    Made m;
+    begin(&m, 32, 1, 1, at_far_rim);
+    GridRange range = grid_range(&m.grid, &m.arena);
+    Box3 box = {vec3(0, 0.4, 0.4), vec3(0.01, 0.6, 0.6)};
+    assert_true(grid_value(&m.grid, 1, vec3(0.001, 0.5, 0.5)) > 0.4);
+    assert_true(grid_range_most(&range, 1, box) >= grid_value(&m.grid, 1, vec3(0.001, 0.5, 0.5)));
+    assert_true(grid_range_most(&range, 0, box) == 0);
+    end(&m);
+}
+
+/* An extinction past what floats hold: opaque, and every number one. */
+static void matter_beyond_all_measure_is_finite(void **state) {
+    (void)state;
+    Made m;
+    begin(&m, 4, 4, 4, everywhere);
+    m.density.extinction = 1e300;
+    VoxelLayer *layer = build(&m, 16);
+    VoxelSample v;
+    assert_true(voxel_layer_sample(layer, 2, vec3f(0.5F, 0.5F, 0.5F), &v));
+    assert_true(isfinite(v.density) && v.density > 1000);
+    voxel_layer_destroy(layer);
+    end(&m);
+}
+
 static void files_are_read_and_damage_is_refused(void **state) {
     (void)state;
     static const unsigned char df3[] = {0, 2, 0, 1, 0, 2, 0, 51, 102, 255};
@@ -213,6 +245,7 @@ int main(void) {
         cmocka_unit_test(a_uniform_cloud_is_its_extinction), cmocka_unit_test(matter_is_conserved),
         cmocka_unit_test(rims_face_along_the_gradient),      cmocka_unit_test(flakes_stand_for_the_field),
         cmocka_unit_test(the_range_bounds_the_grid),         cmocka_unit_test(files_are_read_and_damage_is_refused),
+        cmocka_unit_test(the_range_sees_across_the_rim),     cmocka_unit_test(matter_beyond_all_measure_is_finite),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

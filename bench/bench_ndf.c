@@ -52,7 +52,8 @@ static Ellipsoid of_matrix(const Mat3 *s) {
 }
 
 static Mat3 as_matrix(const Sym3f *m) {
-    return (Mat3){{vec3((double)m->xx, (double)m->xy, (double)m->xz), vec3((double)m->xy, (double)m->yy, (double)m->yz),
+    return (Mat3){{vec3((double)m->xx, (double)m->xy, (double)m->xz),
+                   vec3((double)m->xy, (double)m->yy, (double)m->yz),
                    vec3((double)m->xz, (double)m->yz, (double)m->zz)}};
 }
 
@@ -77,7 +78,8 @@ static VoxelCell turned_cell(double angle) {
 }
 
 static Ellipsoid merged(const VoxelCell *one, const VoxelCell *other, TexelFiltering filtering) {
-    const VoxelMerge step = {.level = 1, .share = 0.5f, .filtering = filtering, .halved = {true, false, false}, .rays = {1, 1, 1}};
+    const VoxelMerge step = {
+        .level = 1, .share = 0.5f, .filtering = filtering, .halved = {true, false, false}, .rays = {1, 1, 1}};
     VoxelCell parent = {0};
     voxel_cell_merge(&parent, one, &step, (const int[3]){0, 0, 0});
     voxel_cell_merge(&parent, other, &step, (const int[3]){1, 0, 0});
@@ -87,7 +89,8 @@ static Ellipsoid merged(const VoxelCell *one, const VoxelCell *other, TexelFilte
 
 static void print_five(const Curves *c, double (*value)(const Ellipsoid *, Vec3), Vec3 w) {
     double one = value(&c->one, w), other = value(&c->other, w);
-    printf(" %.5f %.5f %.5f %.5f %.5f", one, other, (one + other) / 2, value(&c->published, w), value(&c->linear, w));
+    printf(" %.5f %.5f %.5f %.5f %.5f", one, other, (one + other) / 2, value(&c->published, w),
+           value(&c->linear, w));
 }
 
 static double error_of(const Curves *c, const Ellipsoid *e, double (*value)(const Ellipsoid *, Vec3)) {
@@ -115,9 +118,10 @@ static void print_angle(double angle) {
         printf("\n");
     }
     printf("\n\n");
-    fprintf(stderr, "%4.0f degrees: normals: published %.3f, linear %.3f; area seen: published %.4f, linear %.4f\n", angle * 180 / PI,
-            error_of(&c, &c.published, normals_at), error_of(&c, &c.linear, normals_at), error_of(&c, &c.published, area_seen),
-            error_of(&c, &c.linear, area_seen));
+    fprintf(stderr,
+            "%4.0f degrees: normals: published %.3f, linear %.3f; area seen: published %.4f, linear %.4f\n",
+            angle * 180 / PI, error_of(&c, &c.published, normals_at), error_of(&c, &c.linear, normals_at),
+            error_of(&c, &c.published, area_seen), error_of(&c, &c.linear, area_seen));
 }
 
 int main(void) {

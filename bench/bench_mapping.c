@@ -157,10 +157,8 @@ static void ways(size_t prisms) {
 int main(int argc, char **argv) {
     uint64_t rays = argc > 1 ? strtoull(argv[1], NULL, 10) : 1000000, boxes = argc > 2 ? strtoull(argv[2], NULL, 10) : 1000000;
     size_t prisms = argc > 3 ? strtoull(argv[3], NULL, 10) : 2000;
-    leaks_of_prisms(rays / 2);
-    leaks_of_hexahedra(rays / 2);
-    places(true, boxes / 5);
-    places(false, boxes / 500);
-    ways(prisms);
+    if (rays >= 2) leaks_of_prisms(rays / 2), leaks_of_hexahedra(rays / 2);
+    if (boxes >= 500) places(true, boxes / 5), places(false, boxes / 500);
+    if (prisms) ways(prisms);
     return 0;
 }

@@ -1,12 +1,13 @@
 /* What is drawn as exact geometry, and from where on voxels are better. */
+#include "render/beam_cell.h"
 #include "render/compile.h"
 
 /* What is round is tessellated to this part of the finest voxels that would be seen: a tenth of a pixel. */
 static const double BEAM_TOLERANCE_VOXELS = 0.2;
 /* As many triangles in a pixel's footprint cost as much as its voxels do. */
 static const double MOST_TRIANGLES_A_PIXEL = 128;
-/* Texture coordinates of a cell may be denser by this in one corner than in another. */
-static const double LEAST_EVENNESS = 0.1;
+/* The share of a skin's cells that may be left away because their texture coordinates lie on a line: beams go from them back to places. */
+static const double MOST_SINGULAR = 0.01;
 /* More triangles than this are left to the voxels. */
 enum { MOST_BEAM_TRIANGLES = 4000000 };
 
@@ -45,20 +46,13 @@ static double mean_tile_size(const CompiledSkin *skin) {
     return tiles > 0 && area > 0 ? sqrt(area / tiles) : 0;
 }
 
-/* Whether some cell's texture coordinates fold, or nearly so: beams go from them back to places. (The Jacobian of a bilinear map has no
- * product term: its extremes are at the corners.) */
-static bool coordinates_fold(const CompiledSkin *skin) {
+static bool coordinates_singular(const CompiledSkin *skin) {
+    size_t singular = 0;
     for (size_t i = 0; i < skin->cell_count; i++) {
         const SkinCell *cell = &skin->cells[i];
-        const double *u = cell->u.c, *v = cell->v.c;
-        double least = VTS_INFINITY, most = -VTS_INFINITY;
-        for (int k = 0; k < (cell->triangle ? 1 : 4); k++) {
-            double a = k & 1, b = k >> 1, det = (u[1] + u[3] * b) * (v[2] + v[3] * a) - (u[2] + u[3] * a) * (v[1] + v[3] * b);
-            least = fmin(least, det), most = fmax(most, det);
-        }
-        if (least * most < 0 || fmin(fabs(least), fabs(most)) < LEAST_EVENNESS * fmax(fabs(least), fabs(most))) return true;
+        singular += cell->side != CELL_FLAT && cell_is_singular(cell);
     }
-    return false;
+    return (double)singular > MOST_SINGULAR * (double)skin->cell_count;
 }
 
 /* Triangles over one tile, on the average. */
@@ -95,7 +89,7 @@ void beam_plan_skin(CompiledSkin *skin, bool everything, CompiledScene *compiled
     bool all = true;
     double triangles = triangles_a_tile(skin, &all), nearest, farthest;
     skin->tile_size = mean_tile_size(skin);
-    if (!all || !(skin->tile_size > 0) || coordinates_fold(skin)) return;
+    if (!all || !(skin->tile_size > 0) || coordinates_singular(skin)) return;
     Cone cone = view_cone(view, view->width / 2.0, view->height / 2.0, 1);
     double width = skin->tile_size * sqrt(MOST_TRIANGLES_A_PIXEL / fmax(triangles, 1));
     double to = cone.spread > 0 ? width / cone.spread : cone.width <= width ? VTS_INFINITY : 0;

@@ -1,150 +1,13 @@
 #include "render/beam_skin.h"
 
+#include "render/beam_cell.h"
+
 #include <stdlib.h>
 
 /* How often a triangle is cut in four where the mapping bends it. */
-enum { NEWTON_STEPS = 3, DEEPEST_CUT = 5, MOST_CLIPPED = 9, DEEPEST_NODE = 512 };
+enum { NEWTON_STEPS = 3, DEEPEST_CUT = 5, MOST_CLIPPED = 9, DEEPEST_NODE = 512, DEEPEST_PART = 5 };
 /* Corners this little outside of a cell count as inside: tiles that end with the cell do so but for rounding. */
 static const float HAIR = 1e-5f;
-
-/* ---- a cell as the beam sees it ---- */
-
-/* q = c0 + c1·a + c2·b + c3·a·b + w·(c4 + c5·a + c6·b + c7·a·b), q.x, q.y and q.z. */
-typedef struct CellFrame {
-    const SkinCell *cell;
-    float x[8], y[8], z[8];
-    float bend_ab, bend_aw, bend_bw; /* how far the middle of a line leaves its chord, for unit extents, scene units */
-    bool affine;                     /* (u, v) → (a, b), and w' → w without a and b */
-    double a_u, a_v, a_0, b_u, b_v, b_0, w_w, w_0;
-} CellFrame;
-
-static void fold(CellFrame *f, int i, Vec3 c) { f->x[i] = (float)c.x, f->y[i] = (float)c.y, f->z[i] = (float)c.z; }
-
-/* Whether the box over the cell has no room: its height vectors vanish or lie in the surface. */
-static bool is_flat(const SkinCell *cell) {
-    double largest = 0, size = 0;
-    for (int i = 0; i < 4; i++) {
-        Mat3 j;
-        if (cell->triangle && i == 3) break;
-        skin_cell_position(cell, i & 1, i >> 1, 0.5, &j);
-        largest = fmax(largest, fabs(mat3_determinant(&j)));
-        size = fmax(size, vec3_length(j.c[0]) * vec3_length(j.c[1]) * (vec3_length(j.c[0]) + vec3_length(j.c[1])));
-    }
-    return !(largest > 1e-9 * size);
-}
-
-/* False where the mapping is singular, or texture coordinates are: there is no way back from them. */
-static bool frame_cell(CellFrame *f, const Beam *beam, const SkinCell *cell) {
-    f->cell = cell;
-    if (is_flat(cell)) return false;
-    fold(f, 0, beam_point(beam, cell->foot.c[0]));
-    for (int i = 1; i < 4; i++) fold(f, i, beam_vector(beam, cell->foot.c[i]));
-    for (int i = 0; i < 4; i++) fold(f, 4 + i, beam_vector(beam, cell->height.c[i]));
-    const Vec3 *p = cell->foot.c, *h = cell->height.c;
-    double twist = vec3_length(h[3]);
-    f->bend_ab = (float)((vec3_length(p[3]) + twist) / 4);
-    f->bend_aw = (float)((vec3_length(h[1]) + twist) / 4);
-    f->bend_bw = (float)((vec3_length(h[2]) + twist) / 4);
-    const double *u = cell->u.c, *v = cell->v.c, *foot = cell->w_foot.c, *tip = cell->w_tip.c;
-    double det = u[1] * v[2] - u[2] * v[1], scale = fabs(u[1]) + fabs(u[2]) + fabs(v[1]) + fabs(v[2]);
-    if (!(fabs(det) > 1e-12 * scale * scale)) return false;
-    f->a_u = v[2] / det, f->a_v = -u[2] / det;
-    f->b_u = -v[1] / det, f->b_v = u[1] / det;
-    f->a_0 = -(f->a_u * u[0] + f->a_v * v[0]);
-    f->b_0 = -(f->b_u * u[0] + f->b_v * v[0]);
-    f->w_w = 1 / (tip[0] - foot[0]);
-    f->w_0 = -foot[0] * f->w_w;
-    if (!isfinite(f->w_w)) return false;
-    double steepest = 0;
-    for (int i = 1; i < 4; i++) steepest = fmax(steepest, fmax(fabs(foot[i]), fabs(tip[i])));
-    f->affine = fabs(u[3]) + fabs(v[3]) <= 1e-9 * scale && steepest <= 1e-9 * fabs(tip[0] - foot[0]);
-    return true;
-}
-
-static Vec3f frame_point(const CellFrame *f, float a, float b, float w) {
-    float ab = a * b;
-    return vec3f(f->x[0] + f->x[1] * a + f->x[2] * b + f->x[3] * ab + w * (f->x[4] + f->x[5] * a + f->x[6] * b + f->x[7] * ab),
-                 f->y[0] + f->y[1] * a + f->y[2] * b + f->y[3] * ab + w * (f->y[4] + f->y[5] * a + f->y[6] * b + f->y[7] * ab),
-                 f->z[0] + f->z[1] * a + f->z[2] * b + f->z[3] * ab + w * (f->z[4] + f->z[5] * a + f->z[6] * b + f->z[7] * ab));
-}
-
-static double bilinear(const Bilinear *f, double a, double b) { return f->c[0] + f->c[1] * a + (f->c[2] + f->c[3] * a) * b; }
-
-/* (u, v, w') → (a, b, w); false where Newton's method finds no way. */
-static bool to_cell(const CellFrame *f, double u, double v, double w, double *a, double *b, double *layer) {
-    *a = f->a_u * u + f->a_v * v + f->a_0;
-    *b = f->b_u * u + f->b_v * v + f->b_0;
-    *layer = f->w_w * w + f->w_0;
-    if (f->affine) return true;
-    const Bilinear *fu = &f->cell->u, *fv = &f->cell->v;
-    for (int i = 0; i < 8; i++) {
-        double ru = u - bilinear(fu, *a, *b), rv = v - bilinear(fv, *a, *b);
-        double ua = fu->c[1] + fu->c[3] * *b, ub = fu->c[2] + fu->c[3] * *a, va = fv->c[1] + fv->c[3] * *b, vb = fv->c[2] + fv->c[3] * *a;
-        double inverse = 1 / (ua * vb - ub * va), da = (ru * vb - ub * rv) * inverse, db = (ua * rv - ru * va) * inverse;
-        if (!(fabs(da) < 100 && fabs(db) < 100)) return false;
-        *a += da, *b += db;
-        if (fabs(da) + fabs(db) < 1e-9) break;
-    }
-    double foot = bilinear(&f->cell->w_foot, *a, *b), tip = bilinear(&f->cell->w_tip, *a, *b);
-    *layer = (w - foot) / (tip - foot);
-    return isfinite(*layer);
-}
-
-/* In which of six ways a point is out of the beam, a bit each. */
-static unsigned outcode(const Beam *beam, float x, float y, float z) {
-    float scale = beam->perspective ? z : 1, columns = (float)beam->samples.columns * scale, rows = (float)beam->samples.rows * scale;
-    float near = (float)beam->nearest, far = (float)beam->farthest;
-    unsigned ends = beam->perspective ? (unsigned)(z < near) << 4 | (unsigned)(z > far) << 5 : (unsigned)(z > near) << 4 | (unsigned)(z < far) << 5;
-    return (unsigned)(x < 0) | (unsigned)(x > columns) << 1 | (unsigned)(y < 0) << 2 | (unsigned)(y > rows) << 3 | ends;
-}
-
-/* ---- boxes of the cell against the beam ---- */
-
-typedef struct CellBox {
-    float a0, a1, b0, b1, w0, w1;
-} CellBox;
-
-/* What lies between three pairs of planes of skin space is within the hull of its eight corners, as the mapping is linear along
- * each axis. *nearest gets the smallest q.z of a perspective beam, the negated largest of a parallel one. */
-static bool box_met(const Beam *beam, const CellFrame *f, const CellBox *box, float *nearest) {
-    unsigned outside = 63;
-    *nearest = INFINITY;
-    for (int i = 0; i < 8; i++) {
-        Vec3f q = frame_point(f, i & 1 ? box->a1 : box->a0, i & 2 ? box->b1 : box->b0, i & 4 ? box->w1 : box->w0);
-        outside &= outcode(beam, q.x, q.y, q.z);
-        *nearest = float_min(*nearest, beam->perspective ? q.z : -q.z);
-    }
-    return outside == 0;
-}
-
-/* Narrows to the cell; false when nothing is left. */
-static bool within_cell(const SkinCell *cell, CellBox *box) {
-    box->a0 = float_max(box->a0, 0), box->a1 = float_min(box->a1, 1);
-    box->b0 = float_max(box->b0, 0), box->b1 = float_min(box->b1, 1);
-    box->w0 = float_max(box->w0, 0), box->w1 = float_min(box->w1, 1);
-    return box->a0 <= box->a1 && box->b0 <= box->b1 && box->w0 <= box->w1 && (!cell->triangle || box->a0 + box->b0 <= 1);
-}
-
-/* The cell's box around a rectangle of (u, v) between two heights; false when they are apart. */
-static bool box_of_uv(const CellFrame *f, const double u[2], const double v[2], const double w[2], CellBox *box) {
-    double lo[3] = {VTS_INFINITY, VTS_INFINITY, VTS_INFINITY}, hi[3] = {-VTS_INFINITY, -VTS_INFINITY, -VTS_INFINITY};
-    for (int i = 0; i < 8; i++) {
-        double at[3];
-        if (!to_cell(f, u[i & 1], v[i >> 1 & 1], w[i >> 2], &at[0], &at[1], &at[2])) {
-            *box = (CellBox){0, 1, 0, 1, 0, 1};
-            return true;
-        }
-        for (int k = 0; k < 3; k++) lo[k] = fmin(lo[k], at[k]), hi[k] = fmax(hi[k], at[k]);
-    }
-    /* Lines of equal u are bent where the cell's coordinates are not affine. */
-    double slack = f->affine ? 1e-6 : 0.25;
-    for (int k = 0; k < 3; k++) {
-        double more = slack * (hi[k] - lo[k]) + 1e-6;
-        lo[k] -= more, hi[k] += more;
-    }
-    *box = (CellBox){(float)lo[0], (float)hi[0], (float)lo[1], (float)hi[1], (float)lo[2], (float)hi[2]};
-    return within_cell(f->cell, box);
-}
 
 /* ---- triangles ---- */
 
@@ -161,22 +24,11 @@ typedef struct CopyFrame {
 typedef struct Drawing {
     BeamDraft *draft;
     const CompiledSkin *skin;
+    const SkinCell *cell;     /* of which a part is drawn: its (a, b) times `size`, plus these */
+    float from_a, from_b, size;
     CopyFrame at;
+    Vec3f walls[4];           /* of the part, in box coordinates of a copy: inside where x·p.x + y·p.z + z >= 0 */
 } Drawing;
-
-/* The linear part of (u, v) → (a, b) at a place, or as near to it as the cell goes. */
-static void linearise(CellFrame *f, double u, double v) {
-    double a, b, w;
-    if (!to_cell(f, u, v, 0, &a, &b, &w)) return;
-    a = double_clamp(a, 0, 1), b = double_clamp(b, 0, 1);
-    const double *cu = f->cell->u.c, *cv = f->cell->v.c;
-    double ua = cu[1] + cu[3] * b, ub = cu[2] + cu[3] * a, va = cv[1] + cv[3] * b, vb = cv[2] + cv[3] * a, det = ua * vb - ub * va;
-    if (!(fabs(det) > 0)) return;
-    double u0 = cu[0] + cu[1] * a + (cu[2] + cu[3] * a) * b, v0 = cv[0] + cv[1] * a + (cv[2] + cv[3] * a) * b;
-    f->a_u = vb / det, f->a_v = -ub / det, f->b_u = -va / det, f->b_v = ua / det;
-    f->a_0 = a - f->a_u * u0 - f->a_v * v0;
-    f->b_0 = b - f->b_u * u0 - f->b_v * v0;
-}
 
 static bool frame_copy(CopyFrame *c, const CellFrame *f, const PlacedTexel *placed, const TexelCopy *copy, int period) {
     double det = copy->xu * copy->zv - copy->xv * copy->zu;
@@ -187,7 +39,7 @@ static bool frame_copy(CopyFrame *c, const CellFrame *f, const PlacedTexel *plac
     c->w_y = 1 / copy->inverse_scale, c->w_0 = period / copy->inverse_scale;
     CellFrame at_middle = *f;
     if (!f->affine) {
-        linearise(&at_middle, c->u_x * 0.5 + c->u_z * 0.5 + c->u_0, c->v_x * 0.5 + c->v_z * 0.5 + c->v_0);
+        cell_frame_linearise(&at_middle, c->u_x * 0.5 + c->u_z * 0.5 + c->u_0, c->v_x * 0.5 + c->v_z * 0.5 + c->v_0);
         f = &at_middle;
     }
     c->a_x = (float)(f->a_u * c->u_x + f->a_v * c->v_x), c->a_z = (float)(f->a_u * c->u_z + f->a_v * c->v_z);
@@ -228,6 +80,12 @@ static void to_skin(const CopyFrame *c, int count, const float *restrict x, cons
     }
 }
 
+static Vec3f place_of(const CopyFrame *c, Vec3f x) {
+    float a, b, w;
+    to_skin(c, 1, &x.x, &x.y, &x.z, &a, &b, &w);
+    return vec3f(a, b, w);
+}
+
 /* Keeps what samples saw, when room is short: nothing that was hidden since. */
 static void drop_hidden(BeamDraft *draft) {
     const BeamSamples *s = &draft->beam->samples;
@@ -247,8 +105,9 @@ static void drop_hidden(BeamDraft *draft) {
 
 static void keep_facet(const Drawing *d, const Vec3f corner[3], size_t layer) {
     BeamDraft *draft = d->draft;
-    draft->facets[draft->facet_count++] =
-        (BeamFacet){d->skin, d->at.frame->cell, d->at.placed, *d->at.copy, layer, {corner[0], corner[1], corner[2]}};
+    BeamFacet *f = &draft->facets[draft->facet_count++];
+    *f = (BeamFacet){.skin = d->skin, .cell = d->cell, .placed = d->at.placed, .copy = *d->at.copy, .layer = layer};
+    for (int i = 0; i < 3; i++) f->corner[i] = vec3f(d->from_a + d->size * corner[i].x, d->from_b + d->size * corner[i].y, corner[i].z);
     if (draft->facet_count == draft->facet_capacity) drop_hidden(draft);
 }
 
@@ -286,7 +145,7 @@ static int clip_to_cell(const Vec3f in[3], bool triangle, Vec3f out[MOST_CLIPPED
 }
 
 static bool outside_beam(const Beam *beam, const Vec3f q[3]) {
-    return outcode(beam, q[0].x, q[0].y, q[0].z) & outcode(beam, q[1].x, q[1].y, q[1].z) & outcode(beam, q[2].x, q[2].y, q[2].z);
+    return beam_outcode(beam, q[0].x, q[0].y, q[0].z) & beam_outcode(beam, q[1].x, q[1].y, q[1].z) & beam_outcode(beam, q[2].x, q[2].y, q[2].z);
 }
 
 /* How far the mapping bends the triangle out of its plane, scene units. */
@@ -300,6 +159,7 @@ static float bend(const CellFrame *f, const Vec3f p[3]) {
 /* One triangle of a layer, in the cell and in the beam. */
 typedef struct Piece {
     Vec3f p[3], q[3];
+    Vec3f x[3];  /* box coordinates, where texture coordinates are not affine */
     size_t layer;
     bool inside; /* the cell as a whole */
 } Piece;
@@ -315,7 +175,7 @@ static void draw_flat(Drawing *d, const Piece *piece) {
         Vec3f part[MOST_CLIPPED];
         int count = clip_to_cell(piece->p, f->cell->triangle, part);
         if (count < 3) return;
-        for (int i = 0; i < count; i++) part[i] = frame_point(f, part[i].x, part[i].y, part[i].z);
+        for (int i = 0; i < count; i++) part[i] = cell_frame_point(f, part[i].x, part[i].y, part[i].z);
         seen = beam_draw(beam, part, count, mark);
     } else if (beam->perspective && q[0].z >= (float)beam->nearest && q[1].z >= (float)beam->nearest && q[2].z >= (float)beam->nearest) {
         Vec3f s[3];
@@ -341,21 +201,72 @@ static void draw_bent(Drawing *d, const Piece *piece, int depth) {
     Piece middle = {.layer = piece->layer, .inside = piece->inside};
     for (int i = 0; i < 3; i++) {
         middle.p[i] = vec3f_scale(vec3f_add(piece->p[i], piece->p[(i + 1) % 3]), 0.5f);
-        middle.q[i] = frame_point(f, middle.p[i].x, middle.p[i].y, middle.p[i].z);
+        middle.x[i] = vec3f_scale(vec3f_add(piece->x[i], piece->x[(i + 1) % 3]), 0.5f);
+        if (!f->affine) middle.p[i] = place_of(&d->at, middle.x[i]);
+        middle.q[i] = cell_frame_point(f, middle.p[i].x, middle.p[i].y, middle.p[i].z);
     }
     for (int i = 0; i < 3; i++) {
-        Piece corner = {{piece->p[i], middle.p[i], middle.p[(i + 2) % 3]}, {piece->q[i], middle.q[i], middle.q[(i + 2) % 3]}, piece->layer, piece->inside};
+        int k = (i + 2) % 3;
+        Piece corner = {{piece->p[i], middle.p[i], middle.p[k]}, {piece->q[i], middle.q[i], middle.q[k]}, {piece->x[i], middle.x[i], middle.x[k]},
+                        piece->layer, piece->inside};
         draw_bent(d, &corner, depth + 1);
     }
     draw_bent(d, &middle, depth + 1);
 }
 
-/* The bit after those of outcode(): out of the cell. */
+/* The bit after those of beam_outcode(): out of the cell. */
 enum { OUT_OF_CELL = 64 };
 
 static unsigned cell_code(float a, float b, float w, bool triangle) {
     float most_b = triangle ? 1 - a : 1;
     return (a >= -HAIR && a <= 1 + HAIR && b >= -HAIR && b <= most_b + HAIR && w >= -HAIR && w <= 1 + HAIR) ? 0 : OUT_OF_CELL;
+}
+
+/* The walls of the cell as a copy sees them: straight lines of texture space. */
+static void set_walls(Drawing *d) {
+    const SkinCell *cell = d->at.frame->cell;
+    const TexelCopy *copy = d->at.copy;
+    int corners = cell->triangle ? 3 : 4;
+    static const uint8_t around[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}}, triangle[3][2] = {{0, 0}, {1, 0}, {0, 1}};
+    double x[4], z[4], area = 0;
+    for (int i = 0; i < corners; i++) {
+        const uint8_t *at = cell->triangle ? triangle[i] : around[i];
+        double u = bilinear_at(&cell->u, at[0], at[1]), v = bilinear_at(&cell->v, at[0], at[1]);
+        x[i] = copy->xu * u + copy->xv * v + copy->x0, z[i] = copy->zu * u + copy->zv * v + copy->z0;
+    }
+    for (int i = 0; i < corners; i++) area += x[i] * z[(i + 1) % corners] - x[(i + 1) % corners] * z[i];
+    for (int i = 0; i < 4; i++) {
+        int k = i % corners, next = (k + 1) % corners;
+        double nx = z[k] - z[next], nz = x[next] - x[k], length = sqrt(nx * nx + nz * nz), per = length > 0 ? (area < 0 ? -1 : 1) / length : 0;
+        d->walls[i] = vec3f((float)(nx * per), (float)(nz * per), (float)(-(nx * x[k] + nz * z[k]) * per));
+    }
+}
+
+/* A triangle that reaches out of a cell where texture coordinates are not affine is cut before it is mapped: beyond the cell there may be no
+ * way back from them. */
+static void draw_across(Drawing *d, const Vec3f corner[3], size_t layer) {
+    Vec3f in[MOST_CLIPPED] = {corner[0], corner[1], corner[2]}, out[MOST_CLIPPED];
+    int count = 3;
+    for (int e = 0; e < 4; e++) {
+        int kept = 0;
+        for (int i = 0; i < count; i++) {
+            Vec3f a = in[i], b = in[(i + 1) % count], wall = d->walls[e];
+            float da = wall.x * a.x + wall.y * a.z + wall.z, db = wall.x * b.x + wall.y * b.z + wall.z;
+            if (da >= 0) out[kept++] = a;
+            if ((da >= 0) != (db >= 0)) out[kept++] = vec3f_madd(a, vec3f_sub(b, a), da / (da - db));
+        }
+        count = kept;
+        for (int i = 0; i < kept; i++) in[i] = out[i];
+    }
+    for (int i = 2; i < count; i++) {
+        Piece piece = {.x = {in[0], in[i - 1], in[i]}, .layer = layer};
+        for (int k = 0; k < 3; k++) {
+            Vec3f p = place_of(&d->at, piece.x[k]);
+            piece.p[k] = vec3f(float_clamp(p.x, 0, 1), float_clamp(p.y, 0, 1), p.z);
+            piece.q[k] = cell_frame_point(d->at.frame, p.x, p.y, p.z);
+        }
+        draw_bent(d, &piece, 0);
+    }
 }
 
 static void draw_cluster(Drawing *d, const TexelCluster *cluster) {
@@ -365,13 +276,21 @@ static void draw_cluster(Drawing *d, const TexelCluster *cluster) {
     const CellFrame *f = d->at.frame;
     to_skin(&d->at, cluster->vertex_count, cluster->x, cluster->y, cluster->z, a, b, w);
     for (int i = 0; i < cluster->vertex_count; i++) {
-        q[i] = frame_point(f, a[i], b[i], w[i]);
-        code[i] = (unsigned char)(outcode(d->draft->beam, q[i].x, q[i].y, q[i].z) | cell_code(a[i], b[i], w[i], f->cell->triangle));
+        q[i] = cell_frame_point(f, a[i], b[i], w[i]);
+        code[i] = (unsigned char)(beam_outcode(d->draft->beam, q[i].x, q[i].y, q[i].z) | cell_code(a[i], b[i], w[i], f->cell->triangle));
     }
     for (int i = 0; i < cluster->triangle_count; i++) {
         const uint8_t *v = cluster->triangles[i];
+        bool inside = !((code[v[0]] | code[v[1]] | code[v[2]]) & OUT_OF_CELL);
+        Piece piece = {.layer = cluster->layers[i], .inside = inside};
+        if (!f->affine) {
+            for (int k = 0; k < 3; k++) piece.x[k] = vec3f(cluster->x[v[k]], cluster->y[v[k]], cluster->z[v[k]]);
+            if (!inside) {
+                draw_across(d, piece.x, piece.layer);
+                continue;
+            }
+        }
         if (code[v[0]] & code[v[1]] & code[v[2]] & (OUT_OF_CELL - 1)) continue;
-        Piece piece = {.layer = cluster->layers[i], .inside = !((code[v[0]] | code[v[1]] | code[v[2]]) & OUT_OF_CELL)};
         for (int k = 0; k < 3; k++) piece.p[k] = vec3f(a[v[k]], b[v[k]], w[v[k]]), piece.q[k] = q[v[k]];
         if (bend(f, piece.p) <= d->at.tolerance) draw_flat(d, &piece);
         else draw_bent(d, &piece, 0);
@@ -381,32 +300,12 @@ static void draw_cluster(Drawing *d, const TexelCluster *cluster) {
 /* ---- copies ---- */
 
 static bool node_box(const CopyFrame *c, const ClusterNode *node, CellBox *box) {
-    if (!c->frame->affine) {
-        float x[8], y[8], z[8], a[8], b[8], w[8];
-        for (int i = 0; i < 8; i++) {
-            x[i] = i & 1 ? node->max[0] : node->min[0];
-            y[i] = i & 2 ? node->max[1] : node->min[1];
-            z[i] = i & 4 ? node->max[2] : node->min[2];
-        }
-        to_skin(c, 8, x, y, z, a, b, w);
-        *box = (CellBox){a[0], a[0], b[0], b[0], w[0], w[0]};
-        for (int i = 1; i < 8; i++) {
-            box->a0 = float_min(box->a0, a[i]), box->a1 = float_max(box->a1, a[i]);
-            box->b0 = float_min(box->b0, b[i]), box->b1 = float_max(box->b1, b[i]);
-            box->w0 = float_min(box->w0, w[i]), box->w1 = float_max(box->w1, w[i]);
-        }
-        /* Its sides are bent. */
-        float slack_a = 0.25f * (box->a1 - box->a0) + HAIR, slack_b = 0.25f * (box->b1 - box->b0) + HAIR, slack_w = 0.25f * (box->w1 - box->w0) + HAIR;
-        *box = (CellBox){box->a0 - slack_a, box->a1 + slack_a, box->b0 - slack_b, box->b1 + slack_b, box->w0 - slack_w, box->w1 + slack_w};
-        return within_cell(c->frame->cell, box);
-    }
-    float x = (node->min[0] + node->max[0]) / 2, z = (node->min[2] + node->max[2]) / 2;
-    float hx = node->max[0] - x, hz = node->max[2] - z;
-    float a = c->a_x * x + c->a_z * z + c->a_0, ha = fabsf(c->a_x) * hx + fabsf(c->a_z) * hz + HAIR;
-    float b = c->b_x * x + c->b_z * z + c->b_0, hb = fabsf(c->b_x) * hx + fabsf(c->b_z) * hz + HAIR;
-    float w0 = c->y_w * node->min[1] + c->y_0, w1 = c->y_w * node->max[1] + c->y_0;
-    *box = (CellBox){a - ha, a + ha, b - hb, b + hb, float_min(w0, w1) - HAIR, float_max(w0, w1) + HAIR};
-    return within_cell(c->frame->cell, box);
+    double x = (double)(node->min[0] + node->max[0]) / 2, z = (double)(node->min[2] + node->max[2]) / 2;
+    double hx = (double)(node->max[0] - node->min[0]) / 2, hz = (double)(node->max[2] - node->min[2]) / 2;
+    TextureBox in = {.u = c->u_x * x + c->u_z * z + c->u_0, .v = c->v_x * x + c->v_z * z + c->v_0,
+                     .side_u = {c->u_x * hx, c->u_z * hz}, .side_v = {c->v_x * hx, c->v_z * hz},
+                     .w0 = c->w_y * (double)node->min[1] + c->w_0, .w1 = c->w_y * (double)node->max[1] + c->w_0};
+    return cell_box_of(c->frame, &in, box);
 }
 
 static void draw_copy(Drawing *d, const BeamTexel *texel) {
@@ -417,7 +316,7 @@ static void draw_copy(Drawing *d, const BeamTexel *texel) {
         const ClusterNode *node = &texel->nodes[stack[--depth]];
         CellBox box;
         float nearest;
-        if (!node_box(&d->at, node, &box) || !box_met(d->draft->beam, d->at.frame, &box, &nearest)) continue;
+        if (!node_box(&d->at, node, &box) || !cell_box_met(d->draft->beam, d->at.frame, &box, &nearest)) continue;
         if (node->leaf) {
             draw_cluster(d, &texel->clusters[node->first]);
         } else if (depth + 2 <= DEEPEST_NODE) {
@@ -450,6 +349,7 @@ static void draw_texel_at(Drawing *d, const CellFrame *f, const PlacedTexel *pla
     for (int period = from; period <= to; period++)
         if (frame_copy(&d->at, f, placed, &copy, period)) {
             d->at.tolerance = (float)tolerance_at(d);
+            set_walls(d);
             draw_copy(d, copy.texel->beam);
         }
 }
@@ -460,14 +360,10 @@ typedef struct TileRange {
 } TileRange;
 
 static bool tiles_met(const Drawing *d, const CellFrame *f, const PlacedTexel *placed, const TileRange *r, float *nearest) {
-    double reach = placed->reach;
-    const double u[2] = {(double)r->u0 - reach, (double)r->u1 + reach}, v[2] = {(double)r->v0 - reach, (double)r->v1 + reach};
-    const double *foot = f->cell->w_foot.c, *tip = f->cell->w_tip.c;
-    double w[2] = {fmin(foot[0], tip[0]), fmax(foot[0], tip[0])};
+    double reach = placed->reach, u0 = (double)r->u0 - reach, u1 = (double)r->u1 + reach, v0 = (double)r->v0 - reach, v1 = (double)r->v1 + reach;
+    TextureBox in = {.u = (u0 + u1) / 2, .v = (v0 + v1) / 2, .side_u = {(u1 - u0) / 2, 0}, .side_v = {0, (v1 - v0) / 2}, .w0 = -VTS_INFINITY, .w1 = VTS_INFINITY};
     CellBox box;
-    if (!box_of_uv(f, u, v, w, &box)) return false;
-    box.w0 = 0, box.w1 = 1;
-    return box_met(d->draft->beam, f, &box, nearest);
+    return cell_box_of(f, &in, &box) && cell_box_met(d->draft->beam, f, &box, nearest);
 }
 
 static void draw_tiles(Drawing *d, const CellFrame *f, const PlacedTexel *placed, TileRange r) {
@@ -491,7 +387,7 @@ static const double LARGEST_TILE = 1e15;
 static bool tiles_of_cell(const SkinCell *cell, int reach, TileRange *r) {
     double lo[2] = {VTS_INFINITY, VTS_INFINITY}, hi[2] = {-VTS_INFINITY, -VTS_INFINITY};
     for (int i = 0; i < (cell->triangle ? 3 : 4); i++) {
-        double a = i & 1, b = i >> 1, at[2] = {bilinear(&cell->u, a, b), bilinear(&cell->v, a, b)};
+        double a = i & 1, b = i >> 1, at[2] = {bilinear_at(&cell->u, a, b), bilinear_at(&cell->v, a, b)};
         for (int k = 0; k < 2; k++) lo[k] = fmin(lo[k], at[k]), hi[k] = fmax(hi[k], at[k]);
     }
     for (int k = 0; k < 2; k++)
@@ -505,14 +401,29 @@ static bool tiles_of_cell(const SkinCell *cell, int reach, TileRange *r) {
     return true;
 }
 
-static void draw_cell(BeamDraft *draft, const CompiledSkin *skin, const SkinCell *cell) {
+/* A cell as a whole, or where texture coordinates bend much, part by part. */
+static void draw_part(Drawing *d, const SkinCell *cell, int depth) {
     CellFrame f;
-    Drawing d = {.draft = draft, .skin = skin};
-    if (cell->side == CELL_FLAT || !frame_cell(&f, draft->beam, cell)) return; /* a layer without height holds nothing */
-    for (size_t i = 0; i < skin->texel_count; i++) {
-        const PlacedTexel *placed = &skin->texels[i];
+    const CellBox all = {0, 1, 0, 1, 0, 1};
+    float nearest;
+    bool framed = cell_frame(&f, d->draft->beam, cell);
+    if (depth && framed && !cell_box_met(d->draft->beam, &f, &all, &nearest)) return;
+    if (depth < DEEPEST_PART && !cell_is_tame(cell)) {
+        Drawing part = *d;
+        part.size = d->size / 2;
+        for (int i = 0; i < 4; i++) {
+            SkinCell quarter = cell_quarter(cell, i);
+            part.from_a = d->from_a + (i & 1 ? part.size : 0);
+            part.from_b = d->from_b + (i & 2 ? part.size : 0);
+            draw_part(&part, &quarter, depth + 1);
+        }
+        return;
+    }
+    if (!framed) return;
+    for (size_t i = 0; i < d->skin->texel_count; i++) {
+        const PlacedTexel *placed = &d->skin->texels[i];
         TileRange range;
-        if (placed->family_size && tiles_of_cell(cell, placed->reach, &range)) draw_tiles(&d, &f, placed, range);
+        if (placed->family_size && tiles_of_cell(cell, placed->reach, &range)) draw_tiles(d, &f, placed, range);
     }
 }
 
@@ -589,7 +500,9 @@ void beam_draw_cells(BeamDraft *draft, const CompiledScene *compiled, uint32_t c
         const CompiledSkin *skin = &compiled->skins[at->skin];
         if (sorted && (double)at->nearest > beam->farthest) break;
         beam->exact_to = beam->perspective || beam->light ? (float)skin->exact_to : 1;
-        draw_cell(draft, skin, &skin->cells[at->cell]);
+        const SkinCell *cell = &skin->cells[at->cell];
+        Drawing d = {.draft = draft, .skin = skin, .cell = cell, .size = 1};
+        if (cell->side != CELL_FLAT) draw_part(&d, cell, 0); /* a layer without height holds nothing */
         if (sorted && i % CELLS_BETWEEN_LIMITS == 0) draw_in_limit(beam);
     }
 }

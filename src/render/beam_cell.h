@@ -1,0 +1,53 @@
+/* A cell of a skin, or a part of one, as a beam sees it. */
+#ifndef VTS_RENDER_BEAM_CELL_H
+#define VTS_RENDER_BEAM_CELL_H
+
+#include "render/beam.h"
+#include "render/skin.h"
+
+/* q = c0 + c1·a + c2·b + c3·a·b + w·(c4 + c5·a + c6·b + c7·a·b), q.x, q.y and q.z. */
+typedef struct CellFrame {
+    const SkinCell *cell;            /* (a, b) from 0 to 1, whether it is a part or not */
+    float x[8], y[8], z[8];
+    float bend_ab, bend_aw, bend_bw; /* how far the middle of a line of texture space leaves its chord, for unit extents, scene units */
+    bool affine;                     /* (u, v) → (a, b), and w' → w without a and b */
+    double bent_a, bent_b;           /* (u, v) = those at a place + J·(da, db) + c3·da·db: J⁻¹·c3 at most */
+    double a_u, a_v, a_0, b_u, b_v, b_0, w_w, w_0;
+} CellFrame;
+
+/* False where texture coordinates are singular: there is no way back from them. */
+bool cell_frame(CellFrame *f, const Beam *beam, const SkinCell *cell);
+/* Of (a, b, w). */
+Vec3f cell_frame_point(const CellFrame *f, float a, float b, float w);
+/* Takes the linear part of (u, v) → (a, b) at a place, or as near to it as the cell goes. */
+void cell_frame_linearise(CellFrame *f, double u, double v);
+
+double bilinear_at(const Bilinear *f, double a, double b);
+
+/* Whether texture coordinates bend so little over the cell that Newton's method leads back from all of them. */
+bool cell_is_tame(const SkinCell *cell);
+/* Whether they lie on a line: there is no way back at all. */
+bool cell_is_singular(const SkinCell *cell);
+/* A quarter of a patch, 0 … 3, as a cell. */
+SkinCell cell_quarter(const SkinCell *cell, int quarter);
+
+/* In which of six ways a point of beam space is out of the beam, a bit each. */
+unsigned beam_outcode(const Beam *beam, float x, float y, float z);
+
+typedef struct CellBox {
+    float a0, a1, b0, b1, w0, w1;
+} CellBox;
+
+/* Whether the beam may meet the box. *nearest gets the smallest q.z of a perspective beam, the negated largest of a parallel one. */
+bool cell_box_met(const Beam *beam, const CellFrame *f, const CellBox *box, float *nearest);
+
+/* A parallelogram of texture coordinates: middle, and halves of its sides; and a range of heights. */
+typedef struct TextureBox {
+    double u, v, side_u[2], side_v[2];
+    double w0, w1;
+} TextureBox;
+
+/* A box around all places of the cell whose texture coordinates are in `in`; false when there certainly are none. */
+bool cell_box_of(const CellFrame *f, const TextureBox *in, CellBox *box);
+
+#endif

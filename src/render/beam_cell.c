@@ -209,13 +209,19 @@ static void heights(const CellFrame *f, const Patch *p, const TextureBox *in, do
     if (rising != 4 && rising != -4) *lowest = 0, *highest = 1;
 }
 
+bool cell_box_clip(const SkinCell *cell, CellBox *box) {
+    box->a0 = float_max(box->a0, 0), box->a1 = float_min(box->a1, 1);
+    box->b0 = float_max(box->b0, 0), box->b1 = float_min(box->b1, 1);
+    box->w0 = float_max(box->w0, 0), box->w1 = float_min(box->w1, 1);
+    return box->a0 <= box->a1 && box->b0 <= box->b1 && box->w0 <= box->w1 && (!cell->triangle || box->a0 + box->b0 <= 1);
+}
+
 bool cell_box_of(const CellFrame *f, const TextureBox *in, CellBox *box) {
     Patch p = {0.5, 0.5, 0.5, 0.5};
     double lowest, highest;
     for (int i = 0; i < (f->affine ? 1 : 3); i++)
         if (!narrow(f, in, &p)) return false;
     heights(f, &p, in, &lowest, &highest);
-    *box = (CellBox){(float)(p.a - p.half_a), (float)(p.a + p.half_a), (float)(p.b - p.half_b), (float)(p.b + p.half_b),
-                     float_max((float)lowest - HAIR, 0), float_min((float)highest + HAIR, 1)};
-    return box->w0 <= box->w1 && (!f->cell->triangle || box->a0 + box->b0 <= 1);
+    *box = (CellBox){(float)(p.a - p.half_a), (float)(p.a + p.half_a), (float)(p.b - p.half_b), (float)(p.b + p.half_b), (float)lowest - HAIR, (float)highest + HAIR};
+    return cell_box_clip(f->cell, box);
 }

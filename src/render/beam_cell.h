@@ -38,6 +38,8 @@ typedef struct CellBox {
     float a0, a1, b0, b1, w0, w1;
 } CellBox;
 
+/* Narrows to the cell; false when nothing is left. */
+bool cell_box_clip(const SkinCell *cell, CellBox *box);
 /* Whether the beam may meet the box. *nearest gets the smallest q.z of a perspective beam, the negated largest of a parallel one. */
 bool cell_box_met(const Beam *beam, const CellFrame *f, const CellBox *box, float *nearest);
 

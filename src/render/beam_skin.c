@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 /* How often a triangle is cut in four where the mapping bends it. */
-enum { NEWTON_STEPS = 3, DEEPEST_CUT = 5, MOST_CLIPPED = 9, DEEPEST_NODE = 512, DEEPEST_PART = 5 };
+enum { NEWTON_STEPS = 3, DEEPEST_CUT = 5, MOST_CLIPPED = 9, DEEPEST_NODE = 512, DEEPEST_PART = 4 };
 /* Corners this little outside of a cell count as inside: tiles that end with the cell do so but for rounding. */
 static const float HAIR = 1e-5f;
 
@@ -300,6 +300,14 @@ static void draw_cluster(Drawing *d, const TexelCluster *cluster) {
 /* ---- copies ---- */
 
 static bool node_box(const CopyFrame *c, const ClusterNode *node, CellBox *box) {
+    if (c->frame->affine) {
+        float x = (node->min[0] + node->max[0]) / 2, z = (node->min[2] + node->max[2]) / 2, hx = node->max[0] - x, hz = node->max[2] - z;
+        float a = c->a_x * x + c->a_z * z + c->a_0, ha = fabsf(c->a_x) * hx + fabsf(c->a_z) * hz + HAIR;
+        float b = c->b_x * x + c->b_z * z + c->b_0, hb = fabsf(c->b_x) * hx + fabsf(c->b_z) * hz + HAIR;
+        float w0 = c->y_w * node->min[1] + c->y_0, w1 = c->y_w * node->max[1] + c->y_0;
+        *box = (CellBox){a - ha, a + ha, b - hb, b + hb, float_min(w0, w1) - HAIR, float_max(w0, w1) + HAIR};
+        return cell_box_clip(c->frame->cell, box);
+    }
     double x = (double)(node->min[0] + node->max[0]) / 2, z = (double)(node->min[2] + node->max[2]) / 2;
     double hx = (double)(node->max[0] - node->min[0]) / 2, hz = (double)(node->max[2] - node->min[2]) / 2;
     TextureBox in = {.u = c->u_x * x + c->u_z * z + c->u_0, .v = c->v_x * x + c->v_z * z + c->v_0,

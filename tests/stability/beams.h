@@ -4,10 +4,11 @@
 
 #include "stability.h"
 
-enum { BEAM_WIDTH = 40, BEAM_HEIGHT = 30, BEAM_SAMPLES = 64, REFERENCE_SAMPLES = 32 };
+enum { BEAM_WIDTH = 40, BEAM_HEIGHT = 30, BEAM_SAMPLES = 128, REFERENCE_SAMPLES = 32 };
 
 typedef struct BeamTrial {
     const char *name, *scene; /* what follows CONTENTS */
+    double facets;            /* of contents that are round: their facets are told from the reference's by their light */
 } BeamTrial;
 
 #define SUN "light_source { <300, 500, -200>, rgb 1 parallel point_at 0 }\n"
@@ -41,8 +42,7 @@ static inline Picture reference_with_noise(const Bench *b, const char *text, dou
     return mean;
 }
 
-/* Both have as many samples, so that differences of correct pictures are at most √2 times the noise of one; the samples of beams are spread
- * more evenly. */
+/* Beams have twice the samples: differences of correct pictures are √1.5 times the noise of the references. */
 static const double MOST_OVER_NOISE = 1.55, MOST_ROUNDING = 0.001;
 
 static inline void try_beams(const BeamTrial *trials, size_t count) {
@@ -60,7 +60,7 @@ static inline void try_beams(const BeamTrial *trials, size_t count) {
         snprintf(text, sizeof text, "%s%s", CONTENTS, trials[i].scene);
         Picture truth = reference_with_noise(&b, text, &noise), drawn = bench_render(&b, &options, text);
         Difference d = picture_difference(&drawn, &truth);
-        bool good = d.rms <= MOST_OVER_NOISE * noise + MOST_ROUNDING;
+        bool good = d.rms <= MOST_OVER_NOISE * noise + MOST_ROUNDING + trials[i].facets;
         failed += !good;
         printf("%-40s rms %.4f, noise %.4f, mean %+.4f, most %.3f, deviation %.3f%s\n", trials[i].name, d.rms, noise, d.mean, d.most, deviation(&truth),
                good ? "" : "  <-- beyond its bound");

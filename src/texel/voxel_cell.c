@@ -282,9 +282,9 @@ static float fit_alone(const AxisLight *light, float density) {
  * of their level stands for, as those of a floor that is half a voxel thick, are sheets. */
 static const float BACKED_WALL = -0.43f, THIN_WALL = 0.6f, MOSTLY_THICK = 0.2f;
 
-/* 1 where all faces one way, 0 for a quarter of a tube and what is rounder. */
+/* 1 where all faces one way, 0 for an eighth of a sphere and what is rounder. */
 static float flatness(const VoxelCell *cell) {
-    static const float ROUND = 0.75f;
+    static const float ROUND = 0.6f;
     const float *n = cell->normals;
     float trace = n[0] + n[1] + n[2];
     float squares = n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + 2 * (n[3] * n[3] + n[4] * n[4] + n[5] * n[5]);

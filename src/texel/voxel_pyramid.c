@@ -45,12 +45,13 @@ static void fill_finest(const Pyramid *p, const int at[3], VoxelCell *cells) {
         }
 }
 
-/* Whether the middle of a voxel lies within a solid; what is cut off at the border goes on there. */
+/* Whether the middle of a voxel lies within a solid; nothing does beyond the border. */
 static bool is_filled(const Pyramid *p, const int voxel[3]) {
     int at[3];
     for (int k = 0; k < 3; k++) {
         int size = p->layer->level[0].size[k];
-        at[k] = p->layer->cyclic[k] ? (voxel[k] + size) % size : int_clamp(voxel[k], 0, size - 1);
+        at[k] = p->layer->cyclic[k] ? (voxel[k] + size) % size : voxel[k];
+        if (at[k] < 0 || at[k] >= size) return false;
     }
     return voxel_fill_column(p->fill, at[0], at[1], at[2]) & 1;
 }

@@ -103,7 +103,7 @@ static bool picture_file(void *context, Arena *arena, ImageMap *image, StrBuf *e
 
 static bool density_grid(void *context, Arena *arena, const char *path, const EvalDensityRequest *request, DensityGrid *out, StrBuf *error) {
     (void)context;
-    if (request->fractal) return grid_fractal(request->size, request->dimension, request->threshold, request->seed, arena, out);
+    if (request->fractal) return grid_fractal(request->size, request->dimension, request->threshold, request->seed, request->interrupted, arena, out);
     GridRaw raw = {.sample = request->bytes == 1 ? GRID_UINT8 : request->bytes == 2 ? GRID_UINT16 : GRID_FLOAT, .big = request->big};
     memcpy(raw.size, request->size, sizeof raw.size);
     return grid_load(path, request->raw ? &raw : NULL, arena, out, error);

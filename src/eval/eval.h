@@ -27,6 +27,7 @@ typedef struct EvalMeshRequest {
 /* A grid of densities: a file (df3, or `raw` as the rest says), or a fractal. */
 typedef struct EvalDensityRequest {
     bool raw, fractal;
+    const atomic_bool *interrupted; /* polled; may be NULL */
     int size[3];
     int bytes; /* of a number: 1, 2, 4 (a float) */
     bool big;  /* endian */

@@ -84,14 +84,16 @@ double grid_range_most(const GridRange *range, unsigned cyclic, Box3 box) {
 
 enum { WAVES = 4, MOST_OCTAVES = 12 };
 
-bool grid_fractal(const int size[3], double dimension, double threshold, uint32_t seed, Arena *arena, DensityGrid *out) {
+bool grid_fractal(const int size[3], double dimension, double threshold, uint32_t seed, const atomic_bool *interrupted, Arena *arena,
+                  DensityGrid *out) {
     int longest = int_max(size[0], int_max(size[1], size[2]));
     double gain = exp2(-double_clamp(3 - dimension, 0, 1)), step = (double)WAVES / longest;
     int octaves = int_clamp((int)ceil(log2((double)longest / WAVES)), 1, MOST_OCTAVES);
     size_t count = (size_t)size[0] * (size_t)size[1] * (size_t)size[2], i = 0;
     float *values = arena_new_array(arena, float, count), lo = INFINITY, hi = -INFINITY;
     for (int z = 0; z < size[2]; z++)
-        for (int y = 0; y < size[1]; y++)
+        for (int y = 0; y < size[1]; y++) {
+            if (interrupted && *interrupted) return false;
             for (int x = 0; x < size[0]; x++, i++) {
                 Vec3 p = vec3((x + 0.5) * step, (y + 0.5) * step, (z + 0.5) * step);
                 double sum = 0, weight = 1, scale = 1;
@@ -100,6 +102,7 @@ bool grid_fractal(const int size[3], double dimension, double threshold, uint32_
                 values[i] = (float)sum;
                 lo = float_min(lo, values[i]), hi = float_max(hi, values[i]);
             }
+        }
     float from = lo + (float)threshold * (hi - lo), unit = hi > from ? 1 / (hi - from) : 0;
     for (i = 0; i < count; i++) values[i] = float_max(0, (values[i] - from) * unit);
     *out = (DensityGrid){.hash = hash_begin(0x66726163), .values = values};

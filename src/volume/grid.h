@@ -5,6 +5,8 @@
 #include "base/arena.h"
 #include "scene/scene.h"
 
+#include <stdatomic.h>
+
 /* Between the centres of cells, trilinear. Outside of the unit cube there is nothing; an axis that is cyclic (bit 0 x, 1 y, 2 z) goes
  * on with the other side. The mean over any cells' boxes far from the rim is that of their numbers. */
 double grid_value(const DensityGrid *grid, unsigned cyclic, Vec3 p);
@@ -21,7 +23,9 @@ GridRange grid_range(const DensityGrid *grid, Arena *arena);
 double grid_range_most(const GridRange *range, unsigned cyclic, Box3 box);
 
 /* A noise of fractal character: fbm of gradient noise whose surfaces of equal value have this fractal dimension (2 to 3), scaled so that
- * what is below `threshold` of its range is 0 and its top 1. Cells are cubes: the longest side of the grid is four wavelengths. */
-bool grid_fractal(const int size[3], double dimension, double threshold, uint32_t seed, Arena *arena, DensityGrid *out);
+ * what is below `threshold` of its range is 0 and its top 1. Cells are cubes: the longest side of the grid is four wavelengths. False when `interrupted` (may be NULL) became
+ * true. */
+bool grid_fractal(const int size[3], double dimension, double threshold, uint32_t seed, const atomic_bool *interrupted, Arena *arena,
+                  DensityGrid *out);
 
 #endif

@@ -9,6 +9,7 @@
 #include "base/random.h"
 #include "texel/texel_content.h"
 #include "texel/texel_field.h"
+#include "volume/grid.h"
 #include "volume/grid_file.h"
 
 #include <stdlib.h>
@@ -240,12 +241,27 @@ static void files_are_read_and_damage_is_refused(void **state) {
     arena_destroy(&arena);
 }
 
+static void fractals_can_be_stopped(void **state) {
+    (void)state;
+    static const int size[3] = {12, 8, 4};
+    atomic_bool interrupted = false;
+    Arena arena;
+    DensityGrid grid;
+    arena_init(&arena, NULL, 0);
+    assert_true(grid_fractal(size, 2.5, 0, 1, &interrupted, &arena, &grid));
+    assert_int_equal(grid.size[2], 4);
+    interrupted = true;
+    assert_false(grid_fractal(size, 2.5, 0, 1, &interrupted, &arena, &grid));
+    arena_destroy(&arena);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_uniform_cloud_is_its_extinction), cmocka_unit_test(matter_is_conserved),
         cmocka_unit_test(rims_face_along_the_gradient),      cmocka_unit_test(flakes_stand_for_the_field),
         cmocka_unit_test(the_range_bounds_the_grid),         cmocka_unit_test(files_are_read_and_damage_is_refused),
         cmocka_unit_test(the_range_sees_across_the_rim),     cmocka_unit_test(matter_beyond_all_measure_is_finite),
+        cmocka_unit_test(fractals_can_be_stopped),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

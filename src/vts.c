@@ -238,6 +238,7 @@ VtsStatus session_evaluate(VtsSession *session, const char *path, EvalMode mode)
     EvalStatus result = eval_file(path, &options, &session->sources, &session->diags, &session->names, &session->parse,
                                   &session->scene_arena, &session->scene);
     session_print_diagnostics(session);
+    arena_destroy(&session->parse); /* tokens and trees: of a large scene more than what is drawn */
     switch (result) {
     case EVAL_OK: return VTS_OK;
     case EVAL_NO_FILE: return VTS_ERROR_FILE;

@@ -152,7 +152,7 @@ const char *data_file_find(const BuildContext *context, const char *what, const 
         diag_hint(context->diags, d, "looked in %s", looked_in.data ? looked_in.data : "nowhere");
     }
     strbuf_free(&looked_in);
-    return path;
+    return path ? arena_strdup(context->arena, path) : NULL;
 }
 
 static const EvalGeometry *geometry_of(const BuildContext *context) {

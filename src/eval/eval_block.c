@@ -3,25 +3,40 @@
 #include <string.h>
 
 /* Blocks whose builders know ITEM_OBJECTS. */
-static bool gathers(Name word) {
-    static const char *const words[] = {"union", "merge", "intersection", "difference", "light_group", "mesh"};
-    for (size_t i = 0; i < VTS_ARRAY_COUNT(words); i++)
-        if (strcmp(words[i], word->text) == 0) return true;
-    return false;
+static bool gathers(Keyword word) {
+    switch (word) {
+    case KW_union:
+    case KW_merge:
+    case KW_intersection:
+    case KW_difference:
+    case KW_light_group:
+    case KW_mesh: return true;
+    default: return false;
+    }
 }
 
 /* Blocks of which mesh2 and surfaces read the numbers as they are. */
-static bool lists(Name word) {
-    static const char *const words[] = {"vertex_vectors", "normal_vectors", "uv_vectors",     "height_vectors",
-                                        "w_vectors",      "face_indices",   "normal_indices", "uv_indices"};
-    for (size_t i = 0; i < VTS_ARRAY_COUNT(words); i++)
-        if (strcmp(words[i], word->text) == 0) return true;
-    return false;
+static bool lists(Keyword keyword, Name word) {
+    switch (keyword) {
+    case KW_vertex_vectors:
+    case KW_normal_vectors:
+    case KW_uv_vectors:
+    case KW_face_indices:
+    case KW_normal_indices:
+    case KW_uv_indices: return true;
+    case KW_NONE: return strcmp(word->text, "height_vectors") == 0 || strcmp(word->text, "w_vectors") == 0;
+    default: return false;
+    }
 }
 
 const EvalBlock *eval_block_items(Eval *ev, Name word, Span word_span, Span span, const Body *body) {
     ItemList items = {0};
-    Sink sink = {.kind = SINK_ITEMS, .block = word, .gathers = gathers(word), .lists = lists(word), .items = &items};
+    Keyword keyword = keyword_of(&ev->keywords, word);
+    Sink sink = {.kind = SINK_ITEMS,
+                 .block = word,
+                 .gathers = gathers(keyword),
+                 .lists = lists(keyword, word),
+                 .items = &items};
     run_body(ev, body, &sink);
     EvalBlock *block = arena_new(&ev->blocks, EvalBlock);
     *block = (EvalBlock){

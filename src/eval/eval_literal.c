@@ -40,14 +40,10 @@ static bool literal(const Token *tokens, uint32_t at, uint32_t end, Literal *out
     return out->next == end || (out->next < end && tokens[out->next].kind == ',');
 }
 
-static bool begins_literal(const Token *t) {
-    return t->kind == TOKEN_NUMBER || t->kind == '<' || t->kind == '-' || t->kind == '+';
-}
-
 uint32_t run_literals(Eval *ev, const Body *body, uint32_t at, Sink *sink) {
     const Token *tokens = body->tokens->items;
     Literal l;
-    while (at < body->end && begins_literal(&tokens[at]) && literal(tokens, at, body->end, &l)) {
+    while (at < body->end && literal_begins(&tokens[at]) && literal(tokens, at, body->end, &l)) {
         Value v = {.kind = VALUE_VECTOR, .size = (uint8_t)l.count, .as.components = l.numbers};
         if (l.count == 1) v = value_float(l.numbers[0]);
         sink_value(ev, sink, v, span_join(tokens[at].span, tokens[l.next - 1].span));

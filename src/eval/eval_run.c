@@ -156,8 +156,10 @@ static Flow run_tokens(Eval *ev, const Body *body, Sink *sink) {
     bool lists = takes_lists(ev, sink);
     ev->body = ++ev->body_count;
     for (uint32_t at = body->begin; at < body->end && flow == FLOW_NEXT;) {
-        if (lists) at = run_literals(ev, body, at, sink);
-        if (at >= body->end || ev->stopped) break;
+        if (lists && literal_begins(&body->tokens->items[at])) {
+            at = run_literals(ev, body, at, sink);
+            if (at >= body->end || ev->stopped) break;
+        }
         ArenaMark mark = arena_mark(&ev->temp);
         uint32_t begin = at;
         flow = run_statement(ev, program, &at, body->end, sink);

@@ -378,6 +378,9 @@ bool eval_step(Eval *ev, Span span);
 Flow run_loop_guard(Eval *ev, uint64_t *passes, size_t errors, Span span);
 
 /* ---- eval_literal.c ---- */
+static inline bool literal_begins(const Token *t) {
+    return t->kind == TOKEN_NUMBER || t->kind == '<' || t->kind == '-' || t->kind == '+';
+}
 /* Gives the sink the numbers and vectors that stand at token `at` of the body, each with a comma or the body's end behind it. Returns the
  * token to go on with. */
 uint32_t run_literals(Eval *ev, const Body *body, uint32_t at, Sink *sink);

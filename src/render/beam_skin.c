@@ -374,6 +374,12 @@ static bool tiles_met(const Drawing *d, const CellFrame *f, const PlacedTexel *p
     return cell_box_of(f, &in, &box) && cell_box_met(d->draft->beam, f, &box, nearest);
 }
 
+/* The q.z from which on the skin is voxels in the eye's beam. */
+static double seen_as_geometry(const Drawing *d) {
+    const Beam *beam = d->draft->beam;
+    return beam->perspective && !beam->light ? 1.42 * d->skin->exact_to * vec3_length(beam->rows[2]) : VTS_INFINITY;
+}
+
 static void draw_tiles(Drawing *d, const CellFrame *f, const PlacedTexel *placed, TileRange r) {
     if (r.u1 - r.u0 == 1 && r.v1 - r.v0 == 1) {
         draw_texel_at(d, f, placed, r.u0, r.v0);
@@ -384,7 +390,7 @@ static void draw_tiles(Drawing *d, const CellFrame *f, const PlacedTexel *placed
     else half[0].v1 = half[1].v0 = r.v0 + (r.v1 - r.v0) / 2;
     float nearest[2];
     bool met[2];
-    for (int i = 0; i < 2; i++) met[i] = tiles_met(d, f, placed, &half[i], &nearest[i]);
+    for (int i = 0; i < 2; i++) met[i] = tiles_met(d, f, placed, &half[i], &nearest[i]) && (double)nearest[i] <= seen_as_geometry(d);
     int first = met[0] && met[1] && nearest[1] < nearest[0];
     for (int i = 0; i < 2; i++)
         if (met[first ^ i]) draw_tiles(d, f, placed, half[first ^ i]);

@@ -602,7 +602,6 @@ static float clamped_difference(Vec3f a, Vec3f b) {
 static double see_pass(BeamTracer *tr, Radiance *out) {
     int pixels = tr->columns * tr->rows;
     uint32_t cells = beam_gather(&tr->draft, tr->compiled);
-    if (cells == 0 && tr->before == 0 && see_sky(tr, out)) return 0;
     lay_samples(tr);
     see_surfaces(tr);
     draw_skins(tr, cells);
@@ -657,6 +656,8 @@ void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out) {
     aim(tr);
     for (int i = 0; i < pixels; i++) tr->cones[i] = view_cone(&tr->compiled->view, x0 + i % tr->columns + 0.5, y0 + i / tr->columns + 0.5, 1);
     memset(out, 0, (size_t)pixels * sizeof *out);
+    tr->pixel_count += (uint64_t)pixels;
+    if (beam_gather(&tr->draft, tr->compiled) == 0 && see_sky(tr, out)) return;
     ErrorLaw law = {.samples = 0, .power = 0.75};
     for (tr->before = 0; tr->before < wanted; tr->before += tr->samples) {
         tr->samples = int_min(wanted - tr->before, MOST_IN_PASS);
@@ -669,7 +670,6 @@ void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out) {
     }
     double error = law.error * pow(law.samples / tr->before, law.power);
     tr->squared_error += error * error * pixels;
-    tr->pixel_count += (uint64_t)pixels;
 }
 
 double beam_tracer_error(const BeamTracer *tr, uint64_t *pixels) {

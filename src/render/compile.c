@@ -84,6 +84,8 @@ static Detail detail_of(const char *name) {
 }
 
 static const double DEFAULT_MAX_ERROR = 1.0 / 255;
+/* A pixel of fur may want hundreds of samples: who does not ask for an error gets what is near it at a bearable cost. */
+enum { MOST_SAMPLES = 256, MOST_SAMPLES_UNASKED = 64 };
 
 /* What the error that a user accepts buys. At 1/255: voxels half as wide as the cone (with linear interpolation between their
  * centres that is the cone's own blur, and finer levels hold more air to skip), steps of one and a half of them, two for
@@ -177,6 +179,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     for (size_t i = 0; i < skins.count; i++)
         if (skin_compile(skins.items[i], out, diags, &out->skins[out->skin_count])) out->skin_count++;
     if (diags->error_count > errors) return COMPILE_FAILED;
+    out->most_samples = scene->settings.max_error > 0 ? MOST_SAMPLES : MOST_SAMPLES_UNASKED;
     Detail detail = detail_of(scene->settings.detail);
     CompileStatus status = build_texels(options, detail, diags, out);
     if (status != COMPILE_OK) return status;

@@ -46,6 +46,7 @@ typedef struct CompiledScene {
     TexelFiltering filtering;
     double shadow_aperture;
     double max_error;     /* the RMSE that is accepted */
+    int most_samples;     /* a pixel, to keep it */
     int samples;          /* a pixel, of the first pass of what is drawn by beams */
     int split;            /* cones per pixel side where explicit edges cross the pixel */
     double build_seconds;

@@ -115,7 +115,7 @@ bool render_picture(const CompiledScene *compiled, const RenderOptions *options,
     int workers = pool_threads(options->pool);
     Frame frame = {.compiled = compiled, .options = options, .split_pixels = arena_new_array(compiled->arena, uint64_t, (size_t)workers)};
     if (has_exact_skins(compiled)) {
-        BeamPlan plan = {.first = compiled->samples, .most = MOST_BEAM_SAMPLES, .max_error = compiled->max_error};
+        BeamPlan plan = {.first = compiled->samples, .most = compiled->most_samples, .max_error = compiled->max_error};
         if (options->samples > 0) plan = (BeamPlan){.first = options->samples, .most = options->samples};
         frame.beams = arena_new_array(compiled->arena, BeamTracer *, (size_t)workers);
         for (int i = 0; i < workers; i++) frame.beams[i] = beam_tracer_create(compiled, &plan, options->seed, compiled->arena);

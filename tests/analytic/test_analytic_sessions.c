@@ -156,6 +156,22 @@ static void the_error_is_as_expected(void **state) {
     }
 }
 
+/* Tiles of sky are the sky's, in however many passes the others are drawn. */
+static void sky_is_sky_with_many_samples(void **state) {
+    static const char hair[] =
+        "camera { location <0, 0, -9> look_at <0, 0, 0> right x up y angle 60 }\nlight_source { <-20, 30, -25> rgb 1 }\nbackground { rgb <0.25, 0.5, 0.75> }\n"
+        "skin { surface { sphere { 0, 1 } } texel { texel { layer { cone { <0.5, 0, 0.5>, 0.3, <0.5, 1, 0.5>, 0 } } } } mapping { repeat <12, 6> height 0.3 } }\n";
+    VtsOptions o = options_of_size(128, 128);
+    o.samples = 70;
+    Picture p = bench_render(*state, &o, hair);
+    for (int y = 0; y < 128; y++)
+        for (int x = 0; x < 128; x++) {
+            const float *c = pixel_at(&p, x, y);
+            if (hypot(x - 63.5, y - 63.5) > 40) assert_true(fabsf(c[0] - .25f) + fabsf(c[1] - .5f) + fabsf(c[2] - .75f) < 1e-5f);
+        }
+    picture_free(&p);
+}
+
 /* ---- limits ---- */
 
 /* Whatever the limit cuts short, the session ends well and another one works. */
@@ -246,6 +262,7 @@ int main(void) {
         cmocka_unit_test(texels_are_kept_from_call_to_call),
         cmocka_unit_test(the_report_counts_what_was_done),
         cmocka_unit_test(the_error_is_as_expected),
+        cmocka_unit_test(sky_is_sky_with_many_samples),
         cmocka_unit_test(memory_runs_out_anywhere_without_harm),
         cmocka_unit_test(interruption_from_another_thread),
         cmocka_unit_test(alpha_is_coverage),

@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+"""A flight away from a lawn: does anything pop where voxels take the place of exact geometry?
+
+    bench/zoom.py [--vts PATH] [--frames N] [--from METRES] [--to METRES] [--size WxH] [--samples N] [OUT]
+
+One surface of 40 x 40 km under a texel of a metre, seen at 45 degrees from N distances, evenly spaced in the logarithm. Each frame
+is drawn as users get it, and with `detail exact` and many samples for the truth. Prints, for each frame: what voxels were built, the
+RMSE against the truth, the mean difference, and the flicker: the RMS over pixels of the change from one frame to the next of (picture
+- truth). OUT (default zoom-out) keeps the pictures.
+"""
+import argparse
+import array
+import json
+import math
+import os
+import subprocess
+
+SCENE = """
+camera { location <0, D, -D> look_at <0, 0, 0> right x*image_width/image_height angle 40 }
+light_source { <-20, 30, -25> rgb 1 parallel point_at 0 }
+background { rgb <0.5, 0.7, 1> }
+#declare S = seed(5);
+#declare Grass = texel {
+  cyclic x + z
+  layer {
+    particles { count 16 { position <rand(S), 0, rand(S)> velocity <0.3*rand(S) - 0.15, 1, 0.3*rand(S) - 0.15>
+                           life 0.9 width 0.05, 0.01 profile "flat" } }
+    texture { pigment { rgb <0.2, 0.5, 0.1> } }
+  }
+}
+#declare Land = surface { patch_grid 1, 1 function(u, v) { <40000*(u - 0.5), 0, 40000*(v - 0.5)> } texture { pigment { rgb <0.2, 0.15, 0.1> } } };
+object { Land }
+skin { surface { Land } texel { Grass } mapping { repeat <40000, 40000> height 0.5 } }
+"""
+
+
+def read_pfm(path):
+    with open(path, "rb") as f:
+        f.readline(), f.readline(), f.readline()
+        values = array.array("f")
+        values.frombytes(f.read())
+    return [min(max(v, 0), 1) for v in values]
+
+
+def rms(values):
+    return math.sqrt(sum(v * v for v in values) / len(values))
+
+
+def draw(options, distance, name, *more):
+    picture, report = (os.path.join(options.out, name + end) for end in (".pfm", ".json"))
+    command = [options.vts, "render", os.path.join(options.out, "zoom.vts"), "-s", options.size, "-D", "D=%.9g" % distance, "-o", picture]
+    subprocess.run(command + ["--report", report, "--progress", "none", *more], check=True)
+    with open(report) as f:
+        return read_pfm(picture), json.load(f)["frames"][0]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--vts", default=os.path.join(os.path.dirname(__file__), "..", "build", "vts"))
+    parser.add_argument("--frames", type=int, default=33)
+    parser.add_argument("--from", dest="first", type=float, default=1)
+    parser.add_argument("--to", dest="last", type=float, default=300)
+    parser.add_argument("--size", default="96x72")
+    parser.add_argument("--samples", default="64")
+    parser.add_argument("out", nargs="?", default="zoom-out")
+    options = parser.parse_args()
+    os.makedirs(options.out, exist_ok=True)
+    with open(os.path.join(options.out, "zoom.vts"), "w") as f:
+        f.write(SCENE)
+    before, worst = None, (0, 0)
+    print("%10s %7s %8s %9s %9s %9s" % ("metres", "voxels", "CPU s", "RMSE", "mean", "flicker"))
+    for i in range(options.frames):
+        distance = options.first * (options.last / options.first) ** (i / max(options.frames - 1, 1))
+        picture, frame = draw(options, distance, "frame-%03d" % i)
+        truth, _ = draw(options, distance, "truth-%03d" % i, "--set", "detail=exact", "--samples", options.samples)
+        error = [a - b for a, b in zip(picture, truth)]
+        flicker = rms([a - b for a, b in zip(error, before)]) if before else 0
+        before = error
+        worst = max(worst, (flicker, distance))
+        built = frame["texels"][0]["built"]
+        print("%10.1f %7s %8.2f %9.5f %+9.5f %9.5f" % (distance, built or "none", frame["cpu_s"], rms(error), sum(error) / len(error), flicker), flush=True)
+    print("largest flicker %.5f at %.1f metres" % worst)
+
+
+main()

@@ -44,6 +44,21 @@ static inline void bench_end(Bench *b) {
     remove(b->folder);
 }
 
+/* For groups of tests whose state is a Bench. */
+static inline int bench_set_up(void **state) {
+    Bench *b = malloc(sizeof *b);
+    if (!b) return -1;
+    bench_begin(b);
+    *state = b;
+    return 0;
+}
+
+static inline int bench_tear_down(void **state) {
+    bench_end(*state);
+    free(*state);
+    return 0;
+}
+
 static inline void bench_write(const Bench *b, const char *text) {
     FILE *f = fopen(b->scene, "w");
     assert_non_null(f);

@@ -1,19 +1,6 @@
 /* Light in layers of texels seen from afar: its mean against the exact geometry's, sun and sky. */
 #include "analytic.h"
 
-static int set_up(void **state) {
-    Bench *b = malloc(sizeof *b);
-    bench_begin(b);
-    *state = b;
-    return 0;
-}
-
-static int tear_down(void **state) {
-    bench_end(*state);
-    free(*state);
-    return 0;
-}
-
 #define GRASS \
     "#declare S = seed(11);\n" \
     "#declare T = texel { cyclic x + z layer { particles { count 16 { position <rand(S), 0, rand(S)> velocity <0.4*rand(S) - 0.2, 0.9, 0.4*rand(S) - 0.2>\n" \
@@ -112,5 +99,5 @@ int main(void) {
         cmocka_unit_test(sky_light_darkens_what_stands_under_others),
         cmocka_unit_test(exact_geometry_sees_the_sky),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
 }

@@ -3,19 +3,6 @@
 
 #include <math.h>
 
-static int set_up(void **state) {
-    Bench *b = malloc(sizeof *b);
-    bench_begin(b);
-    *state = b;
-    return 0;
-}
-
-static int tear_down(void **state) {
-    bench_end(*state);
-    free(*state);
-    return 0;
-}
-
 static const char spheres[] = "camera { location <0, 1, -4> look_at <0, 0.5, 0> right x up y }\n"
                               "light_source { <-20, 30, -25> rgb 1 }\n"
                               "background { rgb <0.4, 0.5, 0.8> }\n"
@@ -174,5 +161,5 @@ int main(void) {
         cmocka_unit_test(bent_paths_are_nearer_to_the_reference),
         cmocka_unit_test(every_method_draws_its_own_picture),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
 }

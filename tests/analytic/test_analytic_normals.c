@@ -2,19 +2,6 @@
  * A being the mapping's derivative; A S Aᵗ and S itself are shown to be far off. */
 #include "analytic.h"
 
-static int set_up(void **state) {
-    Bench *b = malloc(sizeof *b);
-    bench_begin(b);
-    *state = b;
-    return 0;
-}
-
-static int tear_down(void **state) {
-    bench_end(*state);
-    free(*state);
-    return 0;
-}
-
 enum { CELLS = 24, TILES = 8 };
 static const double LAYER = 0.2, SLOPE = 0.5, DIFFUSE = 0.6;
 
@@ -130,6 +117,6 @@ static void normals_go_by_the_cofactor(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test_setup_teardown(normals_go_by_the_cofactor, set_up, tear_down)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test_setup_teardown(normals_go_by_the_cofactor, bench_set_up, bench_tear_down)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,19 +4,6 @@
 #include <pthread.h>
 #include <time.h>
 
-static int set_up(void **state) {
-    Bench *b = malloc(sizeof *b);
-    bench_begin(b);
-    *state = b;
-    return 0;
-}
-
-static int tear_down(void **state) {
-    bench_end(*state);
-    free(*state);
-    return 0;
-}
-
 /* A bit of everything: skin with jitter, solids, two lights, sky, fog. */
 #define MEADOW \
     "#declare S = seed(3);\n" \
@@ -267,5 +254,5 @@ int main(void) {
         cmocka_unit_test(interruption_from_another_thread),
         cmocka_unit_test(alpha_is_coverage),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
 }

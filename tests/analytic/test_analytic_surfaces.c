@@ -1,19 +1,6 @@
 /* Explicit surfaces, lights and fog: pictures with closed forms. */
 #include "analytic.h"
 
-static int set_up(void **state) {
-    Bench *b = malloc(sizeof *b);
-    bench_begin(b);
-    *state = b;
-    return 0;
-}
-
-static int tear_down(void **state) {
-    bench_end(*state);
-    free(*state);
-    return 0;
-}
-
 /* ---- areas ---- */
 
 /* A white ball on black: the sum of all pixels is the disc's area. */
@@ -223,5 +210,5 @@ cmocka_unit_test(a_ball_covers_its_disc),    cmocka_unit_test(smooth_meshes_do_n
         cmocka_unit_test(a_region_is_a_crop),        cmocka_unit_test(exposure_multiplies),
         cmocka_unit_test(place_and_scale_do_not_matter),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
 }

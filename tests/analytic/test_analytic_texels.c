@@ -1,19 +1,6 @@
 /* Texels on skins: pictures against the same matter as explicit geometry, at all distances, places and scales. */
 #include "analytic.h"
 
-static int set_up(void **state) {
-    Bench *b = malloc(sizeof *b);
-    bench_begin(b);
-    *state = b;
-    return 0;
-}
-
-static int tear_down(void **state) {
-    bench_end(*state);
-    free(*state);
-    return 0;
-}
-
 /* ---- transmittance ---- */
 
 /* Black leaves over a white ground: the mean of the picture is the share of the ground that is seen. */
@@ -121,5 +108,5 @@ int main(void) {
         cmocka_unit_test(a_ball_in_a_texel_covers_its_disc),
         cmocka_unit_test(place_and_scale_do_not_matter),
     };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
 }

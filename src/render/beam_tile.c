@@ -350,8 +350,8 @@ static void see_facet(const BeamFacet *f, Vec3 point, double width, Sight *sight
 
 static void see_explicit(const SeenSurface *seen, Vec3 point, double width, double t, Sight *sight) {
     const SurfaceHit *hit = &seen->hit;
-    Vec3 local = transform_point_back(hit->space, point), local_normal = vec3_normalize(mat3_apply_transposed(&hit->space->linear, hit->normal));
-    double shrink = cbrt(fabs(mat3_determinant(&hit->space->inverse_linear))), facing = fmax(0.05, vec3_dot(hit->normal, vec3_from_f(sight->view)));
+    Vec3 local = transform_point_back(&hit->space, point), local_normal = vec3_normalize(mat3_apply_transposed(&hit->space.linear, hit->normal));
+    double shrink = cbrt(fabs(mat3_determinant(&hit->space.inverse_linear))), facing = fmax(0.05, vec3_dot(hit->normal, vec3_from_f(sight->view)));
     sight->look = hit->look;
     sight->surface = hit;
     sight->normal = vec3f_from(hit->normal);

@@ -398,8 +398,18 @@ bool hierarchy_intersect(const Hierarchy *h, const Ray *ray, double t_min, doubl
     }
     hit->normal = vec3_dot(normal, ray->direction) > 0 ? vec3_negate(normal) : normal;
     hit->look = part->look;
-    hit->space = &part->to_world;
+    hit->space = part->to_world;
+    hit->uv = (TexCoord){0, 0};
+    hit->leaving = vec3_dot(query.normal, ray->direction) > 0;
+    hit->solid = part->object;
+    hit->interior = NULL;
+    hit->filled = hit->object;
     return true;
+}
+
+bool hierarchy_meet(const Hierarchy *h, RayPurpose purpose, const Ray *ray, double t_min, double t_max, SurfaceHit *hit) {
+    (void)purpose;
+    return hierarchy_intersect(h, ray, t_min, t_max, hit);
 }
 
 bool hierarchy_occluded(const Hierarchy *h, const Ray *ray, double t_min, double t_max) {

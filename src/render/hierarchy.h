@@ -5,8 +5,13 @@
 #include "base/diag.h"
 #include "render/look.h"
 #include "scene/scene.h"
+#include "shape/soup.h"
 
 typedef struct Hierarchy Hierarchy;
+struct Interior;
+
+/* What a ray is for: `no_image`, `no_reflection` and `no_shadow` hide objects from each. */
+typedef enum RayPurpose { RAY_SEES, RAY_MIRRORS, RAY_SHADOWS } RayPurpose;
 
 typedef struct SurfaceHit {
     double t;
@@ -14,7 +19,12 @@ typedef struct SurfaceHit {
     Vec3 flat;         /* of the surface itself: on which side of it a place lies */
     uint32_t object;   /* number of the drawn part, for telling edges */
     const Look *look;
-    const Transform *space; /* object space of the texture → scene */
+    Transform space;   /* object space of the texture → scene */
+    TexCoord uv;       /* on the surface, as POV-Ray has it */
+    bool leaving;      /* the ray comes out of the solid's inside; of sheets: meets their back */
+    const Object *solid; /* whose surface it is, within sets and copies */
+    const struct Interior *interior; /* what fills it, its own or of a set around it; or NULL */
+    uint64_t filled;   /* tells the object that has that interior from its copies */
 } SurfaceHit;
 
 /* `tolerance`: for what has to be tessellated. NULL after a diagnostic. */
@@ -27,6 +37,8 @@ void *hierarchy_device(const Hierarchy *hierarchy);
 bool hierarchy_bounds(const Hierarchy *hierarchy, Box3 *box);
 /* Nearest hit with t in (t_min, t_max); unit direction. */
 bool hierarchy_intersect(const Hierarchy *hierarchy, const Ray *ray, double t_min, double t_max, SurfaceHit *hit);
+/* The same for rays of any purpose. */
+bool hierarchy_meet(const Hierarchy *hierarchy, RayPurpose purpose, const Ray *ray, double t_min, double t_max, SurfaceHit *hit);
 /* Whether anything that casts shadows lies between. */
 bool hierarchy_occluded(const Hierarchy *hierarchy, const Ray *ray, double t_min, double t_max);
 

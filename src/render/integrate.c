@@ -317,9 +317,9 @@ static Vec3f shade_surface(Tracer *tr, const Cone *cone, const SurfaceHit *hit, 
     const Scene *scene = tr->compiled->scene;
     Vec3 point = cone_point(cone, hit->t);
     double width = cone_diameter(cone, hit->t), facing = fmax(0.05, -vec3_dot(hit->normal, cone->direction));
-    Vec3 local = transform_point_back(hit->space, point);
-    Vec3 local_normal = vec3_normalize(mat3_apply_transposed(&hit->space->linear, hit->normal));
-    double shrink = cbrt(fabs(mat3_determinant(&hit->space->inverse_linear)));
+    Vec3 local = transform_point_back(&hit->space, point);
+    Vec3 local_normal = vec3_normalize(mat3_apply_transposed(&hit->space.linear, hit->normal));
+    double shrink = cbrt(fabs(mat3_determinant(&hit->space.inverse_linear)));
     Vec3f color = look_color(hit->look, local, local_normal, width / facing * shrink);
     Vec3f sum = vec3f_mul(vec3f_add(hit->look->ambient, hit->look->emission), color);
     double bias = 1e-5 * hit->t + 0.01 * width;

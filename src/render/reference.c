@@ -33,8 +33,8 @@ static Vec3 facet_point(const Sample *s, double t) { return vec3_madd(s->ray.ori
 /* ---- what is met ---- */
 
 static Facet surface_facet(const Sample *s, const SurfaceHit *hit) {
-    Vec3 local = transform_point_back(hit->space, facet_point(s, hit->t));
-    Vec3 local_normal = vec3_normalize(mat3_apply_transposed(&hit->space->linear, hit->normal));
+    Vec3 local = transform_point_back(&hit->space, facet_point(s, hit->t));
+    Vec3 local_normal = vec3_normalize(mat3_apply_transposed(&hit->space.linear, hit->normal));
     return (Facet){.t = hit->t, .normal = hit->normal, .flat = hit->flat, .bias = 1e-5 * hit->t + 0.01 * (s->width + s->spread * hit->t),
                    .look = hit->look, .color = look_color(hit->look, local, local_normal, 0)};
 }

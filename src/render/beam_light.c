@@ -1,0 +1,165 @@
+#include "render/beam_sight.h"
+
+#include "base/random.h"
+
+#include <string.h>
+
+static float luminance(Vec3f c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+
+/* What the light would send to the eye if nothing were in its way. */
+static Vec3f tone_of(const Sight *sight, const Light *light, LightRay *ray) {
+    *ray = light_ray(light, sight->point);
+    NdfShade shade = sheet_shade(sight->normal, sight->view, vec3f_from(ray->direction), &sight->look->sheet);
+    if (shade.diffuse <= 0 && shade.highlight <= 0) return vec3f(0, 0, 0);
+    return vec3f_mul(shade_tone(&shade, sight->look, sight->color), ray->color);
+}
+
+/* Puts the samples of a sight on the list of points whose shadows are wanted. */
+static uint32_t add_points(BeamTracer *tr, const Sight *sight, const LightRay *ray, uint32_t count) {
+    bool front = vec3f_dot(sight->flat, vec3f_from(ray->direction)) > 0;
+    for (int i = sight->first; i != BEAM_NOTHING; i = tr->next[i]) {
+        double t;
+        Vec3f p = vec3f_from(vec3_sub(beam_sample_point(tr, (uint32_t)i, &t), tr->beam.origin));
+        tr->points[count] = front ? vec3f_add(p, sight->bias) : vec3f_sub(p, sight->bias);
+        tr->hidden[count] = 0;
+        tr->distance[count] = (float)t;
+        count++;
+    }
+    return count;
+}
+
+static bool hidden_by_surfaces(BeamTracer *tr, const Sight *sight, Vec3 to_light, double distance, uint32_t point) {
+    Ray shadow = {vec3_add(tr->beam.origin, vec3_from_f(tr->points[point])), to_light};
+    tr->counters.shadow_rays++;
+    return hierarchy_occluded(tr->compiled->hierarchy, &shadow, (double)vec3f_length(sight->bias), distance);
+}
+
+enum { SOME_HIDDEN = 1, SOME_LIT = 2 };
+
+/* One ray for each sight; all of its samples where that and the pixels around do not agree: there an edge of a shadow passes. */
+static void hide_by_surfaces(BeamTracer *tr, const Light *light) {
+    memset(tr->shade, 0, sizeof tr->shade);
+    for (uint32_t k = 0; k < tr->sight_count; k++) {
+        const Sight *sight = &tr->sights[k];
+        if (!sight->asked) continue;
+        LightRay ray = light_ray(light, sight->point);
+        bool hidden = hidden_by_surfaces(tr, sight, ray.direction, ray.distance, sight->begin);
+        memset(tr->hidden + sight->begin, hidden, (size_t)sight->count);
+        tr->shade[sight->pixel] |= hidden ? SOME_HIDDEN : SOME_LIT;
+    }
+    for (uint32_t k = 0; k < tr->sight_count; k++) {
+        const Sight *sight = &tr->sights[k];
+        if (!sight->asked || sight->count == 1) continue;
+        int column = sight->pixel % tr->columns, row = sight->pixel / tr->columns;
+        unsigned around = tr->shade[sight->pixel];
+        if (column > 0) around |= tr->shade[sight->pixel - 1];
+        if (column + 1 < tr->columns) around |= tr->shade[sight->pixel + 1];
+        if (row > 0) around |= tr->shade[sight->pixel - tr->columns];
+        if (row + 1 < tr->rows) around |= tr->shade[sight->pixel + tr->columns];
+        if (around != (SOME_HIDDEN | SOME_LIT)) continue;
+        LightRay ray = light_ray(light, sight->point);
+        for (uint32_t i = 1; i < (uint32_t)sight->count; i++)
+            tr->hidden[sight->begin + i] = hidden_by_surfaces(tr, sight, ray.direction, ray.distance, sight->begin + i);
+    }
+}
+
+/* The share of light that voxels let through to a sight: of skins that have no exact geometry there. */
+static float through_voxels(BeamTracer *tr, const Sight *sight, const Cone *cone, const LightRay *ray) {
+    if ((double)sight->t <= tr->compiled->all_exact_to) return 1;
+    double aperture = tr->compiled->shadow_aperture, side = vec3f_dot(sight->flat, vec3f_from(ray->direction)) > 0 ? 1 : -1;
+    Vec3 from = vec3_madd(cone_point(cone, (double)sight->t), vec3_from_f(sight->bias), side);
+    Cone shadow = {from, ray->direction, cone_diameter(cone, (double)sight->t) * aperture, cone->spread * aperture};
+    return skin_light_through_voxels(&tr->volumes.light, &shadow, ray->distance, (double)sight->t);
+}
+
+/* The share of a sight's points that are not hidden, of all and of those with odd numbers. */
+static void shares_seen(const BeamTracer *tr, const Sight *sight, float *all, float *odd) {
+    int hidden = 0, odd_hidden = 0;
+    uint32_t at = sight->begin, first = tr->beam.samples.first[sight->pixel];
+    for (int i = sight->first; i != BEAM_NOTHING; i = tr->next[i], at++) {
+        hidden += tr->hidden[at];
+        odd_hidden += (((uint32_t)i - first) & 1) ? tr->hidden[at] : 0;
+    }
+    *all = 1 - (float)hidden / (float)sight->count;
+    *odd = sight->odd ? 1 - (float)odd_hidden / (float)sight->odd : *all;
+}
+
+/* Tones of all sights, without shadows, and the list of places whose shadows are wanted; returns how many. */
+static uint32_t ask_light(BeamTracer *tr, const Light *light) {
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < tr->sight_count; k++) {
+        Sight *sight = &tr->sights[k];
+        sight->tone = vec3f(0, 0, 0);
+        sight->begin = count;
+        sight->asked = false;
+        if (!sight->look) continue;
+        LightRay ray;
+        sight->tone = tone_of(sight, light, &ray);
+        if (light->shadowless || !(luminance(sight->tone) > 0)) continue;
+        count = add_points(tr, sight, &ray, count);
+        sight->asked = true;
+        sight->tone = vec3f_scale(sight->tone, through_voxels(tr, sight, &tr->cones[sight->pixel], &ray));
+    }
+    return count;
+}
+
+static void take_light(BeamTracer *tr) {
+    for (uint32_t k = 0; k < tr->sight_count; k++) {
+        Sight *sight = &tr->sights[k];
+        if (!(luminance(sight->tone) > 0)) continue;
+        float seen = 1, odd_seen = 1;
+        if (sight->asked) shares_seen(tr, sight, &seen, &odd_seen);
+        sight->light = vec3f_madd(sight->light, sight->tone, seen);
+        sight->odd_light = vec3f_madd(sight->odd_light, sight->tone, odd_seen);
+    }
+}
+
+void beam_add_light(BeamTracer *tr, const Light *light) {
+    uint32_t count = ask_light(tr, light);
+    hide_by_surfaces(tr, light);
+    ShadowPoints points = {.origin = tr->beam.origin, .points = tr->points, .distance = tr->distance, .hidden = tr->hidden, .count = count};
+    beam_shadow(&tr->shadow, tr->compiled, light, &points);
+    take_light(tr);
+}
+
+/* Whether the sky that a sight sees is asked for. */
+static bool under_sky(const BeamTracer *tr, const Sight *sight) {
+    return tr->compiled->scene->settings.sky_light && sight->look && vec3f_length(sight->up) > 0;
+}
+
+static uint32_t add_sky_points(BeamTracer *tr, const Sight *sight, uint32_t count) {
+    uint32_t first = tr->beam.samples.first[sight->pixel];
+    uint64_t x = (uint64_t)(tr->x0 + sight->pixel % tr->columns), y = (uint64_t)(tr->y0 + sight->pixel / tr->columns);
+    uint32_t turn = (uint32_t)random_hash(x, y, 2, tr->seed);
+    for (int i = sight->first; i != BEAM_NOTHING; i = tr->next[i], count++) {
+        double t;
+        tr->points[count] = vec3f_from(vec3_sub(beam_sample_point(tr, (uint32_t)i, &t), tr->beam.origin));
+        tr->distance[count] = (float)t;
+        tr->sky_up[count] = sight->up;
+        tr->sky_flat[count] = sight->bias;
+        tr->sky_turn[count] = (uint8_t)((turn + (uint32_t)tr->before + (uint32_t)i - first) % SKY_PAIRS);
+    }
+    return count;
+}
+
+static void ask_sky(BeamTracer *tr) {
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < tr->sight_count; k++) {
+        tr->sights[k].begin = count;
+        if (under_sky(tr, &tr->sights[k])) count = add_sky_points(tr, &tr->sights[k], count);
+    }
+    SkySamples samples = {tr->beam.origin, tr->points, tr->sky_up, tr->sky_flat, tr->distance, tr->sky_turn, tr->hidden, count};
+    if (count) beam_sky(&tr->sky, &tr->shadow, tr->compiled, &samples);
+}
+
+void beam_add_ambient(BeamTracer *tr) {
+    ask_sky(tr);
+    for (uint32_t k = 0; k < tr->sight_count; k++) {
+        Sight *s = &tr->sights[k];
+        if (!s->look) continue;
+        float seen = 1, odd_seen = 1;
+        if (under_sky(tr, s)) shares_seen(tr, s, &seen, &odd_seen);
+        s->light = vec3f_mul(vec3f_madd(s->look->emission, s->look->ambient, seen), s->color);
+        s->odd_light = vec3f_mul(vec3f_madd(s->look->emission, s->look->ambient, odd_seen), s->color);
+    }
+}

@@ -1,0 +1,115 @@
+#include "render/beam_sight.h"
+
+/* How far beside a place its shadow begins, in pixels and tiles. */
+static const double BIAS_PIXELS = 0.02, BIAS_TILES = 3e-4;
+
+static Vec3 facet_corner(const BeamFacet *f, int i) {
+    return skin_cell_position(f->cell, (double)f->corner[i].x, (double)f->corner[i].y, (double)f->corner[i].z, NULL);
+}
+
+/* Where the pigment of a facet is looked up: in the texel's bounds. */
+static Vec3 facet_place(const BeamFacet *f, Vec3 point, const Vec3 p[3], Vec3 normal) {
+    Vec3 e1 = vec3_sub(p[1], p[0]), e2 = vec3_sub(p[2], p[0]), r = vec3_sub(point, p[0]);
+    double area = vec3_length_squared(normal);
+    double u = area > 0 ? vec3_dot(vec3_cross(r, e2), normal) / area : 0, v = area > 0 ? vec3_dot(vec3_cross(e1, r), normal) / area : 0;
+    Vec3f c = vec3f_add(f->corner[0], vec3f_add(vec3f_scale(vec3f_sub(f->corner[1], f->corner[0]), (float)u),
+                                                vec3f_scale(vec3f_sub(f->corner[2], f->corner[0]), (float)v)));
+    SkinPoint at = {0, (double)c.x, (double)c.y, (double)c.z};
+    TexturePlace place = skin_texture_place(f->cell, &at);
+    const TexelCopy *copy = &f->copy;
+    Vec3 in = vec3(copy->xu * place.u + copy->xv * place.v + copy->x0, place.w * copy->inverse_scale,
+                   copy->zu * place.u + copy->zv * place.v + copy->z0);
+    if (copy->texel->beam->cyclic[0]) in.x -= floor(in.x);
+    if (copy->texel->beam->cyclic[1]) in.y -= floor(in.y);
+    if (copy->texel->beam->cyclic[2]) in.z -= floor(in.z);
+    Box3 b = copy->texel->def->bounds;
+    return vec3_add(b.min, vec3_mul(in, vec3_sub(b.max, b.min)));
+}
+
+/* Across the layer, away from the surface. */
+static Vec3f layer_up(const BeamFacet *f) {
+    Vec3f middle = vec3f_scale(vec3f_add(f->corner[0], vec3f_add(f->corner[1], f->corner[2])), 1.0f / 3);
+    SkinPoint at = {0, (double)middle.x, (double)middle.y, (double)middle.z};
+    TexturePlace place = skin_texture_place(f->cell, &at);
+    return vec3f_from(vec3_normalize(place.grad_layer));
+}
+
+static void see_facet(const BeamFacet *f, Vec3 point, double width, Sight *sight) {
+    Vec3 p[3] = {facet_corner(f, 0), facet_corner(f, 1), facet_corner(f, 2)};
+    Vec3 normal = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0])), unit = vec3_normalize(normal);
+    if (vec3f_dot(vec3f_from(unit), sight->view) < 0) unit = vec3_negate(unit);
+    sight->up = layer_up(f);
+    const Look *own = &f->copy.texel->matter[f->layer].look;
+    sight->look = f->placed->look ? f->placed->look : own;
+    sight->normal = sight->flat = vec3f_from(unit);
+    sight->bias = vec3f_from(vec3_scale(unit, BIAS_TILES * f->skin->tile_size + BIAS_PIXELS * width));
+    Vec3f color = sight->look->color;
+    if (!sight->look->uniform) {
+        Vec3 place = sight->look == own ? facet_place(f, point, p, normal) : point;
+        color = look_color(sight->look, place, unit, 0);
+    }
+    sight->color = vec3f_mul(color, f->copy.tint);
+}
+
+static void see_explicit(const SeenSurface *seen, Vec3 point, double width, double t, Sight *sight) {
+    const SurfaceHit *hit = &seen->hit;
+    Vec3 local = transform_point_back(&hit->space, point), local_normal = vec3_normalize(mat3_apply_transposed(&hit->space.linear, hit->normal));
+    double shrink = cbrt(fabs(mat3_determinant(&hit->space.inverse_linear))), facing = fmax(0.05, vec3_dot(hit->normal, vec3_from_f(sight->view)));
+    sight->look = hit->look;
+    sight->surface = hit;
+    sight->normal = vec3f_from(hit->normal);
+    sight->flat = vec3f_from(hit->flat);
+    sight->bias = vec3f_from(vec3_scale(hit->flat, 1e-5 * t + 0.01 * width));
+    sight->color = hit->look->uniform ? hit->look->color : look_color(hit->look, local, local_normal, width / facing * shrink);
+}
+
+/* Two explicit hits of one pixel that may share their shading. */
+static bool same_surface(const SeenSurface *a, const SeenSurface *b) {
+    return a == b || (a->found == b->found && (!a->found || (a->hit.object == b->hit.object && vec3_dot(a->hit.normal, b->hit.normal) > 0.999)));
+}
+
+/* The sight of the pixel, whose sights begin at `begin`, that the sample belongs to; sight_count if none does yet. */
+static uint32_t sight_of(const BeamTracer *tr, int pixel, uint32_t begin, uint32_t sample) {
+    const uint32_t *mark = tr->beam.samples.mark;
+    uint32_t k = begin;
+    for (; k < tr->sight_count; k++) {
+        uint32_t other = (uint32_t)tr->sights[k].first;
+        if (mark[sample] != mark[other]) continue;
+        if (mark[sample] || same_surface(beam_surface_of(tr, pixel, sample), beam_surface_of(tr, pixel, other))) break;
+    }
+    return k;
+}
+
+static Sight new_sight(const BeamTracer *tr, int pixel, uint32_t sample) {
+    Sight sight = {.pixel = pixel, .first = BEAM_NOTHING, .t = INFINITY};
+    uint32_t mark = tr->beam.samples.mark[sample];
+    if (!mark && !beam_surface_of(tr, pixel, sample)->found) return sight;
+    double t;
+    sight.point = beam_sample_point(tr, sample, &t);
+    sight.t = (float)t;
+    sight.view = vec3f_from(vec3_normalize(vec3_negate(beam_sample_line(tr, sample).direction)));
+    double width = cone_diameter(&tr->cones[pixel], t);
+    if (mark) see_facet(&tr->draft.facets[mark - 1], sight.point, width, &sight);
+    else see_explicit(beam_surface_of(tr, pixel, sample), sight.point, width, t, &sight);
+    return sight;
+}
+
+void beam_gather_sights(BeamTracer *tr) {
+    const BeamSamples *s = &tr->beam.samples;
+    tr->sight_count = 0;
+    for (int pixel = 0; pixel < tr->columns * tr->rows; pixel++) {
+        uint32_t begin = tr->sight_count;
+        for (uint32_t i = s->first[pixel]; i < s->first[pixel + 1]; i++) {
+            uint32_t k = sight_of(tr, pixel, begin, i);
+            Sight *sight = &tr->sights[k];
+            if (k == tr->sight_count) {
+                *sight = new_sight(tr, pixel, i);
+                tr->sight_count++;
+            }
+            tr->next[i] = sight->first;
+            sight->first = (int)i;
+            sight->count++;
+            sight->odd += (int)((i - s->first[pixel]) & 1);
+        }
+    }
+}

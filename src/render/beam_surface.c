@@ -1,0 +1,65 @@
+#include "render/beam_sight.h"
+
+static void see_surface(BeamTracer *tr, double x, double y, SeenSurface *out) {
+    BeamLine line = beam_line_at(tr, x, y);
+    Ray ray = {line.origin, vec3_scale(line.direction, 1 / line.length)};
+    out->found = hierarchy_intersect(tr->compiled->hierarchy, &ray, 1e-9, VTS_INFINITY, &out->hit);
+    tr->counters.camera_rays++;
+    if (!out->found) return;
+    /* q.z of the tangent plane n·(P − P0) = 0, along lines whose direction is linear in x and y. */
+    Vec3 p0 = vec3_madd(ray.origin, ray.direction, out->hit.t), n = out->hit.flat;
+    if (tr->beam.perspective) {
+        double far = 1 / vec3_dot(n, vec3_sub(p0, line.origin));
+        BeamLine a = beam_line_at(tr, x + 1, y), b = beam_line_at(tr, x, y + 1);
+        out->key_0 = vec3_dot(n, line.direction) * far;
+        out->key_x = vec3_dot(n, vec3_sub(a.direction, line.direction)) * far;
+        out->key_y = vec3_dot(n, vec3_sub(b.direction, line.direction)) * far;
+    } else {
+        double per = 1 / vec3_dot(n, line.direction);
+        BeamLine a = beam_line_at(tr, x + 1, y), b = beam_line_at(tr, x, y + 1);
+        out->key_0 = -vec3_dot(n, vec3_sub(p0, line.origin)) * per;
+        out->key_x = vec3_dot(n, vec3_sub(a.origin, line.origin)) * per;
+        out->key_y = vec3_dot(n, vec3_sub(b.origin, line.origin)) * per;
+    }
+    out->key_0 -= out->key_x * x + out->key_y * y;
+}
+
+/* Whether two neighbouring pixels may be taken for parts of one smooth surface. */
+static bool alike(const SeenSurface *a, const SeenSurface *b, double x, double y) {
+    if (a->found != b->found) return false;
+    if (!a->found) return true;
+    if (a->hit.object != b->hit.object || vec3_dot(a->hit.flat, b->hit.flat) < 0.95) return false;
+    double key_a = a->key_0 + a->key_x * x + a->key_y * y, key_b = b->key_0 + b->key_x * x + b->key_y * y;
+    return fabs(key_a - key_b) <= 0.01 * (fabs(key_a) + fabs(key_b));
+}
+
+const SeenSurface *beam_surface_of(const BeamTracer *tr, int pixel, uint32_t sample) {
+    if (tr->surface[sample] != BEAM_NOTHING) return &tr->surfaces[tr->surface[sample]];
+    int row = pixel / tr->columns, column = pixel % tr->columns;
+    return &tr->pixels[(row + 1) * BEAM_EDGE + column + 1];
+}
+
+void beam_see_surfaces(BeamTracer *tr) {
+    BeamSamples *s = &tr->beam.samples;
+    for (int row = -1; row <= tr->rows && tr->before == 0; row++)
+        for (int column = -1; column <= tr->columns; column++)
+            see_surface(tr, column + 0.5, row + 0.5, &tr->pixels[(row + 1) * BEAM_EDGE + column + 1]);
+    tr->surface_count = 0;
+    for (int row = 0; row < tr->rows; row++)
+        for (int column = 0; column < tr->columns; column++) {
+            const SeenSurface *p = &tr->pixels[(row + 1) * BEAM_EDGE + column + 1];
+            double x = column + 0.5, y = row + 0.5;
+            bool smooth = alike(p, p - 1, x - 0.5, y) && alike(p, p + 1, x + 0.5, y) && alike(p, p - BEAM_EDGE, x, y - 0.5) && alike(p, p + BEAM_EDGE, x, y + 0.5);
+            int pixel = row * tr->columns + column;
+            for (uint32_t i = s->first[pixel]; i < s->first[pixel + 1]; i++) {
+                double sx = (double)s->x[i], sy = (double)s->y[i];
+                const SeenSurface *at = p;
+                if (!smooth) {
+                    tr->surface[i] = (int32_t)tr->surface_count;
+                    at = &tr->surfaces[tr->surface_count++];
+                    see_surface(tr, sx, sy, &tr->surfaces[tr->surface[i]]);
+                }
+                s->key[i] = at->found ? (float)(at->key_0 + at->key_x * sx + at->key_y * sy) : tr->beam.perspective ? 0 : -INFINITY;
+            }
+        }
+}

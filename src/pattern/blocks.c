@@ -109,6 +109,7 @@ static int object_index(const Pigment *pigment, Vec3 p) {
 
 int block_index(const Pigment *pigment, Vec3 p) {
     switch (pigment->kind) {
+    case PATTERN_UV: return 0;
     case PATTERN_HEXAGON: return hexagon_index(p.x, p.z);
     case PATTERN_CUBIC: return cubic_index(p);
     case PATTERN_SQUARE: return square_index(p);

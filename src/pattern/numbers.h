@@ -2,6 +2,7 @@
 #ifndef VTS_PATTERN_NUMBERS_H
 #define VTS_PATTERN_NUMBERS_H
 
+#include "pattern/spot.h"
 #include "scene/scene.h"
 
 /* fractal.c: mandel, julia, magnet. */
@@ -10,6 +11,10 @@ double fractal_number(const Pigment *pigment, Vec3 p);
 double crackle_number(const Pigment *pigment, Vec3 p);
 /* water.c: ripples and waves, from 0 to 1; `wave` weighs long waves more. */
 double water_number(const Pigment *pigment, Vec3 p, bool waves);
+/* What they add to a normal; waves shorter than the spot fade. */
+Vec3 water_bump(const Pigment *pigment, const Spot *spot, bool waves);
+/* quilted: the Bézier curve through the two controls, of the distance from a cell's middle. */
+double quilt_curve(const Pigment *pigment, double t);
 /* density.c: 0 outside of the unit cube. */
 double density_number(const Pigment *pigment, Vec3 p);
 

@@ -7,6 +7,7 @@
 #ifndef VTS_PATTERN_PATTERN_H
 #define VTS_PATTERN_PATTERN_H
 
+#include "pattern/spot.h"
 #include "scene/scene.h"
 
 /* The colour at `point` of the textured object's space. `normal` (unit, or zero) is used by slope patterns too. */
@@ -25,6 +26,33 @@ typedef struct SurfaceLook {
 
 /* The point is in the textured object's space. */
 SurfaceLook texture_look(const Texture *texture, Vec3 point, Vec3 normal, double footprint);
+
+/* Where a ray met a surface, all of it in the scene's space: the input of textures in full. */
+typedef struct SurfacePlace {
+    Vec3 point;
+    Vec3 normal;            /* unit, of the surface, or interpolated as a smooth triangle's: what normals perturb */
+    double footprint;       /* diameter on the surface; 0: the point alone */
+    Vec3 axes[2];           /* the footprint's two axes of full width along the surface, where known; else zero */
+    const Transform *space; /* space of the textured object → scene; NULL: the same */
+    SpotSurface surface;    /* the ray's direction, u and v */
+} SurfacePlace;
+
+/* One of the plain textures (with the layers under it) that a texture of a map is at a place. */
+typedef struct TexturePart {
+    const Texture *texture; /* topmost layer; walk `under` for the others */
+    double weight;
+    Spot spot;              /* in the space in which its maps stand */
+    const Transform *space; /* from the texture's own to that space; NULL: the same */
+    Mat3 linear;            /* vectors of that space → scene */
+} TexturePart;
+
+/* Resolves texture_map, material_map, uv_mapping and the like: at most `most` (at least 1) parts with weights that add up to 1, the
+ * heaviest if there are more; a plain texture is one part. They point to `place`, which must outlive them. Returns how many. */
+size_t texture_parts(const Texture *texture, const SurfacePlace *place, TexturePart *out, size_t most);
+/* The pigment's colour of one layer of the part. `normal`: the perturbed one of the scene, for slope and aoi. */
+Color texture_layer_color(const TexturePart *part, const Texture *layer, Vec3 normal);
+/* The unit normal of the scene as the layer perturbs it, `normal` as it is without that. Bumps finer than the footprint are smoothed. */
+Vec3 texture_layer_normal(const TexturePart *part, const Texture *layer, Vec3 normal);
 
 /* `top` laid over `below`. Light that comes back: top's own, where it is opaque, and what its filter lets through of the
  * layer below. */

@@ -102,3 +102,10 @@ double picture_map_value(const ImageMap *image, const Spot *spot) {
     if (image->use_alpha && image->picture->has_alpha) return 1 - c.alpha; /* as POV-Ray */
     return 0.297 * c.red + 0.589 * c.green + 0.114 * c.blue;
 }
+
+size_t picture_map_index(const ImageMap *image, const Spot *spot) {
+    PictureColor c;
+    Spot middle = {.p = spot->p};
+    if (!look_up(image, &middle, &c)) return 0;
+    return (size_t)(255 * double_clamp(c.red, 0, 1));
+}

@@ -9,5 +9,7 @@
 Color picture_map_color(const ImageMap *image, const Spot *spot);
 /* Its grey; 1 - alpha where the text asks for that and the picture has one. */
 double picture_map_value(const ImageMap *image, const Spot *spot);
+/* material_map: the picture's palette index, or the red of 256, at a spot's middle. */
+size_t picture_map_index(const ImageMap *image, const Spot *spot);
 
 #endif

@@ -6,49 +6,27 @@
 
 #include "tape/noise.h"
 
-static void add_color(Color *sum, Color color, double weight) {
-    sum->red += weight * color.red;
-    sum->green += weight * color.green;
-    sum->blue += weight * color.blue;
-    sum->filter += weight * color.filter;
-    sum->transmit += weight * color.transmit;
-}
+/* ---- what patterns make of their entries ---- */
 
-/* Pigments of a map stand in the space of the pattern, its turbulence included, as in POV-Ray. */
-static Color entry_color(const ColorMapEntry *entry, const Spot *spot) {
-    return entry->pigment ? pigment_color_at(entry->pigment, spot) : entry->color;
-}
-
-static Color mapped(ColorMap map, const MapPieces *pieces, const Spot *spot) {
-    Color sum = {0, 0, 0, 0, 0};
+static void blend_pieces(ColorMap map, const MapPieces *pieces, double share, BlendVisit *visit, void *target) {
     for (size_t k = 0; k < map.count; k++) {
         double weight = colormap_weight(map, k, pieces);
-        if (weight > 0) add_color(&sum, entry_color(&map.entries[k], spot), weight);
+        if (weight > 0) visit(target, k, share * weight);
     }
-    return sum;
 }
 
-static Color mapped_spread(const Pigment *pigment, Spread spread, const Spot *spot) {
-    MapPieces pieces = colormap_pieces(pigment, spread);
-    return mapped(colormap_of(pigment), &pieces, spot);
+static void blend_spread(const Pigment *pattern, Spread spread, double share, BlendVisit *visit, void *target) {
+    MapPieces pieces = colormap_pieces(pattern, spread);
+    blend_pieces(colormap_of(pattern), &pieces, share, visit, target);
 }
 
-/* ---- blocks ---- */
-
-static Color block_color(const Pigment *pigment, const Spot *spot) {
+static void blend_blocks(const Pigment *pattern, const Spot *spot, BlendVisit *visit, void *target) {
     double shares[BLOCK_KINDS];
-    Color sum = {0, 0, 0, 0, 0};
-    Pigment plain = {.kind = pigment->kind};
-    ColorMap map = colormap_of(pigment), own = colormap_of(&plain);
-    block_shares(pigment, spot, shares);
-    size_t kinds = (size_t)pattern_traits(pigment->kind).blocks;
-    for (size_t k = 0; k < kinds; k++) /* colours that were not given are the pattern's own */
-        if (shares[k] > 0)
-            add_color(&sum, entry_color(&(k < map.count ? map : own).entries[k], spot), shares[k]);
-    return sum;
+    block_shares(pattern, spot, shares);
+    size_t kinds = (size_t)pattern_traits(pattern->kind).blocks;
+    for (size_t k = 0; k < kinds; k++)
+        if (shares[k] > 0) visit(target, k, shares[k]);
 }
-
-/* ---- cells ---- */
 
 static double cell_value(Vec3 p) {
     return noise_pov_cell(vec3(floor(p.x + 1e-7), floor(p.y + 1e-7), floor(p.z + 1e-7)));
@@ -62,63 +40,85 @@ static double cell_share(double x, double width, double corner) {
 }
 
 /* The mean over the cells that the footprint's box covers: at most three along each axis. */
-static Color cells_covered(const Pigment *pigment, const Spot *spot, const double width[3]) {
+static void blend_covered(const Pigment *pattern, const Spot *spot, const double width[3], double whole, BlendVisit *visit, void *target) {
     Vec3 p = spot->p, corner = vec3(floor(p.x + 1e-7), floor(p.y + 1e-7), floor(p.z + 1e-7));
-    Color sum = {0, 0, 0, 0, 0};
     for (int k = 0; k < 27; k++) {
         Vec3 at = vec3_add(corner, vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
-        double share = cell_share(p.x, width[0], at.x) * cell_share(p.y, width[1], at.y) *
-                       cell_share(p.z, width[2], at.z);
-        if (share > 0) add_color(&sum, mapped_spread(pigment, (Spread){noise_pov_cell(at), 0}, spot), share);
+        double share = cell_share(p.x, width[0], at.x) * cell_share(p.y, width[1], at.y) * cell_share(p.z, width[2], at.z);
+        if (share > 0) blend_spread(pattern, (Spread){noise_pov_cell(at), 0}, share * whole, visit, target);
     }
-    return sum;
 }
 
-static Color cells_color(const Pigment *pigment, const Spot *spot) {
+static void blend_cells(const Pigment *pattern, const Spot *spot, BlendVisit *visit, void *target) {
     double width[3], widest = 0;
     for (int k = 0; k < 3; k++) {
         width[k] = spot_width(spot, vec3(k == 0, k == 1, k == 2));
         widest = fmax(widest, width[k]);
     }
     double far = double_clamp(widest - 1, 0, 1);
-    Color sum = {0, 0, 0, 0, 0};
-    if (far < 1) add_color(&sum, cells_covered(pigment, spot, width), 1 - far);
-    if (far > 0) add_color(&sum, mapped_spread(pigment, (Spread){0.5, 1}, spot), far); /* all values alike */
-    return sum;
+    if (far < 1) blend_covered(pattern, spot, width, 1 - far, visit, target);
+    if (far > 0) blend_spread(pattern, (Spread){0.5, 1}, far, visit, target); /* all values alike */
 }
 
-/* ---- patterns of which only values are known ---- */
-
-/* The mean of four places, each with the range of all of them. */
-static Color sampled_color(const Pigment *pigment, const Spot *spot) {
+/* Of patterns of which only values are known: the mean of four places, each with the range of all of them. */
+static void blend_sampled(const Pigment *pattern, const Spot *spot, BlendVisit *visit, void *target) {
     static const double places[4][2] = {{-0.125, -0.375}, {0.375, -0.125}, {0.125, 0.375}, {-0.375, 0.125}};
-    if (spot_is_point(spot)) return mapped_spread(pigment, pattern_value(pigment, spot), spot);
     Vec3 u = spot->axes[0], v = spot->axes[1];
     if (spot->blur > 0) u = vec3(spot_size(spot), 0, 0), v = vec3(0, 0, spot_size(spot));
     double values[4], lo = (double)INFINITY, hi = -(double)INFINITY;
     for (int k = 0; k < 4; k++) {
         Spot place = *spot;
         place.p = vec3_madd(vec3_madd(spot->p, u, places[k][0]), v, places[k][1]);
-        values[k] = pattern_value(pigment, &place).value;
+        values[k] = pattern_value(pattern, &place).value;
         lo = fmin(lo, values[k]), hi = fmax(hi, values[k]);
     }
-    Color sum = {0, 0, 0, 0, 0};
-    for (int k = 0; k < 4; k++)
-        add_color(&sum, mapped_spread(pigment, (Spread){values[k], (hi - lo) / 2}, spot), 0.25);
-    return sum;
+    for (int k = 0; k < 4; k++) blend_spread(pattern, (Spread){values[k], (hi - lo) / 2}, 0.25, visit, target);
+}
+
+static void blend_average(const Pigment *pattern, BlendVisit *visit, void *target) {
+    double total = 0;
+    for (size_t k = 0; k < pattern->entry_count; k++) total += pattern->entries[k].position;
+    if (!(fabs(total) > 0)) return;
+    for (size_t k = 0; k < pattern->entry_count; k++) visit(target, k, pattern->entries[k].position / total);
+}
+
+void pattern_blend(const Pigment *pattern, const Spot *spot, BlendVisit *visit, void *target) {
+    PatternTraits traits = pattern_traits(pattern->kind);
+    if (traits.blocks)
+        blend_blocks(pattern, spot, visit, target);
+    else if (pattern->kind == PATTERN_CELLS)
+        blend_cells(pattern, spot, visit, target);
+    else if (pattern->kind == PATTERN_AVERAGE)
+        blend_average(pattern, visit, target);
+    else if (pattern->kind == PATTERN_MATERIAL)
+        visit(target, pattern->image ? picture_map_index(pattern->image, spot) % size_max(pattern->entry_count, 1) : 0, 1);
+    else if (traits.sampled && !spot_is_point(spot))
+        blend_sampled(pattern, spot, visit, target);
+    else
+        blend_spread(pattern, pattern_value(pattern, spot), 1, visit, target);
+}
+
+/* ---- colours ---- */
+
+typedef struct ColorSum {
+    ColorMap map, own; /* `own`: the pattern's, where entries were not given */
+    const Spot *spot;
+    Color sum;
+} ColorSum;
+
+/* Pigments of a map stand in the space of the pattern, its turbulence included, as in POV-Ray. */
+static void add_entry(void *target, size_t k, double share) {
+    ColorSum *s = target;
+    const ColorMapEntry *entry = &(k < s->map.count ? s->map : s->own).entries[k];
+    Color c = entry->pigment ? pigment_color_at(entry->pigment, s->spot) : entry->color;
+    s->sum.red += share * c.red;
+    s->sum.green += share * c.green;
+    s->sum.blue += share * c.blue;
+    s->sum.filter += share * c.filter;
+    s->sum.transmit += share * c.transmit;
 }
 
 /* ---- pigments ---- */
-
-static Color average_color(const Pigment *pigment, const Spot *spot) {
-    Color sum = {0, 0, 0, 0, 0};
-    double total = 0;
-    for (size_t k = 0; k < pigment->entry_count; k++) total += pigment->entries[k].position;
-    if (!(fabs(total) > 0)) return sum;
-    for (size_t k = 0; k < pigment->entry_count; k++)
-        add_color(&sum, entry_color(&pigment->entries[k], spot), pigment->entries[k].position / total);
-    return sum;
-}
 
 Color pigment_color_at(const Pigment *pigment, const Spot *outer) {
     if (pigment->kind == PATTERN_SOLID) return pigment->color;
@@ -126,11 +126,10 @@ Color pigment_color_at(const Pigment *pigment, const Spot *outer) {
     Spot spot = spot_in_pattern(pigment, outer, traits.warps_itself);
     if (pigment->kind == PATTERN_IMAGE_MAP)
         return pigment->image ? picture_map_color(pigment->image, &spot) : pigment->color;
-    if (traits.blocks) return block_color(pigment, &spot);
-    if (pigment->kind == PATTERN_CELLS) return cells_color(pigment, &spot);
-    if (pigment->kind == PATTERN_AVERAGE) return average_color(pigment, &spot);
-    if (traits.sampled) return sampled_color(pigment, &spot);
-    return mapped_spread(pigment, pattern_value(pigment, &spot), &spot);
+    Pigment plain = {.kind = pigment->kind};
+    ColorSum sum = {.map = colormap_of(pigment), .own = colormap_of(&plain), .spot = &spot};
+    pattern_blend(pigment, &spot, add_entry, &sum);
+    return sum.sum;
 }
 
 Color pigment_color(const Pigment *pigment, Vec3 point, Vec3 normal, double footprint) {
@@ -138,17 +137,21 @@ Color pigment_color(const Pigment *pigment, Vec3 point, Vec3 normal, double foot
     return pigment_color_at(pigment, &spot);
 }
 
+double pattern_number(const Pigment *pattern, const Spot *spot) {
+    PatternTraits traits = pattern_traits(pattern->kind);
+    if (traits.blocks && pattern->kind != PATTERN_CHECKER && pattern->kind != PATTERN_BRICK)
+        return block_index(pattern, spot->p);
+    double value = traits.blocks                    ? block_index(pattern, spot->p)
+                   : pattern->kind == PATTERN_CELLS ? cell_value(spot->p)
+                                                    : pattern_value(pattern, spot).value;
+    return colormap_pieces(pattern, (Spread){value, 0}).items[0].lo;
+}
+
 double pigment_value(const Pigment *pigment, Vec3 point, Vec3 normal) {
     if (pigment->kind == PATTERN_SOLID || pigment->kind == PATTERN_IMAGE_MAP) return 0;
     Spot outer = spot_make(point, normal, 0);
-    PatternTraits traits = pattern_traits(pigment->kind);
-    Spot spot = spot_in_pattern(pigment, &outer, traits.warps_itself);
-    if (traits.blocks && pigment->kind != PATTERN_CHECKER && pigment->kind != PATTERN_BRICK)
-        return block_index(pigment, spot.p);
-    double value = traits.blocks                     ? block_index(pigment, spot.p)
-                   : pigment->kind == PATTERN_CELLS ? cell_value(spot.p)
-                                                    : pattern_value(pigment, &spot).value;
-    return colormap_pieces(pigment, (Spread){value, 0}).items[0].lo;
+    Spot spot = spot_in_pattern(pigment, &outer, pattern_traits(pigment->kind).warps_itself);
+    return pattern_number(pigment, &spot);
 }
 
 static bool same_color(Color a, Color b) {
@@ -157,7 +160,7 @@ static bool same_color(Color a, Color b) {
 }
 
 bool pigment_is_uniform(const Pigment *pigment, Color *color) {
-    if (pigment->kind == PATTERN_IMAGE_MAP) return false;
+    if (pigment->kind == PATTERN_IMAGE_MAP || pigment->kind == PATTERN_MATERIAL) return false;
     if (pigment->kind == PATTERN_SOLID) return *color = pigment->color, true;
     ColorMap map = colormap_of(pigment);
     if (map.count < (size_t)pattern_traits(pigment->kind).blocks) return false;

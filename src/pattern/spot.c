@@ -13,11 +13,20 @@ Spot spot_make(Vec3 point, Vec3 normal, double footprint) {
 }
 
 Spot spot_back(const Spot *spot, const Transform *t) {
-    Spot back = {.p = transform_point_back(t, spot->p), .normal = spot->normal};
+    Spot back = {.p = transform_point_back(t, spot->p), .normal = spot->normal, .surface = spot->surface};
     for (int k = 0; k < 3; k++) back.axes[k] = transform_vector_back(t, spot->axes[k]);
     if (spot->blur > 0) /* by the mean scale of the axes' directions */
         back.blur = spot->blur * cbrt(fabs(mat3_determinant(&t->inverse_linear)));
     return back;
+}
+
+Spot spot_in_uv(const Spot *spot) {
+    Spot plane = {.normal = spot->normal, .surface = spot->surface};
+    if (!spot->surface) return plane;
+    const SpotSurface *s = spot->surface;
+    plane.p = vec3(s->uv[0], s->uv[1], 0);
+    for (int k = 0; k < 2; k++) plane.axes[k] = vec3(s->uv_axes[k][0], s->uv_axes[k][1], 0);
+    return plane;
 }
 
 double spot_width(const Spot *spot, Vec3 g) {

@@ -18,19 +18,30 @@ Color color_over(Color top, Color below) {
                    (opaque * top.blue + blue * below_opaque * below.blue) * scale, 0, through};
 }
 
-static Color layer_color(const Texture *texture, const Spot *outer) {
-    Spot spot = spot_back(outer, &texture->transform);
-    return pigment_color_at(texture->pigment, &spot);
+/* All layers of one part. */
+static Color part_color(const TexturePart *part, Vec3 normal) {
+    const Texture *layers[16];
+    size_t count = 0;
+    for (const Texture *t = part->texture; t && count < VTS_ARRAY_COUNT(layers); t = t->under) layers[count++] = t;
+    Color color = texture_layer_color(part, layers[count - 1], normal);
+    for (size_t k = count - 1; k-- > 0;) color = color_over(texture_layer_color(part, layers[k], normal), color);
+    return color;
 }
 
 SurfaceLook texture_look(const Texture *texture, Vec3 point, Vec3 normal, double footprint) {
-    Spot spot = spot_make(point, normal, footprint);
-    const Texture *layers[16];
-    size_t count = 0;
-    for (const Texture *t = texture; t && count < VTS_ARRAY_COUNT(layers); t = t->under) layers[count++] = t;
-    Color color = layer_color(layers[count - 1], &spot);
-    for (size_t k = count - 1; k-- > 0;) color = color_over(layer_color(layers[k], &spot), color);
-    return (SurfaceLook){color, texture->finish};
+    enum { MOST = 8 };
+    TexturePart parts[MOST];
+    SurfacePlace place = {.point = point, .normal = normal, .footprint = footprint};
+    size_t count = texture_parts(texture, &place, parts, MOST), heaviest = 0;
+    Color sum = {0, 0, 0, 0, 0};
+    for (size_t i = 0; i < count; i++) {
+        Color c = part_color(&parts[i], normal);
+        double w = parts[i].weight;
+        sum = (Color){sum.red + w * c.red, sum.green + w * c.green, sum.blue + w * c.blue, sum.filter + w * c.filter,
+                      sum.transmit + w * c.transmit};
+        if (w > parts[heaviest].weight) heaviest = i;
+    }
+    return (SurfaceLook){sum, parts[heaviest].texture->finish};
 }
 
 Color sky_color(const Pigment *const *layers, size_t count, Vec3 direction, double footprint) {

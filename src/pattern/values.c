@@ -17,6 +17,7 @@ PatternTraits pattern_traits(PatternKind kind) {
     case PATTERN_FUNCTION: return (PatternTraits){.restart = RESTART_PAST_ONE, .sampled = true};
     case PATTERN_ONION: return (PatternTraits){.restart = RESTART_AT_ONE};
     case PATTERN_RADIAL: return (PatternTraits){.bounded = false};
+    case PATTERN_UV: return (PatternTraits){.blocks = 1};
     case PATTERN_CHECKER:
     case PATTERN_BRICK:
     case PATTERN_OBJECT: return (PatternTraits){.blocks = 2};
@@ -212,11 +213,15 @@ static double slope(const Pigment *pigment, const Spot *spot) {
 
 /* ---- others ---- */
 
+double quilt_curve(const Pigment *pigment, double t) {
+    double rest = 1 - t;
+    return t * t * t + 3 * t * rest * (rest * pigment->control0 + t * pigment->control1);
+}
+
+/* From 0 to 1, stretched to the cell's corners. */
 static double quilted(const Pigment *pigment, Vec3 p) {
     Vec3 d = vec3(p.x - floor(p.x) - 0.5, p.y - floor(p.y) - 0.5, p.z - floor(p.z) - 0.5);
-    double t = vec3_length(d), rest = 1 - t; /* a Bézier curve from 0 to 1, stretched to the cell's corners */
-    double curve = t * t * t + 3 * t * rest * (rest * pigment->control0 + t * pigment->control1);
-    return curve * 1.154700538 * (fabs(d.x) + fabs(d.y) + fabs(d.z)) / 3;
+    return quilt_curve(pigment, vec3_length(d)) * 1.154700538 * (fabs(d.x) + fabs(d.y) + fabs(d.z)) / 3;
 }
 
 static double triangle(double x) {

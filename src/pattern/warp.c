@@ -94,6 +94,7 @@ static Spot spot_kept(Spot spot) {
 }
 
 Spot spot_in_pattern(const Pigment *pigment, const Spot *outer, bool warps_itself) {
+    if (pigment->kind == PATTERN_UV) return spot_in_uv(outer);
     Spot spot = spot_back(outer, &pigment->transform);
     for (size_t i = pigment->warp_count; i-- > 0;) {
         spot = warp_spot(&pigment->warps[i], &spot);

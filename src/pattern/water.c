@@ -11,15 +11,42 @@ static double next_frequency(uint32_t *state) {
 
 static double cycloid(double x) { return sin(2 * VTS_PI * (x - floor(x))); }
 
+typedef struct WaveSource {
+    Vec3 away;     /* unit, from the source to the place */
+    double length; /* distance in wavelengths, phase added */
+    double frequency, rise;
+} WaveSource;
+
+static WaveSource wave_source(const Pigment *pigment, Vec3 p, int i, double frequency) {
+    Vec3 away = vec3_sub(p, vec3_normalize(noise_pov_vector(vec3(i, 0, 0))));
+    double length = vec3_length(away);
+    if (length == 0) length = 1;
+    return (WaveSource){vec3_scale(away, 1 / length), length, frequency,
+                        cycloid(length * pigment->frequency * frequency + pigment->phase) / frequency};
+}
+
 double water_number(const Pigment *pigment, Vec3 p, bool waves) {
     uint32_t state = 3734115329u; /* -560851967 */
     double sum = 0;
-    for (int i = 0; i < pigment->wave_count; i++) {
-        Vec3 source = vec3_normalize(noise_pov_vector(vec3(i, 0, 0)));
-        double length = vec3_length(vec3_sub(p, source)), frequency = waves ? next_frequency(&state) : 1;
-        if (length == 0) length = 1;
-        sum += cycloid(length * pigment->frequency * frequency + pigment->phase) / frequency;
-    }
+    for (int i = 0; i < pigment->wave_count; i++)
+        sum += wave_source(pigment, p, i, waves ? next_frequency(&state) : 1).rise;
     double mean = sum / int_max(pigment->wave_count, 1);
     return waves ? 0.2 * (2.5 + mean) : 0.5 * (1 + mean);
+}
+
+/* The mean of a sine over an interval of `width` periods, relative to the sine in its middle. */
+static double sine_kept(double width) {
+    double half = VTS_PI * fmin(fabs(width), 1);
+    return half > 1e-6 ? sin(half) / half : 1;
+}
+
+Vec3 water_bump(const Pigment *pigment, const Spot *spot, bool waves) {
+    uint32_t state = 3734115329u;
+    Vec3 sum = {0, 0, 0};
+    for (int i = 0; i < pigment->wave_count; i++) {
+        WaveSource s = wave_source(pigment, spot->p, i, waves ? next_frequency(&state) : 1);
+        double kept = sine_kept(spot_width(spot, s.away) * pigment->frequency * s.frequency);
+        sum = vec3_madd(sum, s.away, kept * s.rise);
+    }
+    return vec3_scale(sum, 1.0 / int_max(pigment->wave_count, 1));
 }

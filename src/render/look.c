@@ -15,7 +15,7 @@ Look look_from_texture(const Texture *texture, const GlobalSettings *settings) {
     look.ambient = vec3f_mul(vec3f_from_color(f->ambient), vec3f_from_color(settings->ambient_light));
     look.emission = vec3f_from_color(f->emission);
     Color color;
-    look.uniform = !texture->under && pigment_is_uniform(texture->pigment, &color);
+    look.uniform = !texture->under && !texture->map && pigment_is_uniform(texture->pigment, &color);
     if (look.uniform) look.color = vec3f_from_color(color);
     return look;
 }

@@ -46,6 +46,10 @@ typedef enum PatternKind {
     PATTERN_TILING,
     PATTERN_IMAGE_MAP, /* no value: the colours of `image` */
     PATTERN_IMAGE,     /* its grey */
+    PATTERN_UV,        /* no value: its one entry, seen in the plane of the surface's u and v */
+    PATTERN_MATERIAL,  /* entry by the index, or else the red, of `image` */
+    PATTERN_AOI,       /* angle between the ray and the surface */
+    PATTERN_PAVEMENT,
 } PatternKind;
 
 /* What becomes of a pattern's value, frequency and phase applied. */
@@ -177,16 +181,58 @@ typedef struct Finish {
     bool fresnel;
 } Finish;
 
-enum { TEXTURE_MOST_LAYERS = 1000 };
-typedef struct Texture {
+/* How a bump comes about. All but the last have vector fields of their own. */
+typedef enum NormalForm {
+    NORMAL_GRADIENT, /* the slope of the pattern's value */
+    NORMAL_BUMPS, NORMAL_DENTS, NORMAL_RIPPLES, NORMAL_WAVES, NORMAL_WRINKLES, NORMAL_QUILTED, NORMAL_FACETS,
+    NORMAL_PICTURE,  /* bump_map: of the pattern's image */
+    NORMAL_MAP       /* several normals, blended by the pattern */
+} NormalForm;
+
+typedef struct SlopeEntry {
+    double position, height, slope;
+} SlopeEntry;
+
+typedef struct Normal Normal;
+struct Normal {
     Span span;
     Hash128 hash;
-    const Pigment *pigment; /* never NULL */
-    const Finish *finish;   /* never NULL */
+    NormalForm form;
+    int depth;                     /* normals within each other, this one included; at most PIGMENT_DEEPEST */
+    double work;                   /* as a pigment's */
+    const Pigment *pattern;        /* never NULL: settings, warps and transform; of NORMAL_MAP, entries with positions alone */
+    double amount;                 /* bump_size; 0.5 */
+    double accuracy;               /* how far from each other values are compared; 0.02 */
+    bool unscaled;                 /* no_bump_scale */
+    const Normal *const *normals;  /* of NORMAL_MAP, one for each entry of the pattern */
+    size_t normal_count;
+    const SlopeEntry *slopes;      /* slope_map, sorted; NULL */
+    size_t slope_count;
+};
+
+enum { TEXTURE_MOST_LAYERS = 1000 };
+typedef struct Texture Texture;
+
+/* texture_map and its like: a pattern chooses among whole textures, which stand in its space, turbulence included. */
+typedef struct TextureMap {
+    const Pigment *pattern; /* its entries have positions alone: entry i is that of textures[i] */
+    const Texture *const *textures;
+    size_t count; /* at least 1 */
+    int depth;    /* maps within each other, this one included; at most PIGMENT_DEEPEST */
+    double work;  /* as a pigment's */
+} TextureMap;
+
+struct Texture {
+    Span span;
+    Hash128 hash;
+    const Pigment *pigment; /* never NULL; of a map: the first texture's */
+    const Finish *finish;   /* never NULL; the same */
     Transform transform;    /* texture space → object space */
-    const struct Texture *under; /* the layer below, seen through this one's filter and transmit; or NULL */
+    const Texture *under;   /* the layer below, seen through this one's filter and transmit; or NULL */
     const InertNote *inert;
-} Texture;
+    const Normal *normal;   /* or NULL */
+    const TextureMap *map;  /* NULL: plain */
+};
 
 /* ---- objects ---- */
 

@@ -14,7 +14,8 @@ enum {
     KIND_LAYER,
     KIND_TEXEL,
     KIND_SURFACE,
-    KIND_SKIN
+    KIND_SKIN,
+    KIND_NORMAL
 };
 
 void hash_add_vec3(Hash128 *hash, Vec3 v) {
@@ -149,7 +150,24 @@ void texture_rehash(Texture *t) {
     hash_add_hash(&h, t->finish->hash);
     hash_add_transform(&h, &t->transform);
     add_texture(&h, t->under);
+    if (t->normal) hash_add_hash(&h, t->normal->hash);
+    if (t->map) {
+        hash_add_hash(&h, t->map->pattern->hash);
+        for (size_t i = 0; i < t->map->count; i++) add_texture(&h, t->map->textures[i]);
+    }
     t->hash = h;
+}
+
+void normal_rehash(Normal *n) {
+    Hash128 h = hash_begin(KIND_NORMAL);
+    hash_add_u64(&h, n->form);
+    hash_add_hash(&h, n->pattern->hash);
+    hash_add_vec3(&h, vec3(n->amount, n->accuracy, n->unscaled));
+    hash_add_u64(&h, n->normal_count);
+    for (size_t i = 0; i < n->normal_count; i++) hash_add_hash(&h, n->normals[i]->hash);
+    for (size_t i = 0; i < n->slope_count; i++)
+        hash_add_vec3(&h, vec3(n->slopes[i].position, n->slopes[i].height, n->slopes[i].slope));
+    n->hash = h;
 }
 
 void mesh_rehash(MeshData *m) {

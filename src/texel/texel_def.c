@@ -64,7 +64,7 @@ static Color mean_color(const Texture *texture, Box3 bounds) {
 
 TexelFileLayer texel_file_layer(const Texture *texture, Box3 bounds, VoxelLayer *voxels) {
     TexelFileLayer layer = {.voxels = voxels, .finish = *texture->finish};
-    layer.averaged = texture->under || !pigment_is_uniform(texture->pigment, &layer.color);
+    layer.averaged = texture->under || texture->map || !pigment_is_uniform(texture->pigment, &layer.color);
     if (layer.averaged) layer.color = mean_color(texture, bounds);
     return layer;
 }

@@ -10,16 +10,30 @@ typedef struct CameraDraft {
     Vec3 sky, look_at;
     double angle; /* 0: not given */
     Span angle_span;
-    bool wide; /* a kind of camera whose angle may be 180 degrees or more */
-    bool has_right, has_up, has_look_at;
+    double angle_v; /* likewise: the second number of `angle` */
+    Vec3 focal_point;
+    bool has_right, has_up, has_look_at, has_focal_point;
     Span look_at_span;
     Transform transform;
 } CameraDraft;
 
 static const double DEFAULT_ASPECT = 1.33; /* POV-Ray's right vector */
+enum { MOST_BLUR_SAMPLES = 1 << 20 };
 
-static const char *const kinds[] = {"perspective", "orthographic", "fisheye",  "ultra_wide_angle", "omnimax",
-                                    "panoramic",   "spherical",    "cylinder", "mesh_camera"};
+static const struct {
+    const char *word;
+    CameraKind kind;
+} kinds[] = {
+    {"perspective", CAMERA_PERSPECTIVE},
+    {"orthographic", CAMERA_ORTHOGRAPHIC},
+    {"fisheye", CAMERA_FISHEYE},
+    {"ultra_wide_angle", CAMERA_ULTRA_WIDE},
+    {"omnimax", CAMERA_OMNIMAX},
+    {"panoramic", CAMERA_PANORAMIC},
+    {"spherical", CAMERA_SPHERICAL},
+    {"cylinder", CAMERA_CYLINDER_1},
+    {"mesh_camera", CAMERA_PERSPECTIVE},
+};
 
 /* As in POV-Ray, since the kind decides what the words after it mean. */
 static void expect_first(Reader *reader, const Word *word) {
@@ -28,22 +42,11 @@ static void expect_first(Reader *reader, const Word *word) {
         bool kind = false;
         if (item_as_word(&reader->block->items[i], &before))
             for (size_t k = 0; k < VTS_ARRAY_COUNT(kinds); k++)
-                kind = kind || strcmp(kinds[k], before.text) == 0;
+                kind = kind || strcmp(kinds[k].word, before.text) == 0;
         if (kind) continue;
         reader_error(reader, word->span, "the kind of a camera comes first");
         return;
     }
-}
-
-static void read_perspective(Reader *reader, const Word *word, void *target) {
-    (void)target;
-    expect_first(reader, word);
-    word_arguments(reader, word, 0, 0);
-}
-
-static void read_orthographic(Reader *reader, const Word *word, void *target) {
-    expect_first(reader, word);
-    if (word_arguments(reader, word, 0, 0)) ((CameraDraft *)target)->camera.kind = CAMERA_ORTHOGRAPHIC;
 }
 
 static void read_right(Reader *reader, const Word *word, void *target) {
@@ -66,32 +69,62 @@ static void read_look_at(Reader *reader, const Word *word, void *target) {
 static void read_angle(Reader *reader, const Word *word, void *target) {
     CameraDraft *draft = target;
     if (!word_arguments(reader, word, 1, 2) || !word_float(reader, word, 0, &draft->angle)) return;
+    if (word->count > 1 && !word_float(reader, word, 1, &draft->angle_v)) return;
     draft->angle_span = word->arguments[0].span;
     if (draft->angle < 0)
         reader_error(reader, draft->angle_span, "the camera's angle cannot be negative, found %g",
                      draft->angle);
 }
 
-static void read_kind(Reader *reader, const Word *word, void *target) {
-    CameraDraft *draft = target;
+static void read_cylinder(Reader *reader, const Word *word, CameraDraft *draft) {
     double type = 1;
-    draft->wide = true;
-    expect_first(reader, word);
-    grammar_word(reader, word);
-    if (strcmp(word->text, "cylinder") == 0 && word->count && word_float(reader, word, 0, &type) &&
-        !(type >= 1 && type < 5))
+    if (!word->count || !word_float(reader, word, 0, &type)) return;
+    if (!(type >= 1 && type < 5))
         reader_error(reader, word->arguments[0].span, "the types of cylindrical cameras are 1 to 4, found %g",
                      type);
-    inert_add(reader->context, &draft->camera.inert, word->text, word->span);
+    else
+        draft->camera.kind = (CameraKind)(CAMERA_CYLINDER_1 + (int)type - 1);
 }
 
-static void read_blur_samples(Reader *reader, const Word *word, void *target) {
-    (void)target;
-    double samples = 1;
+static void read_kind(Reader *reader, const Word *word, void *target) {
+    CameraDraft *draft = target;
+    expect_first(reader, word);
     grammar_word(reader, word);
-    if (word->count && word_float(reader, word, word->count - 1, &samples) && samples < 1)
+    for (size_t k = 0; k < VTS_ARRAY_COUNT(kinds); k++)
+        if (strcmp(kinds[k].word, word->text) == 0) draft->camera.kind = kinds[k].kind;
+    if (strcmp(word->text, "cylinder") == 0) read_cylinder(reader, word, draft);
+    if (strcmp(word->text, "mesh_camera") == 0)
+        inert_add(reader->context, &draft->camera.inert, word->text, word->span);
+}
+
+/* One number is the most; of two the first is the least. */
+static void read_blur_samples(Reader *reader, const Word *word, void *target) {
+    Camera *camera = &((CameraDraft *)target)->camera;
+    double low = 0, high = 1;
+    grammar_word(reader, word);
+    if (!word->count || !word_float(reader, word, word->count - 1, &high)) return;
+    if (word->count > 1 && !word_float(reader, word, 0, &low)) return;
+    if (high < 1)
         reader_error(reader, word->arguments[word->count - 1].span,
-                     "'blur_samples' must be at least 1, found %g", samples);
+                     "'blur_samples' must be at least 1, found %g", high);
+    camera->least_blur_samples = double_to_int(low, 0, MOST_BLUR_SAMPLES);
+    camera->most_blur_samples = double_to_int(high, 1, MOST_BLUR_SAMPLES);
+}
+
+static void read_focal_point(Reader *reader, const Word *word, void *target) {
+    CameraDraft *draft = target;
+    draft->has_focal_point =
+        word_arguments(reader, word, 1, 1) && word_vector(reader, word, 0, &draft->focal_point);
+}
+
+/* bokeh { pigment }: over <0, 0> … <1, 1>. */
+static void read_bokeh(Reader *reader, const Word *word, void *target) {
+    if (!grammar_word(reader, word) || !word->body) return;
+    for (size_t i = 0; i < word->body->count; i++) {
+        const BlockItem *item = &word->body->items[i];
+        if (item->kind == ITEM_VALUE && item->value.kind == VALUE_PIGMENT)
+            ((CameraDraft *)target)->camera.bokeh = item->value.as.pigment;
+    }
 }
 
 #define FIELD(name) offsetof(CameraDraft, name)
@@ -102,8 +135,8 @@ static void read_blur_samples(Reader *reader, const Word *word, void *target) {
 #define KIND(word)                                                                                           \
     { word, WORD_CUSTOM, 0, read_kind, false }
 static const WordRule rules[] = {
-    {"perspective", WORD_CUSTOM, 0, read_perspective, false},
-    {"orthographic", WORD_CUSTOM, 0, read_orthographic, false},
+    KIND("perspective"),
+    KIND("orthographic"),
     {"location", WORD_VECTOR, FIELD(camera.location), NULL, false},
     {"direction", WORD_VECTOR, FIELD(camera.direction), NULL, false},
     {"right", WORD_CUSTOM, 0, read_right, false},
@@ -118,13 +151,13 @@ static const WordRule rules[] = {
     KIND("spherical"),
     KIND("cylinder"),
     KIND("mesh_camera"),
-    INERT("aperture"),
-    INERT("bokeh"),
+    {"aperture", WORD_FLOAT, FIELD(camera.aperture), NULL, false},
+    {"bokeh", WORD_CUSTOM, 0, read_bokeh, false},
     INERT("user_defined"),
-    IGNORED("focal_point"),
+    {"focal_point", WORD_CUSTOM, 0, read_focal_point, false},
     {"blur_samples", WORD_CUSTOM, 0, read_blur_samples, false},
-    IGNORED("confidence"),
-    IGNORED("variance"),
+    {"confidence", WORD_FLOAT, FIELD(camera.confidence), NULL, false},
+    {"variance", WORD_FLOAT, FIELD(camera.variance), NULL, false},
     IGNORED("smooth"),
 };
 
@@ -200,13 +233,27 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
     return true;
 }
 
-/* POV-Ray's limit: a flat picture cannot see behind itself. Other kinds, drawn as a flat one, have that one's angle at most. */
+/* POV-Ray's limit: a flat picture cannot see behind itself. */
 static bool check_angle(Reader *reader, CameraDraft *draft) {
-    if (draft->wide && draft->angle >= 180) draft->angle = 90;
-    if (draft->angle < 180) return true;
+    bool flat = draft->camera.kind == CAMERA_PERSPECTIVE || draft->camera.kind == CAMERA_ORTHOGRAPHIC;
+    if (!flat || draft->angle < 180) return true;
     reader_error(reader, at_close(reader, draft->angle_span),
                  "the angle of this camera must be less than 180 degrees, found %g", draft->angle);
     return false;
+}
+
+/* What the kinds that are not flat see across without an `angle`. */
+static double default_angle(const Camera *c) {
+    switch (c->kind) {
+    case CAMERA_SPHERICAL: return 360;
+    default: return 2 * atan2(vec3_length(c->right) / 2, vec3_length(c->direction)) / VTS_RADIANS;
+    }
+}
+
+static void apply_wide_angle(CameraDraft *draft) {
+    Camera *c = &draft->camera;
+    c->angle = draft->angle > 0 ? draft->angle : default_angle(c);
+    c->angle_v = draft->angle_v > 0 ? draft->angle_v : c->angle / 2;
 }
 
 static bool store(BuildContext *context, const EvalBlock *block, Camera camera, Value *out) {
@@ -233,9 +280,12 @@ bool build_camera(BuildContext *context, const EvalBlock *block, Value *out) {
     reader.on_value = on_value;
     reader.value_target = &draft;
     if (!reader_run(&reader) || !check_angle(&reader, &draft)) return false;
-    if (draft.angle > 0) apply_angle(&draft);
+    if (!copy) apply_wide_angle(&draft);
+    if (draft.angle > 0 && draft.angle < 180) apply_angle(&draft);
     if (draft.has_look_at && !apply_look_at(&reader, &draft)) return false;
     if (!copy) apply_orthographic(&draft);
+    if (draft.has_focal_point)
+        draft.camera.focal_distance = vec3_length(vec3_sub(draft.focal_point, draft.camera.location));
     place(&draft.camera, &draft.transform);
     check_frame(&reader, &draft.camera);
     return store(context, block, draft.camera, out);

@@ -83,11 +83,7 @@ static const char *what_happens(const BuildContext *context, const char *word) {
         const char *word, *text;
     } effects[] = {
         {"area_light", "is drawn as a point light"},
-        {"fisheye", "is drawn as a perspective camera"},
-        {"ultra_wide_angle", "is drawn as a perspective camera"},
-        {"spherical", "is drawn as a perspective camera"},
-        {"panoramic", "is drawn as a perspective camera"},
-        {"omnimax", "is drawn as a perspective camera"},
+        {"mesh_camera", "is drawn as a perspective camera"},
         {"tiling wang", "is drawn as 'tiling plain'"},
         {"reflection", "is not modelled yet: nothing mirrors"},
         {"filter or transmit", "is not modelled yet: what has it is opaque"},

@@ -91,7 +91,8 @@ static bool see_sky(const BeamTracer *tr, Radiance *out) {
     if (!tr->bounded || beam_meets_box(&tr->beam, &tr->explicit_bounds) || !isinf(tr->compiled->all_exact_to)) return false;
     for (int i = 0; i < tr->columns * tr->rows; i++) {
         Vec3f color = sky_radiance(scene, tr->cones[i].direction, tr->cones[i].spread);
-        out[i] = (Radiance){fog_over(scene, color, 1, VTS_INFINITY), 0};
+        Air air = air_between(scene, &(Ray){tr->cones[i].origin, tr->cones[i].direction}, VTS_INFINITY);
+        out[i] = (Radiance){air_over(&air, color, 1), 0};
     }
     return true;
 }
@@ -117,8 +118,9 @@ static void see_sight(BeamTracer *tr, const Sight *sight, Radiance *all, Vec3f *
     double t = sight->look ? (double)sight->t : VTS_INFINITY;
     Vec3f sky = {0, 0, 0};
     if (!sight->look) sky = sky_radiance(scene, cone.direction, cone.spread);
-    *all = (Radiance){fog_over(scene, sight->look ? sight->light : sky, 1, t), sight->look ? 1 : 0};
-    *odd = fog_over(scene, sight->look ? sight->odd_light : sky, 1, t);
+    Air air = air_between(scene, &(Ray){cone.origin, cone.direction}, t);
+    *all = (Radiance){air_over(&air, sight->look ? sight->light : sky, 1), sight->look ? 1 : 0};
+    *odd = air_over(&air, sight->look ? sight->odd_light : sky, 1);
     ConeStart start;
     if (!starts_of(tr, sight, &start)) return;
     float transmittance;

@@ -5,21 +5,6 @@
 
 #include <string.h>
 
-Cone view_cone(const View *view, double x, double y, double width_px) {
-    const Camera *c = &view->camera;
-    double s = x / view->width - 0.5, t = 0.5 - y / view->height;
-    Vec3 offset = vec3_madd(vec3_scale(c->right, s), c->up, t);
-    double pixel_area = vec3_length(vec3_cross(c->right, c->up)) / ((double)view->width * view->height);
-    if (c->kind == CAMERA_ORTHOGRAPHIC)
-        return (Cone){vec3_add(c->location, offset), vec3_normalize(c->direction), sqrt(pixel_area) * width_px, 0};
-    Vec3 d = vec3_add(c->direction, offset);
-    double length = vec3_length(d);
-    /* The pixel's solid angle: its area on the image plane, foreshortened, over the distance squared. */
-    Vec3 axis = vec3_normalize(vec3_cross(c->right, c->up));
-    double cosine = fabs(vec3_dot(axis, d)) / length;
-    return (Cone){c->location, vec3_scale(d, 1 / length), 0, sqrt(pixel_area * cosine) / length * width_px};
-}
-
 /* A texel placed as an object is a skin of one tile over the bottom of its box. */
 static const Skin *skin_of_texel(const Object *object, const Transform *to_world, const Texture *texture, Arena *arena) {
     Box3 b = object->as.texel->bounds;
@@ -108,7 +93,8 @@ static bool interrupted(const CompileOptions *options) { return options->interru
 
 /* Exact geometry where it may be seen, and voxels where the rest is; none of either that nothing needs. */
 static CompileStatus build_texels(const CompileOptions *options, Detail detail, DiagList *diags, CompiledScene *out) {
-    bool beams = !options->exact && !options->texel_resolution && (detail == DETAIL_AUTO || detail == DETAIL_EXACT), voxels = !beams;
+    bool flat = view_is_flat(&out->view) && !view_has_lens(&out->view); /* beams know no other lines of sight */
+    bool beams = flat && !options->exact && !options->texel_resolution && (detail == DETAIL_AUTO || detail == DETAIL_EXACT), voxels = !beams;
     out->exact_bounds = box3_empty();
     out->all_exact_to = out->nearest = VTS_INFINITY;
     for (size_t i = 0; i < out->texel_count && beams; i++) {

@@ -8,15 +8,9 @@
 #include "render/hierarchy.h"
 #include "render/skin.h"
 #include "render/skin_march.h"
+#include "render/view.h"
 #include "shape/box_tree.h"
 #include "texel/texel_cache.h"
-
-/* What one frame asks of the compiled scene: its camera as cones. */
-typedef struct View {
-    Camera camera;
-    int width, height;   /* of the whole picture, pixels */
-    double pixel_spread; /* growth of a pixel's cone per unit length at the centre of the picture */
-} View;
 
 typedef struct CompileOptions {
     Pool *pool;
@@ -63,12 +57,6 @@ void compiled_scene_destroy(CompiledScene *compiled);
 /* The skins whose bounds the ray meets between t = 0 and t_max, by number, ascending. `met` has room for all skins; returns how many. */
 size_t compiled_skins_met(const CompiledScene *compiled, const Ray *ray, double t_max, uint32_t *met);
 void compiled_scene_print(const CompiledScene *compiled, StrBuf *out);
-
-/* The cone through the picture's point (x, y), in pixels from the upper left corner; `width_px` is its width in pixels. */
-Cone view_cone(const View *view, double x, double y, double width_px);
-
-/* Whether the box certainly is out of a perspective picture. */
-bool view_misses(const View *view, Box3 box);
 
 /* ---- parts, for compile.c ---- */
 

@@ -351,7 +351,10 @@ Vec3f trace_skins(Tracer *tr, const Cone *cone, const ConeStart *start, double t
     }
     for (size_t l = 0; l < scene->light_count; l++) color = vec3f_add(color, add_shadowed(tr, cone, count, l));
     float covered = 1 - *transmittance;
-    if (count && covered > 0) color = fog_over(scene, color, covered, mean_t / (double)covered);
+    if (count && covered > 0) {
+        Air air = air_between(scene, &(Ray){cone->origin, cone->direction}, mean_t / (double)covered);
+        color = air_over(&air, color, covered);
+    }
     return color;
 }
 
@@ -362,11 +365,12 @@ Radiance trace_cone(Tracer *tr, const Cone *cone, const SurfaceHit *hit, float *
     Radiance out = {trace_skins(tr, cone, &everything, hit ? hit->t : VTS_INFINITY, &transmittance), 1 - transmittance};
     *reaching = transmittance;
     if (transmittance <= 0) return out;
+    Air air = air_between(scene, &(Ray){cone->origin, cone->direction}, hit ? hit->t : VTS_INFINITY);
     if (hit) {
-        out.color = vec3f_madd(out.color, fog_over(scene, shade_surface(tr, cone, hit, transmittance), 1, hit->t), transmittance);
+        out.color = vec3f_madd(out.color, air_over(&air, shade_surface(tr, cone, hit, transmittance), 1), transmittance);
         out.alpha = 1;
     } else {
-        out.color = vec3f_madd(out.color, fog_over(scene, sky_radiance(scene, cone->direction, cone->spread), 1, VTS_INFINITY), transmittance);
+        out.color = vec3f_madd(out.color, air_over(&air, sky_radiance(scene, cone->direction, cone->spread), 1), transmittance);
     }
     return out;
 }

@@ -33,6 +33,29 @@ LightRay light_ray(const Light *light, Vec3 point) {
     return ray;
 }
 
+bool light_is_area(const Light *light) { return light->size_u * light->size_v > 1; }
+
+Vec3 light_place(const Light *light, Vec3 point, double u, double v) {
+    (void)point;
+    if (!light_is_area(light)) return light->location;
+    return vec3_madd(vec3_madd(light->location, light->axis_u, u - 0.5), light->axis_v, v - 0.5);
+}
+
+LightRay light_ray_from(const Light *light, Vec3 point, Vec3 place) {
+    Light there = *light;
+    Vec3 moved = vec3_sub(place, light->location);
+    there.location = place;
+    there.point_at = vec3_add(light->point_at, moved);
+    return light_ray(&there, point);
+}
+
+bool light_shines_on(const Light *light, const LightGroup *group) {
+    if (!light->group) return !group || group->global_lights;
+    for (; group; group = group->outer)
+        if (group == light->group) return true;
+    return false;
+}
+
 Vec3f shade_tone(const NdfShade *shade, const Look *look, Vec3f color) {
     Vec3f metal = vec3f_add(vec3f_scale(color, look->metallic), vec3f_scale(vec3f(1, 1, 1), 1 - look->metallic));
     return vec3f_madd(vec3f_scale(color, shade->diffuse), metal, shade->highlight);
@@ -44,10 +67,12 @@ Vec3f sky_radiance(const Scene *scene, Vec3 direction, double spread) {
     return vec3f_from_color(color_over(sky, scene->background));
 }
 
-Vec3f fog_over(const Scene *scene, Vec3f color, float alpha, double t) {
-    if (!scene->has_fog || scene->fog.distance <= 0) return color;
+Air air_between(const Scene *scene, const Ray *ray, double t) {
+    Air air = {{1, 1, 1}, {0, 0, 0}};
+    (void)ray;
+    if (!scene->has_fog || scene->fog.distance <= 0) return air;
     float keep = isfinite(t) ? (float)exp(-t / scene->fog.distance) : 0;
     float filter = (float)scene->fog.color.transmit;
     keep = keep + (1 - keep) * filter;
-    return vec3f_madd(vec3f_scale(color, keep), vec3f_from_color(scene->fog.color), (1 - keep) * alpha);
+    return (Air){{keep, keep, keep}, vec3f_scale(vec3f_from_color(scene->fog.color), 1 - keep)};
 }

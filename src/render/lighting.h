@@ -10,14 +10,34 @@ typedef struct LightRay {
     Vec3f color;     /* arriving, unshadowed */
 } LightRay;
 
+/* From its middle: what a light without an area sends, and what the highlights and tones of all lights are calculated with. */
 LightRay light_ray(const Light *light, Vec3 point);
+
+/* Whether its shadows are soft: then a shadow is the mean over places of the light, and the tone that of light_ray() unless
+ * light->area_illumination. */
+bool light_is_area(const Light *light);
+/* The place of the light at (u, v) of the unit square as it is seen from the point: evenly spread (u, v) give POV-Ray's mean. The middle
+ * for a light without an area. */
+Vec3 light_place(const Light *light, Vec3 point, double u, double v);
+/* What comes from that place: direction and distance are those of a shadow ray. */
+LightRay light_ray_from(const Light *light, Vec3 point, Vec3 place);
+/* Whether the light shines on what belongs to this group (NULL: none). */
+bool light_shines_on(const Light *light, const LightGroup *group);
 
 /* What matter of this pigment colour sends to the eye for one unit of light: `shade` of its normals. */
 Vec3f shade_tone(const NdfShade *shade, const Look *look, Vec3f color);
 
 /* Sky sphere and background along a unit direction; `spread` is the angle over which the sky is averaged. */
 Vec3f sky_radiance(const Scene *scene, Vec3 direction, double spread);
-/* POV-Ray's constant fog, exp(−t / distance), over what is seen at t; `color` is multiplied by `alpha`. */
-Vec3f fog_over(const Scene *scene, Vec3f color, float alpha, double t);
+/* What fogs and rainbows do to light on a leg of its way: color·keep + alpha·add. */
+typedef struct Air {
+    Vec3f keep, add;
+} Air;
+/* Between the origin and what is seen at t (VTS_INFINITY: the sky) along the unit direction. */
+Air air_between(const Scene *scene, const Ray *ray, double t);
+/* `color` is multiplied by `alpha`. */
+static inline Vec3f air_over(const Air *air, Vec3f color, float alpha) {
+    return vec3f_madd(vec3f_mul(color, air->keep), air->add, alpha);
+}
 
 #endif

@@ -104,8 +104,9 @@ static Radiance trace_sample(const Sample *s) {
     const Scene *scene = s->compiled->scene;
     Facet facet;
     s->counters->camera_rays++;
-    if (nearest_facet(s, &facet)) return (Radiance){fog_over(scene, shade(s, &facet), 1, facet.t), 1};
-    return (Radiance){fog_over(scene, sky_radiance(scene, s->ray.direction, 0), 1, VTS_INFINITY), 0};
+    bool met = nearest_facet(s, &facet);
+    Air air = air_between(scene, &s->ray, met ? facet.t : VTS_INFINITY);
+    return (Radiance){air_over(&air, met ? shade(s, &facet) : sky_radiance(scene, s->ray.direction, 0), 1), met};
 }
 
 /* ---- samples ---- */
@@ -134,6 +135,7 @@ static Radiance see_pixel(void *context, int worker, int px, int py) {
             uint64_t bits = random_hash((uint64_t)px, (uint64_t)py, number++, options->seed);
             double x = (column + random_unit(bits)) / columns, y = (row + random_unit(random_mix(bits))) / strata.rows;
             Cone cone = view_cone(&reference->compiled->view, px + x, py + y, 1);
+            if (vec3_length_squared(cone.direction) == 0) continue;
             Sample sample = {reference->compiled, {cone.origin, cone.direction}, cone.width, cone.spread, random_mix(bits + 2), &reference->counters[worker]};
             Radiance seen = trace_sample(&sample);
             sum.color = vec3f_madd(sum.color, seen.color, share);

@@ -38,6 +38,7 @@ static Radiance trace_split(Tracer *tracer, double x, double y, int n, const ato
     for (int j = 0; j < n && !(interrupted && *interrupted); j++)
         for (int i = 0; i < n; i++) {
             Cone cone = view_cone(&tracer->compiled->view, x + (i + 0.5) / n - 0.5, y + (j + 0.5) / n - 0.5, 1.0 / n);
+            if (vec3_length_squared(cone.direction) == 0) continue;
             SurfaceHit hit;
             float reaching;
             tracer->seed = random_mix(seed + (uint64_t)(j * n + i));
@@ -58,6 +59,7 @@ static Radiance trace_pixel(void *context, int worker, int px, int py) {
     Tracer *tracer = &frame->tracers[worker];
     double x = px + 0.5, y = py + 0.5;
     Cone cone = view_cone(&frame->compiled->view, x, y, 1);
+    if (vec3_length_squared(cone.direction) == 0) return (Radiance){{0, 0, 0}, 0};
     SurfaceHit hit;
     float reaching;
     tracer->seed = random_hash((uint64_t)px, (uint64_t)py, frame->options->seed, 0);

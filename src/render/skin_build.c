@@ -334,21 +334,6 @@ static void make_cells(const Skin *skin, const SurfaceMesh *mesh, Arena *arena, 
 
 /* ---- resolution: what the view can see ---- */
 
-bool view_misses(const View *view, Box3 box) {
-    const Camera *c = &view->camera;
-    if (c->kind != CAMERA_PERSPECTIVE) return false;
-    Vec3 r = vec3_scale(c->right, 0.5), u = vec3_scale(c->up, 0.5);
-    Vec3 corner[4] = {vec3_sub(vec3_sub(c->direction, r), u), vec3_sub(vec3_add(c->direction, r), u),
-                      vec3_add(vec3_add(c->direction, r), u), vec3_add(vec3_sub(c->direction, r), u)};
-    for (int i = 0; i < 4; i++) {
-        Vec3 n = vec3_cross(corner[i], corner[(i + 1) % 4]);
-        if (vec3_dot(n, c->direction) < 0) n = vec3_negate(n); /* inwards */
-        Vec3 far = vec3(n.x > 0 ? box.max.x : box.min.x, n.y > 0 ? box.max.y : box.min.y, n.z > 0 ? box.max.z : box.min.z);
-        if (vec3_dot(n, vec3_sub(far, c->location)) < 0) return true;
-    }
-    return false;
-}
-
 /* Voxels along the longest side that the nearest visible cell asks for, at so many footprints of a pixel each; not nearer than `from`. */
 static double needed_resolution(const CompiledSkin *skin, const View *view, Vec3f extent, double voxel_width, double from) {
     double needed = 1;

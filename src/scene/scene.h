@@ -478,19 +478,34 @@ typedef struct Skin {
 
 /* ---- the scene ---- */
 
-typedef enum CameraKind { CAMERA_PERSPECTIVE, CAMERA_ORTHOGRAPHIC } CameraKind;
+typedef enum CameraKind {
+    CAMERA_PERSPECTIVE, CAMERA_ORTHOGRAPHIC, CAMERA_FISHEYE, CAMERA_ULTRA_WIDE, CAMERA_OMNIMAX, CAMERA_PANORAMIC, CAMERA_SPHERICAL,
+    CAMERA_CYLINDER_1, CAMERA_CYLINDER_2, CAMERA_CYLINDER_3, CAMERA_CYLINDER_4
+} CameraKind;
 
 /* As POV-Ray's after `look_at`, `angle` and transforms are applied: a ray of image position (s, t), both in [-1/2, 1/2] from
  * left to right and from bottom to top, starts at `location` (orthographic: + s·right + t·up) along
- * direction + s·right + t·up (orthographic: direction). */
+ * direction + s·right + t·up (orthographic: direction). Of the other kinds see render/view.h. */
 typedef struct Camera {
     Span span;
     CameraKind kind;
     Vec3 location, direction, right, up;
+    double angle, angle_v;        /* degrees, of the kinds that are not flat: across, and of CAMERA_SPHERICAL upwards */
+    double aperture;              /* of the lens, its diameter; 0: a point */
+    double focal_distance;
+    int least_blur_samples, most_blur_samples; /* 0: not given */
+    double confidence, variance;  /* when blur is smooth enough; 0: not given */
+    const Pigment *bokeh;         /* how bright the lens is over <0, 0> … <1, 1>; NULL: everywhere */
     const InertNote *inert;
 } Camera;
 
-typedef enum LightKind { LIGHT_POINT, LIGHT_PARALLEL, LIGHT_SPOT } LightKind;
+typedef enum LightKind { LIGHT_POINT, LIGHT_PARALLEL, LIGHT_SPOT, LIGHT_CYLINDER } LightKind;
+
+/* light_group { … }: its lights shine on what stands in it alone, and others on that only with `global_lights`. */
+typedef struct LightGroup {
+    const struct LightGroup *outer; /* the group around it, or NULL */
+    bool global_lights;
+} LightGroup;
 
 struct Light {
     Span span;
@@ -501,7 +516,12 @@ struct Light {
     bool shadowless;
     double fade_distance, fade_power; /* 0: no fading */
     Vec3 point_at;
-    double radius, falloff, tightness; /* spot, degrees; 30, 45, 0 */
+    double radius, falloff, tightness; /* spot, degrees; 30, 45, 0; cylinder: lengths */
+    Vec3 axis_u, axis_v;   /* area_light: its sides */
+    int size_u, size_v;    /* rows of lights along both; 0: no area */
+    bool jitter, circular, orient, area_illumination;
+    const Object *looks_like, *projected_through; /* in the scene; or NULL */
+    const LightGroup *group; /* shines on nothing else; NULL: on all */
     const InertNote *inert;
 };
 

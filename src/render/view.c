@@ -1,0 +1,169 @@
+/* Rays of POV-Ray's kinds of cameras (the formulas are those of its documentation, the constants of omnimax the OMNIMAX
+ * lens's), and cones around them. */
+#include "render/view.h"
+
+/* A line of sight; `direction` of any length. */
+typedef struct Line {
+    Vec3 origin, direction;
+} Line;
+
+/* The camera's axes, and lengths of those that frame the picture. */
+typedef struct Frame {
+    Vec3 right, up, forward; /* unit */
+    double width, height;
+} Frame;
+
+static Frame frame_of(const Camera *c) {
+    return (Frame){vec3_normalize(c->right), vec3_normalize(c->up), vec3_normalize(c->direction), vec3_length(c->right),
+                   vec3_length(c->up)};
+}
+
+static Vec3 combine(const Frame *f, double right, double up, double forward) {
+    return vec3_madd(vec3_madd(vec3_scale(f->right, right), f->up, up), f->forward, forward);
+}
+
+/* `away` degrees (radians here) from the axis, on the side where (x, y) is. */
+static Vec3 around_axis(const Frame *f, double x, double y, double away) {
+    double r = hypot(x, y), s = r > 0 ? sin(away) / r : 0;
+    return combine(f, x * s, y * s, cos(away));
+}
+
+/* Of a picture that is a disc: (s, t) and the length from its middle, 1 at its border. */
+static double disc_place(const Frame *f, double s, double t, double *x, double *y) {
+    *x = 2 * s * f->width, *y = 2 * t * f->height;
+    return hypot(*x, *y);
+}
+
+static bool fisheye_line(const Camera *c, const Frame *f, double s, double t, Vec3 *direction) {
+    double x, y, r = disc_place(f, s, t, &x, &y);
+    *direction = around_axis(f, x, y, r * c->angle * VTS_RADIANS / 2);
+    return r <= 1;
+}
+
+static bool omnimax_line(const Frame *f, double s, double t, Vec3 *direction) {
+    double x, y, r = disc_place(f, s, t, &x, &y), r2 = r * r;
+    *direction = around_axis(f, x, y, r * (1.411269 + r2 * (-0.09439 + r2 * 0.25674)));
+    return r <= 1;
+}
+
+static Vec3 wide_direction(const Camera *c, const Frame *f, double s, double t) {
+    double a = s * c->angle * VTS_RADIANS, b = t * c->angle * VTS_RADIANS * f->height / f->width;
+    return combine(f, sin(a), sin(b), cos(a) * cos(b));
+}
+
+static Vec3 panoramic_direction(const Frame *f, double s, double t) {
+    double a = s * VTS_PI, b = double_clamp(t * VTS_PI, -VTS_PI / 2 + 1e-9, VTS_PI / 2 - 1e-9);
+    return vec3_normalize(combine(f, sin(a), tan(b), cos(a)));
+}
+
+static Vec3 spherical_direction(const Camera *c, const Frame *f, double s, double t) {
+    double a = s * c->angle * VTS_RADIANS, b = t * c->angle_v * VTS_RADIANS;
+    return combine(f, sin(a) * cos(b), sin(b), cos(a) * cos(b));
+}
+
+/* Along one axis of the picture an angle, along the other a length: of the direction (1, 2), or of the origin (3, 4). */
+static Line cylinder_line(const Camera *c, const Frame *f, double s, double t) {
+    bool across = c->kind == CAMERA_CYLINDER_1 || c->kind == CAMERA_CYLINDER_3;
+    double a = (across ? s : t) * c->angle * VTS_RADIANS, length = across ? t * f->height : s * f->width;
+    Vec3 axis = across ? f->up : f->right, round = across ? combine(f, sin(a), 0, cos(a)) : combine(f, 0, sin(a), cos(a));
+    if (c->kind == CAMERA_CYLINDER_1 || c->kind == CAMERA_CYLINDER_2) return (Line){c->location, vec3_madd(round, axis, length)};
+    return (Line){vec3_madd(c->location, axis, length), round};
+}
+
+/* Through the middle of the lens; false where the picture shows nothing. */
+static bool line_at(const Camera *c, double s, double t, Line *out) {
+    Frame f = frame_of(c);
+    *out = (Line){.origin = c->location};
+    switch (c->kind) {
+    case CAMERA_ORTHOGRAPHIC:
+        *out = (Line){vec3_madd(vec3_madd(c->location, c->right, s), c->up, t), c->direction};
+        return true;
+    case CAMERA_FISHEYE: return fisheye_line(c, &f, s, t, &out->direction);
+    case CAMERA_OMNIMAX: return omnimax_line(&f, s, t, &out->direction);
+    case CAMERA_ULTRA_WIDE: out->direction = wide_direction(c, &f, s, t); return true;
+    case CAMERA_PANORAMIC: out->direction = panoramic_direction(&f, s, t); return true;
+    case CAMERA_SPHERICAL: out->direction = spherical_direction(c, &f, s, t); return true;
+    case CAMERA_CYLINDER_1:
+    case CAMERA_CYLINDER_2:
+    case CAMERA_CYLINDER_3:
+    case CAMERA_CYLINDER_4: *out = cylinder_line(c, &f, s, t); return true;
+    case CAMERA_PERSPECTIVE: break;
+    }
+    out->direction = vec3_madd(vec3_madd(c->direction, c->right, s), c->up, t);
+    return true;
+}
+
+static Cone flat_cone(const View *view, double s, double t, double width_px) {
+    const Camera *c = &view->camera;
+    Vec3 offset = vec3_madd(vec3_scale(c->right, s), c->up, t);
+    double pixel_area = vec3_length(vec3_cross(c->right, c->up)) / ((double)view->width * view->height);
+    if (c->kind == CAMERA_ORTHOGRAPHIC)
+        return (Cone){vec3_add(c->location, offset), vec3_normalize(c->direction), sqrt(pixel_area) * width_px, 0};
+    Vec3 d = vec3_add(c->direction, offset);
+    double length = vec3_length(d);
+    /* The pixel's solid angle: its area on the image plane, foreshortened, over the distance squared. */
+    Vec3 axis = vec3_normalize(vec3_cross(c->right, c->up));
+    double cosine = fabs(vec3_dot(axis, d)) / length;
+    return (Cone){c->location, vec3_scale(d, 1 / length), 0, sqrt(pixel_area * cosine) / length * width_px};
+}
+
+/* The pixel's solid angle, of lines that are not straight on the picture, from those beside it. Where origins move along one axis and
+ * directions along the other a footprint is no square: the cone has the mean of its sides. */
+static Cone round_cone(const View *view, double s, double t, double width_px) {
+    const double step = 1e-3;
+    double ds = step / view->width, dt = step / view->height;
+    Line line, right, down;
+    if (!line_at(&view->camera, s, t, &line)) return (Cone){.origin = line.origin};
+    line_at(&view->camera, s + (s > 0 ? -ds : ds), t, &right);
+    line_at(&view->camera, s, t + (t > 0 ? -dt : dt), &down);
+    Vec3 d = vec3_normalize(line.direction);
+    Vec3 turn_s = vec3_sub(vec3_normalize(right.direction), d), turn_t = vec3_sub(vec3_normalize(down.direction), d);
+    double moved = vec3_length(vec3_sub(right.origin, line.origin)) + vec3_length(vec3_sub(down.origin, line.origin));
+    double spread = sqrt(vec3_length(vec3_cross(turn_s, turn_t)));
+    if (moved > 0) spread = (vec3_length(turn_s) + vec3_length(turn_t)) / 2;
+    return (Cone){line.origin, d, moved / 2 / step * width_px, spread / step * width_px};
+}
+
+Cone view_cone(const View *view, double x, double y, double width_px) {
+    double s = x / view->width - 0.5, t = 0.5 - y / view->height;
+    return view_is_flat(view) ? flat_cone(view, s, t, width_px) : round_cone(view, s, t, width_px);
+}
+
+/* The unit square onto the unit disc, evenly (Shirley & Chiu 1997). */
+static void disc_of_square(double u, double v, double *x, double *y) {
+    double a = 2 * u - 1, b = 2 * v - 1, r = fabs(a) > fabs(b) ? a : b;
+    double angle = r == 0 ? 0 : fabs(a) > fabs(b) ? VTS_PI / 4 * (b / a) : VTS_PI / 2 - VTS_PI / 4 * (a / b);
+    *x = r * cos(angle), *y = r * sin(angle);
+}
+
+bool view_ray(const View *view, double x, double y, double u, double v, double width_px, Cone *out) {
+    *out = view_cone(view, x, y, width_px);
+    if (vec3_length_squared(out->direction) == 0) return false;
+    if (!view_has_lens(view)) return true;
+    double a, b;
+    disc_of_square(u, v, &a, &b);
+    Vec3 across = vec3_normalize(vec3_cross(view->camera.up, out->direction)), up = vec3_cross(out->direction, across);
+    Vec3 focus = cone_point(out, view->camera.focal_distance);
+    double width = cone_diameter(out, view->camera.focal_distance), radius = view->camera.aperture / 2;
+    out->origin = vec3_madd(vec3_madd(out->origin, across, a * radius), up, b * radius);
+    Vec3 to = vec3_sub(focus, out->origin);
+    double distance = vec3_length(to);
+    out->direction = vec3_scale(to, 1 / distance);
+    out->spread = (width - out->width) / distance;
+    return true;
+}
+
+bool view_misses(const View *view, Box3 box) {
+    const Camera *c = &view->camera;
+    if (c->kind != CAMERA_PERSPECTIVE) return false;
+    Vec3 r = vec3_scale(c->right, 0.5), u = vec3_scale(c->up, 0.5);
+    Vec3 corner[4] = {vec3_sub(vec3_sub(c->direction, r), u), vec3_sub(vec3_add(c->direction, r), u),
+                      vec3_add(vec3_add(c->direction, r), u), vec3_add(vec3_sub(c->direction, r), u)};
+    for (int i = 0; i < 4; i++) {
+        Vec3 n = vec3_cross(corner[i], corner[(i + 1) % 4]);
+        if (vec3_dot(n, c->direction) < 0) n = vec3_negate(n); /* inwards */
+        Vec3 far = vec3(n.x > 0 ? box.max.x : box.min.x, n.y > 0 ? box.max.y : box.min.y, n.z > 0 ? box.max.z : box.min.z);
+        if (vec3_dot(n, vec3_sub(far, c->location)) < 0) return true;
+    }
+    return false;
+}

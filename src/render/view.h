@@ -1,0 +1,31 @@
+/* The camera as cones: where the light comes from that a place of the picture shows. */
+#ifndef VTS_RENDER_VIEW_H
+#define VTS_RENDER_VIEW_H
+
+#include "render/cone.h"
+#include "scene/scene.h"
+
+/* What one frame asks of a scene: its camera, and the size of the whole picture in pixels. */
+typedef struct View {
+    Camera camera;
+    int width, height;
+} View;
+
+/* The cone through the picture's point (x, y), in pixels from the upper left corner, from the middle of the lens; `width_px` is its width
+ * in pixels. Where the picture of a fisheye or omnimax camera shows nothing, its direction is zero. */
+Cone view_cone(const View *view, double x, double y, double width_px);
+
+/* The same through the lens at (u, v) of the unit square, which is mapped to the lens evenly: what is in focus stays where it is. False
+ * where the picture shows nothing. */
+bool view_ray(const View *view, double x, double y, double u, double v, double width_px, Cone *out);
+
+/* Whether there is a lens: u and v matter. */
+static inline bool view_has_lens(const View *view) { return view->camera.aperture > 0; }
+/* Whether the picture is a plane seen from a point or along one direction. */
+static inline bool view_is_flat(const View *view) {
+    return view->camera.kind == CAMERA_PERSPECTIVE || view->camera.kind == CAMERA_ORTHOGRAPHIC;
+}
+/* Whether the box certainly is out of a perspective picture. */
+bool view_misses(const View *view, Box3 box);
+
+#endif

@@ -85,8 +85,6 @@ static const char *what_happens(const BuildContext *context, const char *word) {
         {"area_light", "is drawn as a point light"},
         {"mesh_camera", "is drawn as a perspective camera"},
         {"tiling wang", "is drawn as 'tiling plain'"},
-        {"reflection", "is not modelled yet: nothing mirrors"},
-        {"filter or transmit", "is not modelled yet: what has it is opaque"},
         {"wind_field", "is not modelled yet: nothing moves"},
     };
     for (size_t i = 0; i < VTS_ARRAY_COUNT(effects); i++)
@@ -118,10 +116,6 @@ static void walk_pigment(SceneDraft *draft, BuildContext *context, const Pigment
 
 static void walk_texture(SceneDraft *draft, BuildContext *context, const Texture *texture) {
     for (; visit(draft, context, texture); texture = texture->under) {
-        const Color *mirror = &texture->finish->reflection_max, *color = &texture->pigment->color;
-        if (mirror->red + mirror->green + mirror->blue > 0) warn_word(draft, context, "reflection", texture->span);
-        if (texture->pigment->kind == PATTERN_SOLID && color->filter + color->transmit > 0 && !texture->under)
-            warn_word(draft, context, "filter or transmit", texture->span);
         warn_inert(draft, context, texture->inert);
         walk_pigment(draft, context, texture->pigment);
     }
@@ -151,6 +145,9 @@ static void walk_object(SceneDraft *draft, BuildContext *context, const Object *
     if (!visit(draft, context, object)) return;
     warn_inert(draft, context, object_inert(object));
     walk_texture(draft, context, object->texture);
+    if (object->rest) walk_texture(draft, context, object->rest->interior_texture);
+    if (object->rest && object->rest->interior && visit(draft, context, object->rest->interior))
+        warn_inert(draft, context, object->rest->interior->inert);
     if (object_has_group(object) &&
         visit(draft, context, object->as.group))
         for (size_t i = 0; i < object->as.group->count; i++)

@@ -8,29 +8,31 @@ typedef struct BuiltFinish {
     uint64_t set;  /* bits of rules[]; all: made from a declared finish */
 } BuiltFinish;
 
-/* POV-Ray's `diffuse albedo 0.6`: the word in between changes the normalisation, which is not modelled. */
-static bool amount(Reader *reader, const Word *word, size_t high, Word *source) {
+/* POV-Ray's `diffuse albedo 0.6`: the word in between says that the amount is of all light, not of the brightest. */
+static bool amount(Reader *reader, const Word *word, size_t high, Word *source, bool *albedo) {
     *source = *word;
-    if (word->count == 0) reader_take_word(reader, "albedo", source);
+    *albedo = word->count == 0 && reader_take_word(reader, "albedo", source);
     return word_arguments(reader, source, 1, high);
 }
 
 static void read_diffuse(Reader *reader, const Word *word, void *target) {
     Finish *finish = target;
     Word source;
-    if (!amount(reader, word, 2, &source) || !word_float(reader, &source, 0, &finish->diffuse)) return;
+    if (!amount(reader, word, 2, &source, &finish->diffuse_albedo) || !word_float(reader, &source, 0, &finish->diffuse)) return;
     finish->transmission = 0;
     if (source.count >= 2) word_float(reader, &source, 1, &finish->transmission);
 }
 
 static void read_specular(Reader *reader, const Word *word, void *target) {
+    Finish *finish = target;
     Word source;
-    if (amount(reader, word, 1, &source)) word_float(reader, &source, 0, &((Finish *)target)->specular);
+    if (amount(reader, word, 1, &source, &finish->specular_albedo)) word_float(reader, &source, 0, &finish->specular);
 }
 
 static void read_phong(Reader *reader, const Word *word, void *target) {
+    Finish *finish = target;
     Word source;
-    if (amount(reader, word, 1, &source)) word_float(reader, &source, 0, &((Finish *)target)->phong);
+    if (amount(reader, word, 1, &source, &finish->phong_albedo)) word_float(reader, &source, 0, &finish->phong);
 }
 
 /* A roughness of 0 is taken for the least one. */
@@ -44,11 +46,18 @@ static void read_roughness(Reader *reader, const Word *word, void *target) {
     ((Finish *)target)->roughness = value > 1e-6 ? value : 1e-6;
 }
 
+/* `metallic`, `metallic 0.5`: the word alone means 1. */
+static void read_reflection_metallic(Reader *reader, const Word *word, void *target) {
+    Finish *finish = target;
+    finish->reflection_metallic = 1;
+    if (word_arguments(reader, word, 0, 1) && word->count) word_float(reader, word, 0, &finish->reflection_metallic);
+}
+
 static const WordRule reflection_rules[] = {
     {"fresnel", WORD_FLAG, offsetof(Finish, fresnel), NULL, false},
-    {"falloff", WORD_IGNORED, 0, NULL, false},
-    {"exponent", WORD_IGNORED, 0, NULL, false},
-    {"metallic", WORD_IGNORED, 0, NULL, false},
+    {"falloff", WORD_FLOAT, offsetof(Finish, reflection_falloff), NULL, false},
+    {"exponent", WORD_FLOAT, offsetof(Finish, reflection_exponent), NULL, false},
+    {"metallic", WORD_CUSTOM, 0, read_reflection_metallic, false},
 };
 
 typedef struct ReflectionColors {
@@ -103,6 +112,35 @@ static void read_metallic(Reader *reader, const Word *word, void *target) {
 }
 
 #define FIELD(name) offsetof(Finish, name)
+/* Of a vector of turbulence only its length counts. */
+static void read_irid_turbulence(Reader *reader, const Word *word, void *target) {
+    Vec3 turbulence;
+    if (word_arguments(reader, word, 1, 1) && word_vector(reader, word, 0, &turbulence))
+        ((Finish *)target)->irid_turbulence = turbulence.x;
+}
+
+static bool on_irid_value(Reader *reader, const Argument *value, void *target) {
+    Color color;
+    if (!argument_color(reader, value, "'irid'", &color)) return true;
+    ((Finish *)target)->irid = (color.red + color.green + color.blue) / 3;
+    return true;
+}
+
+/* `irid { amount thickness F turbulence F }` */
+static void read_irid(Reader *reader, const Word *word, void *target) {
+    static const WordRule irid_rules[] = {
+        {"thickness", WORD_FLOAT, FIELD(irid_thickness), NULL, false},
+        {"turbulence", WORD_CUSTOM, 0, read_irid_turbulence, false},
+    };
+    if (!word->body) return;
+    Reader body = reader_nested(reader, word->body);
+    reader_add_table(&body, irid_rules, VTS_ARRAY_COUNT(irid_rules), target);
+    body.on_value = on_irid_value;
+    body.value_target = target;
+    reader_run(&body);
+    reader_end_nested(reader, &body);
+}
+
 static const WordRule rules[] = {
     {"ambient", WORD_CUSTOM, FIELD(ambient), read_ambient, false},
     {"emission", WORD_CUSTOM, FIELD(emission), read_emission, false},
@@ -115,24 +153,37 @@ static const WordRule rules[] = {
     {"metallic", WORD_CUSTOM, FIELD(metallic), read_metallic, false},
     {"reflection", WORD_CUSTOM, FIELD(reflection_min), read_reflection, false},
     {"fresnel", WORD_FLAG, FIELD(fresnel), NULL, false},
-    {"conserve_energy", WORD_IGNORED, 0, NULL, false},
+    {"conserve_energy", WORD_MARK, FIELD(conserve_energy), NULL, false},
+    {"reflection_exponent", WORD_FLOAT, FIELD(reflection_exponent), NULL, false},
+    {"crand", WORD_FLOAT, FIELD(crand), NULL, false},
+    {"irid", WORD_CUSTOM, FIELD(irid), read_irid, false},
     {"ior", WORD_IGNORED, 0, NULL, false},
     {"refraction", WORD_IGNORED, 0, NULL, false},
-    {"crand", WORD_IGNORED, 0, NULL, false},
-    {"reflection_exponent", WORD_IGNORED, 0, NULL, false},
-    {"irid", WORD_IGNORED, 0, NULL, false},
     {"subsurface", WORD_IGNORED, 0, NULL, false},
     {"use_alpha", WORD_IGNORED, 0, NULL, false},
 };
 
-/* What each of the first rules sets: so many bytes from its offset on. */
-static const size_t rule_bytes[] = {
-    sizeof(Color),      sizeof(Color),
-    2 * sizeof(double), sizeof(double),
-    sizeof(double),     sizeof(double),
-    sizeof(double),     sizeof(double),
-    sizeof(double),     FIELD(fresnel) + sizeof(bool) - FIELD(reflection_min),
-    sizeof(bool),
+/* Which fields each rule sets, up to the last that sets one. */
+typedef struct FieldRange {
+    size_t begin, end;
+} FieldRange;
+#define RANGE(first, last) {FIELD(first), FIELD(last) + sizeof(((const Finish *)0)->last)}
+static const FieldRange rule_fields[][2] = {
+    {RANGE(ambient, ambient)},
+    {RANGE(emission, emission)},
+    {RANGE(diffuse, transmission), RANGE(diffuse_albedo, diffuse_albedo)},
+    {RANGE(brilliance, brilliance)},
+    {RANGE(specular, specular), RANGE(specular_albedo, specular_albedo)},
+    {RANGE(roughness, roughness)},
+    {RANGE(phong, phong), RANGE(phong_albedo, phong_albedo)},
+    {RANGE(phong_size, phong_size)},
+    {RANGE(metallic, metallic)},
+    {RANGE(reflection_min, reflection_metallic)},
+    {RANGE(fresnel, fresnel)},
+    {RANGE(conserve_energy, conserve_energy)},
+    {RANGE(reflection_exponent, reflection_exponent)},
+    {RANGE(crand, crand)},
+    {RANGE(irid, irid_turbulence)},
 };
 
 static bool on_value(Reader *reader, const Argument *value, void *target) {
@@ -151,10 +202,11 @@ const Finish *finish_over(const BuildContext *context, const Finish *base, const
     built->set = ~(uint64_t)0;
     if (change->set == built->set) return block;
     built->finish = *base;
-    for (size_t i = 0; i < VTS_ARRAY_COUNT(rule_bytes); i++)
-        if (change->set >> i & 1)
-            memcpy((char *)&built->finish + rules[i].offset, (const char *)block + rules[i].offset,
-                   rule_bytes[i]);
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(rule_fields); i++)
+        for (int k = 0; k < 2 && change->set >> i & 1; k++) {
+            FieldRange range = rule_fields[i][k];
+            memcpy((char *)&built->finish + range.begin, (const char *)block + range.begin, range.end - range.begin);
+        }
     finish_rehash(&built->finish);
     return &built->finish;
 }

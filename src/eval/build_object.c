@@ -80,8 +80,8 @@ static const WordRule rules[] = {
     {"hollow", WORD_FLAG, FIELD(rest.hollow), NULL, false},
     {"bounded_by", WORD_CUSTOM, 0, read_bounded_by, false},
     {"clipped_by", WORD_CUSTOM, 0, read_clipped_by, false},
-    IGNORED("no_reflection"),
-    IGNORED("double_illuminate"),
+    {"no_reflection", WORD_FLAG, FIELD(no_reflection), NULL, false},
+    {"double_illuminate", WORD_FLAG, FIELD(double_illuminate), NULL, false},
     IGNORED("hierarchy"),
     {"sturm", WORD_CUSTOM, 0, read_restricted, false},
     {"split_union", WORD_CUSTOM, 0, read_restricted, false},
@@ -94,6 +94,13 @@ static const WordRule rules[] = {
     INERT("interior_texture"),
 };
 
+void take_interior(const Argument *value, ObjectDraft *draft) {
+    const Interior *interior = NULL;
+    if (value->value.kind == VALUE_INTERIOR) interior = value->value.as.interior;
+    if (value->value.kind == VALUE_MATERIAL) interior = material_interior(value->value.as.node);
+    if (interior) draft->rest.interior = interior;
+}
+
 bool object_on_value(Reader *reader, const Argument *value, void *target) {
     ObjectDraft *draft = target;
     if (value->value.kind == VALUE_COLOR) {
@@ -101,6 +108,7 @@ bool object_on_value(Reader *reader, const Argument *value, void *target) {
                      "a colour belongs into a pigment: it is ignored here");
         return true;
     }
+    take_interior(value, draft);
     return take_looks(reader->context, value, &draft->object.texture, &draft->rest.inert, &draft->transform) ||
            take_transform(value, &draft->transform);
 }
@@ -122,7 +130,9 @@ bool object_make(Reader *reader, const ObjectDraft *draft, Value *out) {
     object.no_shadow = draft->no_shadow;
     object.no_image = draft->no_image;
     object.inverse = draft->inverse;
-    object.rest = rest->inert || rest->hollow || rest->clipped_by.count || rest->bounded_by.count
+    object.no_reflection = draft->no_reflection;
+    object.double_illuminate = draft->double_illuminate;
+    object.rest = rest->inert || rest->hollow || rest->interior || rest->interior_texture || rest->clipped_by.count || rest->bounded_by.count
                       ? arena_copy(arena, rest, sizeof *rest)
                       : NULL;
     int depth = object_depth_by_parts(&object);
@@ -212,6 +222,8 @@ bool build_object(BuildContext *context, const EvalBlock *block, Value *out) {
     draft.no_shadow = source->no_shadow;
     draft.no_image = source->no_image;
     draft.inverse = source->inverse;
+    draft.no_reflection = source->no_reflection;
+    draft.double_illuminate = source->double_illuminate;
     if (source->rest) draft.rest = *source->rest;
     return object_finish(&reader, &draft, out);
 }

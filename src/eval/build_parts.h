@@ -56,6 +56,8 @@ BlockBuilder build_finish;
 /* `base` with what the finish block sets changed; a finish made from a declared one replaces it whole. */
 const Finish *finish_over(const BuildContext *context, const Finish *base, const Finish *block);
 
+BlockBuilder build_interior; /* build_interior.c */
+
 /* ---- build_texture.c ---- */
 BlockBuilder build_texture, build_material, build_inert_value;
 const Texture *texture_default(const BuildContext *context);
@@ -64,6 +66,8 @@ const Texture *texture_placed(const BuildContext *context, const Texture *textur
 const Texture *texture_over(const BuildContext *context, const Texture *top, const Texture *bottom);
 /* Takes texture, pigment, finish, normal, interior and material onto *texture, which may be NULL (the default then).
  * `place`: transform so far of what carries the texture. */
+/* The interior of a material, or NULL. */
+const Interior *material_interior(const void *material);
 bool take_looks(BuildContext *context, const Argument *value, const Texture **texture,
                 const InertNote **inert, const Transform *place);
 
@@ -73,10 +77,12 @@ typedef struct ObjectDraft {
     Object object;
     Transform transform; /* becomes the object's place */
     ObjectRest rest;
-    bool no_shadow, no_image, inverse;
+    bool no_shadow, no_image, inverse, no_reflection, double_illuminate;
     const char *word; /* the block's */
 } ObjectDraft;
 ObjectDraft object_begin(const EvalBlock *block, ObjectKind kind);
+/* Takes the interior, if the value is one or a material that has one. */
+void take_interior(const Argument *value, ObjectDraft *draft);
 /* Takes looks and transforms; target: an ObjectDraft. */
 bool object_on_value(Reader *reader, const Argument *value, void *target);
 /* Reads to the end of the block, with the modifiers of all objects; false after a diagnostic. */

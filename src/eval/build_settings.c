@@ -92,6 +92,12 @@ static void read_wave_count(Reader *reader, const Word *word, void *target) {
     reader->context->wave_count = int_clamp(count, 1, 10000);
 }
 
+static void read_irid_wavelength(Reader *reader, const Word *word, void *target) {
+    Color color;
+    if (word_arguments(reader, word, 1, 1) && word_color(reader, word, 0, &color))
+        ((SettingsDraft *)target)->settings.irid_wavelength = vec3(color.red, color.green, color.blue);
+}
+
 #define FIELD(name) offsetof(SettingsDraft, settings.name)
 #define KNOB(word)                                                                                           \
     { word, WORD_CUSTOM, 0, read_knob, true }
@@ -117,9 +123,9 @@ static const WordRule rules[] = {
     INERT("photons"),
     INERT("subsurface"),
     INERT("mm_per_unit"),
-    IGNORED("adc_bailout"),
+    {"adc_bailout", WORD_FLOAT, FIELD(adc_bailout), NULL, false},
     IGNORED("hf_gray_16"),
-    IGNORED("irid_wavelength"),
+    {"irid_wavelength", WORD_CUSTOM, 0, read_irid_wavelength, false},
     {"charset", WORD_CUSTOM, 0, read_charset, false},
     IGNORED("max_intersections"),
     {"noise_generator", WORD_CUSTOM, 0, read_noise_generator, false},

@@ -57,7 +57,7 @@ static const struct BlockWord {
     {"pattern", build_pattern},
     {"finish", build_finish},
     {"normal", build_inert_value},
-    {"interior", build_inert_value},
+    {"interior", build_interior},
     {"material", build_material},
     {"color_map", build_color_map},
     {"colour_map", build_color_map},

@@ -73,11 +73,14 @@ static const Texture *with_finish(const BuildContext *context, const Texture *te
 /* material { … }: a texture and what is not drawn. */
 typedef struct Material {
     const Texture *texture; /* in the space before `transform`; NULL: none */
+    const Interior *interior; /* or NULL */
     const InertNote *inert;
     Transform transform;
 } Material;
 
-/* Interiors and normals are no more than the name and place of what is not drawn. */
+const Interior *material_interior(const void *material) { return ((const Material *)material)->interior; }
+
+/* Normals are no more than the name and place of what is not drawn. */
 static void note_inert(const BuildContext *context, const InertNote *made, const InertNote **inert) {
     for (; made; made = made->next) inert_add(context, inert, made->word, made->span);
 }
@@ -104,8 +107,8 @@ bool take_looks(BuildContext *context, const Argument *value, const Texture **te
     case VALUE_FINISH:
         made = with_finish(context, current(context, *texture, place), value->value.as.finish);
         break;
-    case VALUE_NORMAL:
-    case VALUE_INTERIOR: note_inert(context, value->value.as.node, inert); return true;
+    case VALUE_NORMAL: note_inert(context, value->value.as.node, inert); return true;
+    case VALUE_INTERIOR: return true; /* of what has no inside */
     case VALUE_MATERIAL: {
         const Material *material = value->value.as.node;
         note_inert(context, material->inert, inert);
@@ -241,13 +244,13 @@ bool build_texture(BuildContext *context, const EvalBlock *block, Value *out) {
     return texture != NULL;
 }
 
-/* ---- normal, interior, wind_field: a note of what is not drawn ---- */
+/* ---- normal, wind_field: a note of what is not drawn ---- */
 
 bool build_inert_value(BuildContext *context, const EvalBlock *block, Value *out) {
     static const struct {
         const char *word;
         ValueKind kind;
-    } kinds[] = {{"normal", VALUE_NORMAL}, {"interior", VALUE_INTERIOR}, {"wind_field", VALUE_WIND_FIELD}};
+    } kinds[] = {{"normal", VALUE_NORMAL}, {"wind_field", VALUE_WIND_FIELD}};
     const InertNote *note = NULL;
     Reader reader = reader_begin(context, block);
     if (!grammar_read(&reader, block->word->text)) return false;
@@ -267,6 +270,10 @@ static bool on_material_value(Reader *reader, const Argument *value, void *targe
         return false;
     if (value->value.kind == VALUE_MATERIAL) {
         *material = *(const Material *)value->value.as.node;
+        return true;
+    }
+    if (value->value.kind == VALUE_INTERIOR) {
+        material->interior = value->value.as.interior;
         return true;
     }
     return take_looks(reader->context, value, &material->texture, &material->inert, &material->transform) ||

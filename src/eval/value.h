@@ -62,6 +62,7 @@ typedef struct Value {
         const Texture *texture;
         const Pigment *pigment;
         const Finish *finish;
+        const Interior *interior;
         const ColorMap *color_map;
         const Fog *fog;
         const SkySphere *sky_sphere;

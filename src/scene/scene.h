@@ -179,7 +179,25 @@ typedef struct Finish {
     double metallic;                 /* 0 */
     Color reflection_min, reflection_max;
     bool fresnel;
+    double reflection_falloff, reflection_exponent, reflection_metallic; /* 1, 1, 0 */
+    bool diffuse_albedo, specular_albedo, phong_albedo; /* the amount is what all of the lobe sends back */
+    bool conserve_energy;
+    double crand;                    /* 0 */
+    double irid, irid_thickness, irid_turbulence; /* 0: none */
 } Finish;
+
+/* What is inside of an object. */
+typedef struct Interior {
+    Span span;
+    Hash128 hash;
+    double ior;                      /* 1 */
+    double caustics;                 /* 0: shadows have none */
+    double dispersion;               /* ior of violet over that of red; 1 */
+    int dispersion_samples;          /* 7 */
+    double fade_distance, fade_power; /* 0, 0: light is not taken away; power >= 1000: exponentially */
+    Color fade_color;                /* black */
+    const InertNote *inert;          /* media */
+} Interior;
 
 /* How a bump comes about. All but the last have vector fields of their own. */
 typedef enum NormalForm {
@@ -305,6 +323,8 @@ typedef struct ObjectGroup {
 /* What few objects have. */
 typedef struct ObjectRest {
     ObjectList clipped_by, bounded_by; /* in object space */
+    const Interior *interior;         /* NULL: that of what the object is part of */
+    const Texture *interior_texture;  /* of surfaces seen from their inside; NULL: as outside */
     const InertNote *inert;
     bool hollow;
 } ObjectRest;
@@ -317,7 +337,7 @@ enum { OBJECT_DEEPEST = 1000 }; /* whoever walks a tree of objects may call itse
 struct Object {
     Span span;
     uint8_t kind; /* ObjectKind */
-    bool no_shadow : 1, no_image : 1, inverse : 1;
+    bool no_shadow : 1, no_image : 1, inverse : 1, no_reflection : 1, double_illuminate : 1;
     uint16_t depth; /* objects within each other, this one included; at most OBJECT_DEEPEST */
     const Affine *place;    /* object space → parent's space; NULL: the same */
     const Texture *texture; /* NULL: the parent's, at last the default */
@@ -537,6 +557,8 @@ typedef struct GlobalSettings {
     Color ambient_light;   /* 1 */
     double assumed_gamma;  /* 1 */
     int max_trace_level;   /* 5 */
+    double adc_bailout;    /* 1/255: what would add less is not traced */
+    Vec3 irid_wavelength;  /* of red, green and blue; 0.70, 0.52, 0.48 */
     int samples;           /* 0: by max_error */
     double shadow_aperture;/* 2: shadow cones are this much wider (Neyret 1998 sec. IV-B) */
     const char *opacity_model; /* NULL: correlated */
@@ -579,6 +601,7 @@ typedef struct Scene {
 void scene_print(const Scene *scene, StrBuf *out);
 /* Defaults of POV-Ray 3.7 where it has them. */
 Finish finish_default(void);
+Interior interior_default(void);
 Pigment pigment_default(void);
 GlobalSettings global_settings_default(void);
 Camera camera_default(double aspect);

@@ -5,7 +5,9 @@ Finish finish_default(void) {
                      .diffuse = 0.6,
                      .brilliance = 1,
                      .roughness = 0.05,
-                     .phong_size = 40};
+                     .phong_size = 40,
+                     .reflection_falloff = 1,
+                     .reflection_exponent = 1};
     finish_rehash(&finish);
     return finish;
 }
@@ -33,7 +35,14 @@ Pigment pigment_default(void) {
 
 GlobalSettings global_settings_default(void) {
     return (GlobalSettings){
-        .ambient_light = {1, 1, 1, 0, 0}, .assumed_gamma = 1, .max_trace_level = 5, .shadow_aperture = 2};
+        .ambient_light = {1, 1, 1, 0, 0}, .assumed_gamma = 1, .max_trace_level = 5, .adc_bailout = 1.0 / 255,
+        .irid_wavelength = {0.70, 0.52, 0.48}, .shadow_aperture = 2};
+}
+
+Interior interior_default(void) {
+    Interior interior = {.ior = 1, .dispersion = 1, .dispersion_samples = 7};
+    interior_rehash(&interior);
+    return interior;
 }
 
 Camera camera_default(double aspect) {

@@ -6,6 +6,7 @@
 enum {
     KIND_PIGMENT = 1,
     KIND_FINISH,
+    KIND_INTERIOR,
     KIND_TEXTURE,
     KIND_MESH,
     KIND_SHAPE,
@@ -134,14 +135,24 @@ void pigment_rehash(Pigment *p) {
 
 void finish_rehash(Finish *f) {
     Hash128 h = hash_begin(KIND_FINISH);
-    const double numbers[] = {f->diffuse, f->transmission, f->brilliance, f->specular,       f->roughness,
-                              f->phong,   f->phong_size,   f->metallic,   f->fresnel ? 1 : 0};
+    const double numbers[] = {f->diffuse, f->transmission, f->brilliance, f->specular, f->roughness, f->phong, f->phong_size, f->metallic,
+                              f->fresnel ? 1 : 0, f->reflection_falloff, f->reflection_exponent, f->reflection_metallic,
+                              f->diffuse_albedo + 2 * f->specular_albedo + 4 * f->phong_albedo + 8 * f->conserve_energy, f->crand,
+                              f->irid, f->irid_thickness, f->irid_turbulence};
     hash_add_color(&h, f->ambient);
     hash_add_color(&h, f->emission);
     for (size_t i = 0; i < VTS_ARRAY_COUNT(numbers); i++) hash_add_double(&h, numbers[i]);
     hash_add_color(&h, f->reflection_min);
     hash_add_color(&h, f->reflection_max);
     f->hash = h;
+}
+
+void interior_rehash(Interior *i) {
+    Hash128 h = hash_begin(KIND_INTERIOR);
+    const double numbers[] = {i->ior, i->caustics, i->dispersion, i->dispersion_samples, i->fade_distance, i->fade_power};
+    for (size_t k = 0; k < VTS_ARRAY_COUNT(numbers); k++) hash_add_double(&h, numbers[k]);
+    hash_add_color(&h, i->fade_color);
+    i->hash = h;
 }
 
 void texture_rehash(Texture *t) {
@@ -285,7 +296,10 @@ Hash128 object_hash(const Object *o) {
     Hash128 h = hash_begin(KIND_OBJECT);
     hash_add_hash(&h, object_geometry_hash(o));
     add_texture(&h, o->texture);
-    hash_add_u64(&h, (uint64_t)o->no_shadow | (uint64_t)o->no_image << 1 | (uint64_t)(o->rest && o->rest->hollow) << 2);
+    hash_add_u64(&h, (uint64_t)o->no_shadow | (uint64_t)o->no_image << 1 | (uint64_t)(o->rest && o->rest->hollow) << 2 |
+                         (uint64_t)o->no_reflection << 3 | (uint64_t)o->double_illuminate << 4);
+    if (o->rest) add_texture(&h, o->rest->interior_texture);
+    if (o->rest && o->rest->interior) hash_add_hash(&h, o->rest->interior->hash);
     if (object_has_group(o)) hash_add_hash(&h, hashed_group(o->as.group)->hash);
     if (o->kind == OBJECT_TRIANGLES && o->as.mesh->triangle_textures) {
         hash_add(&h, o->as.mesh->triangle_textures, o->as.mesh->triangle_count * sizeof(uint32_t));

@@ -12,6 +12,7 @@ void hash_add_transform(Hash128 *hash, const Transform *t);
 void pigment_rehash(Pigment *pigment);
 void finish_rehash(Finish *finish);
 void normal_rehash(Normal *normal);
+void interior_rehash(Interior *interior);
 void texture_rehash(Texture *texture);
 void mesh_rehash(MeshData *mesh); /* without its textures */
 /* Objects do not keep theirs (but groups do, when they are first asked: not from two threads at once). Shape, place and looks of the

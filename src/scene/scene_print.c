@@ -133,6 +133,33 @@ static void print_finish(Printer *p, const Finish *f) {
         add_color(p, "to", f->reflection_max);
     }
     add_flag(p, "fresnel", f->fresnel);
+    add_unless(p, "falloff", f->reflection_falloff, 1);
+    add_unless(p, "exponent", f->reflection_exponent, 1);
+    add_unless(p, "reflection_metallic", f->reflection_metallic, 0);
+    add_flag(p, "diffuse_albedo", f->diffuse_albedo);
+    add_flag(p, "specular_albedo", f->specular_albedo);
+    add_flag(p, "phong_albedo", f->phong_albedo);
+    add_flag(p, "conserve_energy", f->conserve_energy);
+    add_unless(p, "crand", f->crand, 0);
+    if (f->irid > 0) {
+        add_number(p, "irid", f->irid);
+        add_number(p, "thickness", f->irid_thickness);
+        add_unless(p, "turbulence", f->irid_turbulence, 0);
+    }
+    end_line(p);
+}
+
+static void print_interior(Printer *p, const Interior *interior) {
+    begin_line(p, "interior");
+    add_number(p, "ior", interior->ior);
+    add_unless(p, "caustics", interior->caustics, 0);
+    if (interior->dispersion != 1) strbuf_addf(p->out, " dispersion %g in %d", interior->dispersion, interior->dispersion_samples);
+    if (interior->fade_power > 0) {
+        add_number(p, "fade_distance", interior->fade_distance);
+        add_number(p, "fade_power", interior->fade_power);
+        add_color(p, "fade_color", interior->fade_color);
+    }
+    add_inert(p, interior->inert);
     end_line(p);
 }
 
@@ -235,10 +262,20 @@ static void print_object(Printer *p, const Object *o) {
     add_flag(p, "no_shadow", o->no_shadow);
     add_flag(p, "no_image", o->no_image);
     add_flag(p, "inverse", o->inverse);
+    add_flag(p, "no_reflection", o->no_reflection);
+    add_flag(p, "double_illuminate", o->double_illuminate);
     add_inert(p, object_inert(o));
     end_line(p);
     p->depth++;
     print_texture(p, o->texture);
+    if (o->rest && o->rest->interior_texture) {
+        begin_line(p, "interior_texture");
+        end_line(p);
+        p->depth++;
+        print_texture(p, o->rest->interior_texture);
+        p->depth--;
+    }
+    if (o->rest && o->rest->interior) print_interior(p, o->rest->interior);
     if (o->kind == OBJECT_PARTICLES) print_particles(p, o);
     if (o->kind == OBJECT_SURFACE) print_surface(p, o->as.surface);
     if (object_has_group(o)) {

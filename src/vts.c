@@ -159,6 +159,15 @@ static VtsStatus apply_setting(VtsSession *session, const VtsPair *pair, GlobalS
     return valid ? VTS_OK : VTS_ERROR_USAGE;
 }
 
+/* Told before the work begins, also by calls that draw nothing. */
+static VtsStatus check_settings(VtsSession *session) {
+    GlobalSettings unused = global_settings_default();
+    VtsStatus status = VTS_OK;
+    for (size_t i = 0; i < session->options.setting_count && status == VTS_OK; i++)
+        status = apply_setting(session, &session->options.settings[i], &unused);
+    return status;
+}
+
 static VtsStatus apply_settings(VtsSession *session) {
     session->scene_with_settings = *session->scene;
     GlobalSettings *settings = &session->scene_with_settings.settings;
@@ -379,6 +388,8 @@ static VtsStatus dump(VtsSession *session, const Call *call) {
 }
 
 static VtsStatus perform(VtsSession *session, const Call *call) {
+    VtsStatus settings = check_settings(session);
+    if (settings != VTS_OK) return settings;
     switch (call->kind) {
     case CALL_CHECK: return session_evaluate(session, call->scene_path, (EvalMode){.writes_in_memory = true});
     case CALL_RUN: return session_evaluate(session, call->scene_path, (EvalMode){.is_program = true});

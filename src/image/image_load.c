@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 
 /* What stands for 1 in files of this kind of sample; 0 for those that hold plain numbers. */
 static double full_scale(ImageSample sample) {
@@ -102,6 +103,9 @@ static bool load_with_oiio(Image *image, const char *path, ImageReading reading,
 bool image_load(Image *image, const char *path, ImageReading reading, MemoryBudget *budget, StrBuf *error) {
     *image = (Image){0};
     unsigned char magic[4];
+    struct stat info;
+    /* It is opened more than once; and a pipe might wait for ever. */
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) return fail(error, path, "it is no regular file");
     FILE *stream = fopen(path, "rb");
     size_t got = stream ? fread(magic, 1, sizeof magic, stream) : 0;
     if (stream) fclose(stream);

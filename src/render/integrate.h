@@ -3,6 +3,7 @@
 #define VTS_RENDER_INTEGRATE_H
 
 #include "render/compile.h"
+#include "render/draw.h"
 #include "render/film.h"
 #include "render/lighting.h"
 #include "render/skin_light.h"
@@ -23,6 +24,7 @@ typedef struct Tracer {
     Vec3f *direct;             /* [record][light] */
     LightRay *light_rays;      /* [light], at the segment that is being shaded */
     uint64_t seed;             /* of what is sampled in this pixel */
+    Draw draw;                 /* likewise, of samples that follow each other in one pixel: lens, lights, glossy directions */
     TraceCounters counters;
 } Tracer;
 

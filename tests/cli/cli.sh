@@ -182,6 +182,15 @@ case_unknown_word() {
   want_only scene.vts
 }
 
+case_settings() { # what --set asks for is known before the scene is, also where nothing is drawn
+  scene
+  for command in check run render reference; do
+    run $command scene.vts --set foo=1; want_status 2; want_in err "no knob 'foo'"
+    run $command scene.vts --set max_error=0; want_status 2; want_in err max_error
+  done
+  run check scene.vts --set max_error=1/100; want_status 0
+}
+
 case_compare() {
   scene
   run render scene.vts -s 24x18 -o a.png; want_status 0
@@ -195,6 +204,8 @@ case_compare() {
   "$json_check" <out || fail "no JSON: $(cat out)"
   run compare a.png wide.png; want_status 2; want_in err 'different size'
   run compare a.png none.png; want_status 3; want_in err none.png
+  mkfifo pipe
+  run compare a.png pipe; want_status 3; want_in err 'no regular file'
   run compare a.png scene.vts; want_status 3
   run compare a.png a.png --diff nowhere/map.png; want_status 3
   run compare a.png a.png --diff map.xyz; want_status 3

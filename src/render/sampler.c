@@ -1,0 +1,370 @@
+#include "render/sampler.h"
+
+#include <string.h>
+
+/* A tile and the pixels around it, whose first samples tell what differs across its border. */
+enum { EDGE = FILM_TILE + 2, CELLS = EDGE * EDGE };
+/* Where so much of the light comes from explicit surfaces, their edges are worth samples; where less, skins hide them. */
+static const float EDGE_WORTH = 1.0f / 64, ALL_EXPLICIT = 0.999f;
+/* An edge of contrast C that crosses a pixel anywhere leaves an error of C/√12 in its middle's sample; of two pixels whose second
+ * difference it makes C it crosses one. */
+static const double STEP_TO_ERROR = 0.408;
+/* Against random samples, of which n leave 1/n of the variance: what n of a straight edge leave (measured: 0.40 at 5, falling as 1/√n). */
+static const double EDGE_GAIN = 0.4;
+/* The squared error of a mean from the squared difference of its halves: 1/4 if they were random, less where they are parts of a net. */
+static const double HALVES_TO_ERROR = 0.2;
+/* What is known of a law by itself counts as much as so many pixels. */
+static const double PRIOR = 4;
+/* Contrasts are learned apart by their powers of four. */
+enum { CONTRASTS = 8, LEVELS = 9 };
+
+/* What is known of a pixel. Errors and contrasts are those of light that the picture can show. */
+typedef struct Cell {
+    Radiance sum;      /* over its samples */
+    Vec3f shown, late; /* sums of clamped light: of all samples, of the last half */
+    float squares;     /* of its channels */
+    Vec3f first;
+    float contrast;    /* of the first sample with those around: squared error to be expected of it */
+    int count, late_count;
+    bool refinable;
+    double error;      /* expected squared error now */
+} Cell;
+
+/* A ratio that is learned: of what came out to what was expected. */
+typedef struct Learned {
+    double expected, found;
+    int count;
+} Learned;
+
+/* The pixel to be refined next: a heap, the largest gain on top. What has changed since it was pushed is pushed again. */
+typedef struct Candidate {
+    double gain;
+    int cell;
+} Candidate;
+
+struct Sampler {
+    const CompiledScene *compiled;
+    SamplePlan plan;
+    Tracer tracer;
+    Cell cells[CELLS];
+    int x0, y0, columns, rows;
+    Learned contrasts[CONTRASTS], levels[LEVELS];
+    Candidate heap[4 * CELLS];
+    int heap_count;
+    SamplerTally tally;
+};
+
+Sampler *sampler_create(const CompiledScene *compiled, const SamplePlan *plan, Arena *arena) {
+    Sampler *sp = arena_new(arena, Sampler);
+    sp->compiled = compiled;
+    sp->plan = *plan;
+    tracer_init(&sp->tracer, compiled, arena);
+    return sp;
+}
+
+void sampler_count(const Sampler *sp, TraceCounters *counters, SamplerTally *tally) {
+    trace_counters_add(counters, &sp->tracer.counters);
+    tally->squared_error += sp->tally.squared_error;
+    tally->pixels += sp->tally.pixels;
+    tally->refined += sp->tally.refined;
+}
+
+static bool stopped(const Sampler *sp) { return sp->plan.interrupted && *sp->plan.interrupted; }
+
+/* ---- one sample ---- */
+
+static bool find_surface(const CompiledScene *compiled, const Cone *cone, SurfaceHit *hit) {
+    Ray ray = {cone->origin, cone->direction};
+    return hierarchy_intersect(compiled->hierarchy, &ray, 1e-9, VTS_INFINITY, hit);
+}
+
+/* Whether explicit surfaces look the same all over the pixel: same part, much the same direction and depth. */
+static bool alike(const SurfaceHit *a, const SurfaceHit *b) {
+    return a->object == b->object && vec3_dot(a->normal, b->normal) > 0.95 && fabs(a->t - b->t) < 0.05 * (a->t + b->t);
+}
+
+static bool surfaces_vary(const CompiledScene *compiled, double x, double y, bool found, const SurfaceHit *hit) {
+    for (int corner = 0; corner < 4; corner++) {
+        Cone probe = view_cone(&compiled->view, x + (corner & 1 ? 0.499 : -0.499), y + (corner & 2 ? 0.499 : -0.499), 1);
+        SurfaceHit other;
+        bool other_found = find_surface(compiled, &probe, &other);
+        if (other_found != found || (found && !alike(hit, &other))) return true;
+    }
+    return false;
+}
+
+static Vec3f shown(const Sampler *sp, Vec3f color) {
+    float gain = sp->plan.gain;
+    return vec3f(float_clamp(color.x * gain, 0, 1), float_clamp(color.y * gain, 0, 1), float_clamp(color.z * gain, 0, 1));
+}
+
+static float mean_square(Vec3f a) { return vec3f_dot(a, a) / 3; }
+
+/* Adds the sample at (x, y) of the pixel (px, py), `width` pixels wide. Whether the pixel's error can be that of edges is found at its first. */
+static void add_sample(Sampler *sp, Cell *cell, int px, int py, double x, double y, double width) {
+    Tracer *tracer = &sp->tracer;
+    SurfaceHit hit;
+    float reaching = 1;
+    Cone cone = view_cone(&sp->compiled->view, px + x, py + y, width);
+    uint64_t pixel = random_hash((uint64_t)px, (uint64_t)py, sp->plan.seed, 0);
+    tracer->draw = (Draw){pixel, (uint32_t)cell->count};
+    tracer->seed = cell->count ? random_mix(pixel + (uint64_t)cell->count) : pixel;
+    bool ray = vec3_length_squared(cone.direction) > 0; /* some cameras see nothing at the picture's rim */
+    bool found = ray && find_surface(sp->compiled, &cone, &hit);
+    Radiance seen = ray ? trace_cone(tracer, &cone, found ? &hit : NULL, &reaching) : (Radiance){{0, 0, 0}, 0};
+    Vec3f light = shown(sp, seen.color);
+    if (cell->count == 0) {
+        cell->first = light;
+        cell->refinable = reaching >= ALL_EXPLICIT || (reaching >= EDGE_WORTH && surfaces_vary(sp->compiled, px + x, py + y, found, &hit));
+    }
+    cell->count++;
+    cell->sum.color = vec3f_add(cell->sum.color, seen.color);
+    cell->sum.alpha += seen.alpha;
+    cell->shown = vec3f_add(cell->shown, light);
+    cell->squares += vec3f_dot(light, light);
+    cell->late = vec3f_add(cell->late, light);
+    cell->late_count++;
+}
+
+static void place_of(const Sampler *sp, int cell, int *px, int *py) {
+    *px = sp->x0 + cell % EDGE - 1;
+    *py = sp->y0 + cell / EDGE - 1;
+}
+
+/* The first sample of each pixel lies in its middle: of light that changes evenly it is the mean. */
+static void see_middle(Sampler *sp, int index) {
+    int px, py;
+    place_of(sp, index, &px, &py);
+    sp->cells[index] = (Cell){.count = 0};
+    add_sample(sp, &sp->cells[index], px, py, 0.5, 0.5, 1);
+}
+
+/* Samples up to `count` of them, laid by lot. */
+static void see_more(Sampler *sp, int index, int count) {
+    Cell *cell = &sp->cells[index];
+    int px, py, before = cell->count, half = before <= 1 ? count / 2 + 1 : before;
+    double width = 1 / sqrt(count);
+    place_of(sp, index, &px, &py);
+    Draw draw = {random_hash((uint64_t)px, (uint64_t)py, sp->plan.seed, 0), 0};
+    for (int k = before; k < count && !stopped(sp); k++) {
+        double x, y;
+        draw.index = (uint32_t)(sp->plan.fixed ? k : k - 1);
+        draw_pair(&draw, DRAW_PIXEL, &x, &y);
+        if (k == half) cell->late = vec3f(0, 0, 0), cell->late_count = 0;
+        add_sample(sp, cell, px, py, x, y, width);
+    }
+}
+
+/* ---- errors ---- */
+
+static int level_of(int count) {
+    int level = 0;
+    while (count > 2 && level < LEVELS - 1) count /= 2, level++;
+    return level;
+}
+
+static int contrast_class(double contrast) {
+    int class = contrast > 0 ? (int)(-0.5 * log2(contrast)) : CONTRASTS - 1;
+    return int_clamp(class, 0, CONTRASTS - 1);
+}
+
+static void learn(Learned *learned, double expected, double found) {
+    learned->expected += expected;
+    learned->found += found;
+    learned->count++;
+}
+
+static double learned_ratio(const Learned *learned, double before) {
+    if (learned->count == 0 || !(learned->expected > 0)) return before;
+    return (PRIOR * before + learned->count * learned->found / learned->expected) / (PRIOR + learned->count);
+}
+
+/* Of what is expected of a first sample, the part that was found where the contrast was as large, or next larger. */
+static double contrast_ratio(const Sampler *sp, double contrast) {
+    double ratio = 1;
+    for (int class = 0; class <= contrast_class(contrast); class++) ratio = learned_ratio(&sp->contrasts[class], ratio);
+    return ratio;
+}
+
+static Vec3f mean_shown(const Cell *cell) { return vec3f_scale(cell->shown, 1 / (float)cell->count); }
+
+static double variance(const Cell *cell) {
+    double n = cell->count, squares = (double)cell->squares / n, mean = (double)vec3f_dot(mean_shown(cell), mean_shown(cell));
+    double found = fmax(squares - mean, 0) * n / (n - 1) / 3;
+    /* Few samples may have missed what the neighbours show. */
+    return found + (double)cell->contrast / (n * n);
+}
+
+static double expected_error(const Sampler *sp, const Cell *cell) {
+    if (!cell->refinable) return 0;
+    if (cell->count == 1) return (double)cell->contrast * contrast_ratio(sp, (double)cell->contrast);
+    double ratio = learned_ratio(&sp->levels[level_of(cell->count)], EDGE_GAIN * sqrt(5.0 / cell->count));
+    return variance(cell) * ratio / cell->count;
+}
+
+static double halves_error(const Cell *cell) {
+    int early = cell->count - cell->late_count;
+    if (early < 1 || cell->late_count < 1) return 0;
+    Vec3f a = vec3f_scale(cell->late, 1 / (float)cell->late_count), b = vec3f_scale(vec3f_sub(cell->shown, cell->late), 1 / (float)early);
+    return HALVES_TO_ERROR * (double)mean_square(vec3f_sub(a, b));
+}
+
+/* The largest second difference of the middle's light with those on both sides, as a squared error. */
+static float contrast_of(const Sampler *sp, int index) {
+    static const int across[] = {1, EDGE, EDGE + 1, EDGE - 1};
+    Vec3f here = vec3f_scale(sp->cells[index].first, 2);
+    float most = 0;
+    for (int k = 0; k < 4; k++) {
+        Vec3f around = vec3f_add(mean_shown(&sp->cells[index + across[k]]), mean_shown(&sp->cells[index - across[k]]));
+        most = float_max(most, mean_square(vec3f_sub(around, here)));
+    }
+    return most * (float)(STEP_TO_ERROR * STEP_TO_ERROR / 4);
+}
+
+/* ---- the heap ---- */
+
+static void swap_candidates(Candidate *a, Candidate *b) {
+    Candidate c = *a;
+    *a = *b, *b = c;
+}
+
+static void heap_push(Sampler *sp, int cell, double gain) {
+    if (sp->heap_count == (int)VTS_ARRAY_COUNT(sp->heap)) return;
+    int i = sp->heap_count++;
+    sp->heap[i] = (Candidate){gain, cell};
+    for (; i > 0 && sp->heap[i].gain > sp->heap[(i - 1) / 2].gain; i = (i - 1) / 2) swap_candidates(&sp->heap[i], &sp->heap[(i - 1) / 2]);
+}
+
+static Candidate heap_pop(Sampler *sp) {
+    Candidate top = sp->heap[0];
+    sp->heap[0] = sp->heap[--sp->heap_count];
+    for (int i = 0, child; (child = 2 * i + 1) < sp->heap_count; i = child) {
+        if (child + 1 < sp->heap_count && sp->heap[child + 1].gain > sp->heap[child].gain) child++;
+        if (sp->heap[i].gain >= sp->heap[child].gain) break;
+        swap_candidates(&sp->heap[i], &sp->heap[child]);
+    }
+    return top;
+}
+
+/* ---- a tile ---- */
+
+static int next_count(int count) { return count == 1 ? 5 : 2 * count - 1; }
+
+static double gain_of(const Cell *cell) { return cell->error / (next_count(cell->count) - cell->count); }
+
+static bool can_refine(const Sampler *sp, const Cell *cell) { return cell->refinable && next_count(cell->count) <= sp->plan.most + 1; }
+
+/* Values every pixel of the tile anew, by what has been learned. Returns the sum of its errors. */
+static double value_all(Sampler *sp) {
+    double sum = 0;
+    sp->heap_count = 0;
+    for (int row = 1; row <= sp->rows; row++)
+        for (int column = 1; column <= sp->columns; column++) {
+            Cell *cell = &sp->cells[row * EDGE + column];
+            cell->error = expected_error(sp, cell);
+            sum += cell->error;
+            if (cell->error > 0 && can_refine(sp, cell)) heap_push(sp, row * EDGE + column, gain_of(cell));
+        }
+    return sum;
+}
+
+/* One pixel's next samples, and what they tell of others like it. */
+static void refine(Sampler *sp, int index) {
+    Cell *cell = &sp->cells[index];
+    int before = cell->count;
+    see_more(sp, index, next_count(before));
+    if (before == 1) learn(&sp->contrasts[contrast_class((double)cell->contrast)], (double)cell->contrast, (double)mean_square(vec3f_sub(cell->first, mean_shown(cell))));
+    learn(&sp->levels[level_of(cell->count)], variance(cell) / cell->count, halves_error(cell));
+}
+
+/* A pixel that turned out to be other than its middle may be part of something thin, which goes on beside it. */
+static double look_around(Sampler *sp, int index) {
+    static const int around[] = {-EDGE - 1, -EDGE, -EDGE + 1, -1, 1, EDGE - 1, EDGE, EDGE + 1};
+    double change = 0;
+    for (int k = 0; k < 8; k++) {
+        int other = index + around[k], row = other / EDGE, column = other % EDGE;
+        Cell *cell = &sp->cells[other];
+        if (row < 1 || row > sp->rows || column < 1 || column > sp->columns || cell->count != 1 || !cell->refinable) continue;
+        float contrast = contrast_of(sp, other);
+        if (contrast <= 1.5f * cell->contrast) continue;
+        cell->contrast = contrast;
+        change -= cell->error;
+        cell->error = expected_error(sp, cell);
+        change += cell->error;
+        heap_push(sp, other, gain_of(cell));
+    }
+    return change;
+}
+
+/* Refines where it helps most until the tile is good enough. Returns the sum of its errors. */
+static double refine_all(Sampler *sp) {
+    enum { REVALUE = 64 };
+    double accepted = sp->plan.max_error * sp->plan.max_error * sp->columns * sp->rows, sum = value_all(sp);
+    for (int done = 1; sum > accepted && sp->heap_count && !stopped(sp); done++) {
+        Candidate best = heap_pop(sp);
+        Cell *cell = &sp->cells[best.cell];
+        if (best.gain != gain_of(cell) || !can_refine(sp, cell)) continue;
+        refine(sp, best.cell);
+        double before = cell->error;
+        cell->error = expected_error(sp, cell);
+        sum += cell->error - before;
+        sum += look_around(sp, best.cell);
+        if (can_refine(sp, cell)) heap_push(sp, best.cell, gain_of(cell));
+        if (done % REVALUE == 0 || sum <= accepted) sum = value_all(sp);
+    }
+    return value_all(sp);
+}
+
+static void see_middles(Sampler *sp) {
+    const View *view = &sp->compiled->view;
+    for (int row = 0; row <= sp->rows + 1; row++)
+        for (int column = 0; column <= sp->columns + 1 && !stopped(sp); column++) {
+            int px = sp->x0 + column - 1, py = sp->y0 + row - 1;
+            if (px >= 0 && py >= 0 && px < view->width && py < view->height) see_middle(sp, row * EDGE + column);
+        }
+    /* Beyond the picture's border lies what lies along it. */
+    for (int row = 0; row <= sp->rows + 1; row++)
+        for (int column = 0; column <= sp->columns + 1; column++) {
+            int x = int_clamp(sp->x0 + column - 1, 0, view->width - 1) - sp->x0 + 1, y = int_clamp(sp->y0 + row - 1, 0, view->height - 1) - sp->y0 + 1;
+            if (x != column || y != row) sp->cells[row * EDGE + column] = sp->cells[y * EDGE + x];
+        }
+    for (int row = 1; row <= sp->rows; row++)
+        for (int column = 1; column <= sp->columns; column++) sp->cells[row * EDGE + column].contrast = contrast_of(sp, row * EDGE + column);
+}
+
+static double see_fixed(Sampler *sp) {
+    double sum = 0;
+    for (int row = 1; row <= sp->rows; row++)
+        for (int column = 1; column <= sp->columns && !stopped(sp); column++) {
+            Cell *cell = &sp->cells[row * EDGE + column];
+            *cell = (Cell){.count = 0};
+            see_more(sp, row * EDGE + column, sp->plan.fixed);
+            if (cell->count > 1) learn(&sp->levels[level_of(cell->count)], variance(cell) / cell->count, halves_error(cell));
+        }
+    for (int row = 1; row <= sp->rows; row++)
+        for (int column = 1; column <= sp->columns; column++) {
+            const Cell *cell = &sp->cells[row * EDGE + column];
+            if (cell->count > 1) sum += expected_error(sp, cell);
+        }
+    return sum;
+}
+
+void sampler_tile(Sampler *sp, int x0, int y0, int x1, int y1, Radiance *out) {
+    sp->x0 = x0, sp->y0 = y0, sp->columns = x1 - x0, sp->rows = y1 - y0;
+    memset(sp->contrasts, 0, sizeof sp->contrasts);
+    memset(sp->levels, 0, sizeof sp->levels);
+    if (sp->plan.fixed) {
+        sp->tally.squared_error += see_fixed(sp);
+    } else {
+        see_middles(sp);
+        sp->tally.squared_error += refine_all(sp);
+    }
+    sp->tally.pixels += (uint64_t)(sp->columns * sp->rows);
+    for (int row = 1; row <= sp->rows; row++)
+        for (int column = 1; column <= sp->columns; column++) {
+            const Cell *cell = &sp->cells[row * EDGE + column];
+            float share = cell->count ? 1 / (float)cell->count : 0;
+            *out++ = (Radiance){vec3f_scale(cell->sum.color, share), cell->sum.alpha * share};
+            sp->tally.refined += cell->count > 1;
+        }
+}

@@ -1,0 +1,29 @@
+/* Samples of the pixels of a tile where no skins are drawn by beams: one in the middle of each, and more where the picture's error is. */
+#ifndef VTS_RENDER_SAMPLER_H
+#define VTS_RENDER_SAMPLER_H
+
+#include "render/integrate.h"
+
+typedef struct SamplePlan {
+    int fixed;        /* samples of every pixel; 0: by the error */
+    int most;         /* of a pixel, otherwise */
+    double max_error; /* that is accepted: RMSE over a tile, of light clamped to [0, 1] after exposure */
+    float gain;       /* of the exposure */
+    uint64_t seed;
+    const atomic_bool *interrupted; /* may be NULL */
+} SamplePlan;
+
+typedef struct Sampler Sampler; /* of one worker */
+
+Sampler *sampler_create(const CompiledScene *compiled, const SamplePlan *plan, Arena *arena);
+/* A whole tile, [x0, x1) × [y0, y1), at most FILM_TILE each way: rows of x1 − x0 in `out`. What it gives depends on the tile alone. */
+void sampler_tile(Sampler *sampler, int x0, int y0, int x1, int y1, Radiance *out);
+
+/* Sums over all tiles so far: of the squared errors to be expected, of pixels, and of those that took more than one sample. */
+typedef struct SamplerTally {
+    double squared_error;
+    uint64_t pixels, refined;
+} SamplerTally;
+void sampler_count(const Sampler *sampler, TraceCounters *counters, SamplerTally *tally);
+
+#endif

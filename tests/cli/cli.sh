@@ -206,6 +206,7 @@ case_compare() {
   run compare a.png none.png; want_status 3; want_in err none.png
   mkfifo pipe
   run compare a.png pipe; want_status 3; want_in err 'no regular file'
+  rm pipe
   run compare a.png scene.vts; want_status 3
   run compare a.png a.png --diff nowhere/map.png; want_status 3
   run compare a.png a.png --diff map.xyz; want_status 3

@@ -2,9 +2,6 @@
 
 #include "base/random.h"
 
-/* 1/√2: where the first of the samples goes over; the last does twice as far away. */
-static const double LEAST_FADE = 0.70710678118654752;
-
 /* The camera's lines through the tile: in the axes right, up, direction a point is at (s, t, 1) times its depth. */
 void beam_aim(BeamTracer *tr) {
     const View *view = &tr->compiled->view;
@@ -66,7 +63,7 @@ void beam_lay_samples(BeamTracer *tr) {
                 s->x[i] = (float)(column + x);
                 s->y[i] = (float)(row + y);
                 s->mark[i] = 0;
-                tr->fade[i] = (float)(LEAST_FADE * (1 + f));
+                tr->fade[i] = (float)(BEAM_LEAST_FADE * (1 + f));
                 tr->surface[i] = BEAM_NOTHING;
             }
         }

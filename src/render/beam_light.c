@@ -22,7 +22,7 @@ static uint32_t add_points(BeamTracer *tr, const Sight *sight, const LightRay *r
         Vec3f p = vec3f_from(vec3_sub(beam_sample_point(tr, (uint32_t)i, &t), tr->beam.origin));
         tr->points[count] = front ? vec3f_add(p, sight->bias) : vec3f_sub(p, sight->bias);
         tr->hidden[count] = 0;
-        tr->distance[count] = (float)t;
+        tr->distance[count] = (float)beam_faded_distance(tr, (uint32_t)i, t);
         count++;
     }
     return count;
@@ -64,12 +64,14 @@ static void hide_by_surfaces(BeamTracer *tr, const Light *light) {
 }
 
 /* The share of light that voxels let through to a sight: of skins that have no exact geometry there. */
-static float through_voxels(BeamTracer *tr, const Sight *sight, const Cone *cone, const LightRay *ray) {
-    if ((double)sight->t <= tr->compiled->all_exact_to) return 1;
+static float through_voxels(BeamTracer *tr, const Sight *sight, const LightRay *ray) {
+    if (!sight->beyond) return 1;
+    double t, seen_from = beam_faded_distance(tr, (uint32_t)sight->first, (double)sight->t);
+    Cone cone = beam_sight_cone(tr, sight, &t);
     double aperture = tr->compiled->shadow_aperture, side = vec3f_dot(sight->flat, vec3f_from(ray->direction)) > 0 ? 1 : -1;
-    Vec3 from = vec3_madd(cone_point(cone, (double)sight->t), vec3_from_f(sight->bias), side);
-    Cone shadow = {from, ray->direction, cone_diameter(cone, (double)sight->t) * aperture, cone->spread * aperture};
-    return skin_light_through_voxels(&tr->volumes.light, &shadow, ray->distance, (double)sight->t);
+    Vec3 from = vec3_madd(cone_point(&cone, t), vec3_from_f(sight->bias), side);
+    Cone shadow = {from, ray->direction, cone_diameter(&cone, t) * aperture, cone.spread * aperture};
+    return skin_light_through_voxels(&tr->volumes.light, &shadow, ray->distance, seen_from);
 }
 
 /* The share of a sight's points that are not hidden, of all and of those with odd numbers. */
@@ -98,7 +100,7 @@ static uint32_t ask_light(BeamTracer *tr, const Light *light) {
         if (light->shadowless || !(luminance(sight->tone) > 0)) continue;
         count = add_points(tr, sight, &ray, count);
         sight->asked = true;
-        sight->tone = vec3f_scale(sight->tone, through_voxels(tr, sight, &tr->cones[sight->pixel], &ray));
+        sight->tone = vec3f_scale(sight->tone, through_voxels(tr, sight, &ray));
     }
     return count;
 }
@@ -134,7 +136,7 @@ static uint32_t add_sky_points(BeamTracer *tr, const Sight *sight, uint32_t coun
     for (int i = sight->first; i != BEAM_NOTHING; i = tr->next[i], count++) {
         double t;
         tr->points[count] = vec3f_from(vec3_sub(beam_sample_point(tr, (uint32_t)i, &t), tr->beam.origin));
-        tr->distance[count] = (float)t;
+        tr->distance[count] = (float)beam_faded_distance(tr, (uint32_t)i, t);
         tr->sky_up[count] = sight->up;
         tr->sky_flat[count] = sight->bias;
         tr->sky_turn[count] = (uint8_t)((turn + (uint32_t)tr->before + (uint32_t)i - first) % SKY_PAIRS);

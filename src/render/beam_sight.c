@@ -68,20 +68,45 @@ static bool same_surface(const SeenSurface *a, const SeenSurface *b) {
     return a == b || (a->found == b->found && (!a->found || (a->hit.object == b->hit.object && vec3_dot(a->hit.normal, b->hit.normal) > 0.999)));
 }
 
+/* Whether a sample sees voxels of any skin before what it sees. */
+static bool is_beyond(const BeamTracer *tr, uint32_t i) {
+    if (isinf(tr->compiled->all_exact_to)) return false;
+    float key = tr->beam.samples.key[i];
+    if (tr->beam.perspective && !(key > 0)) return true;
+    BeamLine line = beam_sample_line(tr, i);
+    return beam_faded_distance(tr, i, beam_line_distance(tr, &line, key)) > tr->compiled->all_exact_to;
+}
+
+Cone beam_sight_cone(const BeamTracer *tr, const Sight *sight, double *t) {
+    const BeamSamples *s = &tr->beam.samples;
+    double x = 0, y = 0, sum = 0;
+    for (int i = sight->first; i != BEAM_NOTHING; i = tr->next[i]) {
+        BeamLine line = beam_sample_line(tr, (uint32_t)i);
+        x += (double)s->x[i], y += (double)s->y[i];
+        if (sight->look) sum += beam_line_distance(tr, &line, s->key[i]);
+    }
+    BeamLine line = beam_line_at(tr, x / sight->count, y / sight->count);
+    Cone cone = tr->cones[sight->pixel];
+    cone.origin = line.origin;
+    cone.direction = vec3_scale(line.direction, 1 / line.length);
+    *t = sight->look ? sum / sight->count : VTS_INFINITY;
+    return cone;
+}
+
 /* The sight of the pixel, whose sights begin at `begin`, that the sample belongs to; sight_count if none does yet. */
-static uint32_t sight_of(const BeamTracer *tr, int pixel, uint32_t begin, uint32_t sample) {
+static uint32_t sight_of(const BeamTracer *tr, int pixel, uint32_t begin, uint32_t sample, bool beyond) {
     const uint32_t *mark = tr->beam.samples.mark;
     uint32_t k = begin;
     for (; k < tr->sight_count; k++) {
         uint32_t other = (uint32_t)tr->sights[k].first;
-        if (mark[sample] != mark[other]) continue;
+        if (mark[sample] != mark[other] || beyond != tr->sights[k].beyond) continue;
         if (mark[sample] || same_surface(beam_surface_of(tr, pixel, sample), beam_surface_of(tr, pixel, other))) break;
     }
     return k;
 }
 
-static Sight new_sight(const BeamTracer *tr, int pixel, uint32_t sample) {
-    Sight sight = {.pixel = pixel, .first = BEAM_NOTHING, .t = INFINITY};
+static Sight new_sight(const BeamTracer *tr, int pixel, uint32_t sample, bool beyond) {
+    Sight sight = {.pixel = pixel, .first = BEAM_NOTHING, .t = INFINITY, .beyond = beyond};
     uint32_t mark = tr->beam.samples.mark[sample];
     if (!mark && !beam_surface_of(tr, pixel, sample)->found) return sight;
     double t;
@@ -100,10 +125,11 @@ void beam_gather_sights(BeamTracer *tr) {
     for (int pixel = 0; pixel < tr->columns * tr->rows; pixel++) {
         uint32_t begin = tr->sight_count;
         for (uint32_t i = s->first[pixel]; i < s->first[pixel + 1]; i++) {
-            uint32_t k = sight_of(tr, pixel, begin, i);
+            bool beyond = is_beyond(tr, i);
+            uint32_t k = sight_of(tr, pixel, begin, i, beyond);
             Sight *sight = &tr->sights[k];
             if (k == tr->sight_count) {
-                *sight = new_sight(tr, pixel, i);
+                *sight = new_sight(tr, pixel, i, beyond);
                 tr->sight_count++;
             }
             tr->next[i] = sight->first;

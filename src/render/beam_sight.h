@@ -7,6 +7,8 @@
 #include "render/beam_tile.h"
 
 enum { BEAM_NOTHING = -1, BEAM_EDGE = BEAM_TILE + 2, BEAM_MOST_IN_PASS = 32 };
+/* 1/√2: where the first of the samples goes over; the last does twice as far away. */
+#define BEAM_LEAST_FADE 0.70710678118654752
 
 /* An explicit surface, as one ray has met it. */
 typedef struct SeenSurface {
@@ -31,6 +33,7 @@ typedef struct Sight {
     Vec3f tone;           /* of the light that is being asked for, without shadows */
     uint32_t begin;       /* of its points */
     bool asked;           /* whether it has any */
+    bool beyond;          /* its samples may see voxels before it, and get the shadows of voxels; else all before it is exact */
     Vec3 point;           /* of the first sample */
 } Sight;
 
@@ -90,6 +93,8 @@ double beam_line_distance(const BeamTracer *tracer, const BeamLine *line, float 
 /* The line of a sample, and what it has met at *t along it. */
 BeamLine beam_sample_line(const BeamTracer *tracer, uint32_t sample);
 Vec3 beam_sample_point(const BeamTracer *tracer, uint32_t sample, double *t);
+/* How far from the eye the sample's t would be, if it went over to voxels where the mean sample does. */
+static inline double beam_faded_distance(const BeamTracer *tracer, uint32_t sample, double t) { return t / (double)tracer->fade[sample]; }
 
 /* ---- beam_surface.c: explicit surfaces ---- */
 
@@ -100,8 +105,11 @@ const SeenSurface *beam_surface_of(const BeamTracer *tracer, int pixel, uint32_t
 
 /* ---- beam_sight.c: what each sample sees ---- */
 
-/* Sorts the samples of each pixel by what they see. */
+/* Sorts the samples of each pixel by what they see, and by whether voxels may lie before it. */
 void beam_gather_sights(BeamTracer *tracer);
+/* The mean of the lines to the samples of a sight, as wide as the pixel, and how far along it they lie (VTS_INFINITY of the sky). The line
+ * through the pixel's middle would end before what they see or behind it, by more than a thin layer's height. */
+Cone beam_sight_cone(const BeamTracer *tracer, const Sight *sight, double *t);
 
 /* ---- beam_light.c ---- */
 

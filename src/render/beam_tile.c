@@ -99,16 +99,21 @@ static bool see_sky(const BeamTracer *tr, Radiance *out) {
 
 /* ---- pixels ---- */
 
-/* Where skins' voxels begin for the samples of a sight; false when it sees none. */
-static bool starts_of(const BeamTracer *tr, const Sight *sight, ConeStart *start) {
-    float first = INFINITY;
-    start->count = 0;
-    if (isinf(tr->compiled->all_exact_to)) return false;
+/* Where skins' voxels begin for the samples of a sight. */
+static ConeStart starts_of(const BeamTracer *tr, const Sight *sight) {
+    float count[MOST_CONE_STARTS] = {0}, sum[MOST_CONE_STARTS] = {0};
     for (int i = sight->first; i != BEAM_NOTHING; i = tr->next[i]) {
-        start->factors[start->count++] = tr->fade[i];
-        first = float_min(first, tr->fade[i]);
+        int at = int_clamp((int)(((double)tr->fade[i] / BEAM_LEAST_FADE - 1) * MOST_CONE_STARTS), 0, MOST_CONE_STARTS - 1);
+        count[at] += 1;
+        sum[at] += tr->fade[i];
     }
-    return tr->compiled->all_exact_to * (double)first < (double)sight->t;
+    ConeStart start = {.count = 0};
+    for (int at = 0; at < MOST_CONE_STARTS; at++) {
+        if (!(count[at] > 0)) continue;
+        start.share[start.count] = count[at] / (float)sight->count;
+        start.factor[start.count++] = sum[at] / count[at];
+    }
+    return start;
 }
 
 /* What a sight sends through fog and voxels, to all of its samples and to the odd ones. */
@@ -121,8 +126,9 @@ static void see_sight(BeamTracer *tr, const Sight *sight, Radiance *all, Vec3f *
     Air air = air_between(scene, &(Ray){cone.origin, cone.direction}, t);
     *all = (Radiance){air_over(&air, sight->look ? sight->light : sky, 1), sight->look ? 1 : 0};
     *odd = air_over(&air, sight->look ? sight->odd_light : sky, 1);
-    ConeStart start;
-    if (!starts_of(tr, sight, &start)) return;
+    if (!sight->beyond) return;
+    ConeStart start = starts_of(tr, sight);
+    cone = beam_sight_cone(tr, sight, &t);
     float transmittance;
     tr->volumes.seed = random_hash((uint64_t)(tr->x0 + sight->pixel % tr->columns), (uint64_t)(tr->y0 + sight->pixel / tr->columns), 1, tr->seed);
     Vec3f matter = trace_skins(&tr->volumes, &cone, &start, t, &transmittance);

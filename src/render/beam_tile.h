@@ -2,7 +2,8 @@
  * voxels, one cone for all samples that see the same.
  *
  * Each skin has a distance at which voxels take over (CompiledSkin.exact_to). The samples of a pixel go over at slightly different
- * distances, so that one fades into the other: sample i of n at exact_to · 2^((i + 1/2)/n − 1/2), an octave from first to last. */
+ * distances, so that one fades into the other: sample i of n at exact_to · 2^((i + 1/2)/n − 1/2), an octave from first to last. Those that see
+ * voxels before what they see are shaded apart from those that do not, along the mean of their own lines. */
 #ifndef VTS_RENDER_BEAM_TILE_H
 #define VTS_RENDER_BEAM_TILE_H
 

@@ -142,31 +142,39 @@ static int nearest_segment(const Tracer *tr, size_t met) {
 
 /* ---- from exact geometry to voxels ---- */
 
+/* What is left of the light behind the segments so far, for each of the cone's starts. */
+typedef struct Passed {
+    const ConeStart *start;
+    float through[MOST_CONE_STARTS]; /* one, where the cone has no starts */
+    float transmittance;             /* their mean */
+} Passed;
+
+static Passed passed_nothing(const ConeStart *start) {
+    Passed passed = {.start = start, .transmittance = 1};
+    for (int i = 0; i < MOST_CONE_STARTS; i++) passed.through[i] = 1;
+    return passed;
+}
+
 static double march_start(const CompiledSkin *skin, const ConeStart *start) {
-    float least = INFINITY;
-    if (!skin->boxes || !start->count) return 0;
-    for (int i = 0; i < start->count; i++) least = float_min(least, start->factors[i]);
-    return skin->exact_to * (double)least;
+    return skin->boxes && start->count ? skin->exact_to * (double)start->factor[0] : 0;
 }
 
-/* The share of the cone's samples that see voxels of the skin at t. */
-static float share_at(const CompiledSkin *skin, const ConeStart *start, double t) {
-    int passed = 0;
-    if (!skin->boxes || !start->count) return 1;
-    for (int i = 0; i < start->count; i++) passed += skin->exact_to * (double)start->factors[i] < t;
-    return (float)passed / (float)start->count;
-}
-
-static bool next_segment(Tracer *tr, size_t i, const ConeStart *start) {
-    const CompiledSkin *skin = &tr->compiled->skins[i];
-    SkinSegment *segment = &tr->segments[i];
-    while (skin_march_next(&tr->marches[i], segment)) {
-        float share = share_at(skin, start, (segment->t0 + segment->t1) / 2);
-        if (share <= 0) continue;
-        if (share < 1) segment->transmittance = powf(segment->transmittance, share);
-        return true;
+/* Takes the segment out of what is left; returns how much of the pixel it hides. Each start has its own transmittance: the mean of
+ * those, not of depths, is what its samples would see. */
+static float pass_segment(Passed *passed, const CompiledSkin *skin, const SkinSegment *segment) {
+    const ConeStart *start = passed->start;
+    float before = passed->transmittance;
+    if (!start->count) {
+        passed->transmittance *= segment->transmittance;
+        return before - passed->transmittance;
     }
-    return false;
+    double t = (segment->t0 + segment->t1) / 2;
+    passed->transmittance = 0;
+    for (int i = 0; i < start->count; i++) {
+        if (!skin->boxes || skin->exact_to * (double)start->factor[i] < t) passed->through[i] *= segment->transmittance;
+        passed->transmittance += start->share[i] * passed->through[i];
+    }
+    return float_max(0, before - passed->transmittance);
 }
 
 /* Follows the cone through all skins at once, nearest segment first; returns how many records were made. */
@@ -182,10 +190,10 @@ static size_t gather(Tracer *tr, const Cone *cone, const ConeStart *start, doubl
         tr->has_segment[i] = false;
         if (!(from < t_max)) continue;
         skin_march_begin(&tr->marches[i], cone, from, t_max, &scene->march, &tr->counters, true);
-        tr->has_segment[i] = next_segment(tr, i, start);
+        tr->has_segment[i] = skin_march_next(&tr->marches[i], &tr->segments[i]);
     }
-    *transmittance = 1;
-    while (count < MOST_SHADE_RECORDS && *transmittance > OPAQUE_BELOW) {
+    Passed passed = passed_nothing(start);
+    while (count < MOST_SHADE_RECORDS && passed.transmittance > OPAQUE_BELOW) {
         int nearest = nearest_segment(tr, met);
         if (nearest < 0) break;
         const SkinSegment *segment = &tr->segments[nearest];
@@ -194,19 +202,19 @@ static size_t gather(Tracer *tr, const Cone *cone, const ConeStart *start, doubl
             count++;
         }
         last = nearest;
-        group_add(&group, cone, segment, *transmittance * (1 - segment->transmittance));
-        *transmittance *= segment->transmittance;
-        if (coarser < (int)VTS_ARRAY_COUNT(COARSER_BELOW) && *transmittance < COARSER_BELOW[coarser]) {
+        float hidden = pass_segment(&passed, &scene->skins[nearest], segment);
+        if (hidden > 0) group_add(&group, cone, segment, hidden);
+        if (coarser < (int)VTS_ARRAY_COUNT(COARSER_BELOW) && passed.transmittance < COARSER_BELOW[coarser]) {
             coarser++;
             for (size_t k = 0; k < met; k++) skin_march_coarsen(&tr->marches[tr->met[k]], coarser);
         }
-        tr->has_segment[last] = next_segment(tr, (size_t)last, start);
+        tr->has_segment[last] = skin_march_next(&tr->marches[last], &tr->segments[last]);
     }
     if (group.weight > 0 && count < MOST_SHADE_RECORDS) {
         close_group(tr, cone, &group, last, &tr->records[count], &tr->direct[count * stride]);
         count++;
     }
-    if (*transmittance <= OPAQUE_BELOW) *transmittance = 0;
+    *transmittance = passed.transmittance > OPAQUE_BELOW ? passed.transmittance : 0;
     return count;
 }
 

@@ -28,12 +28,12 @@ typedef struct Tracer {
     TraceCounters counters;
 } Tracer;
 
-/* Of each skin's voxels a cone sees a growing share: nothing before the skin's exact_to times the least factor, all after the
- * largest; each factor passed adds 1/count. count 0: everything from the eye on. */
-enum { MOST_START_FACTORS = 256 };
+/* A cone that stands for samples which go over from exact geometry to voxels at different distances: the share[i] of them sees
+ * voxels of a skin from exact_to · factor[i] on. Shares sum to 1. count 0: all of them see everything from the eye on. */
+enum { MOST_CONE_STARTS = 8 };
 typedef struct ConeStart {
     int count;
-    float factors[MOST_START_FACTORS];
+    float share[MOST_CONE_STARTS], factor[MOST_CONE_STARTS]; /* factors ascending */
 } ConeStart;
 
 void tracer_init(Tracer *tracer, const CompiledScene *compiled, Arena *arena);

@@ -346,7 +346,7 @@ static double tolerance_at(const Drawing *d) {
 
 static void draw_texel_at(Drawing *d, const CellFrame *f, const PlacedTexel *placed, int64_t iu, int64_t iv) {
     TexelCopy copy;
-    if (!texel_copy_of(placed, iu, iv, &copy) || !copy.texel->beam) return;
+    if (!skin_copy_of(d->skin, d->cell, placed, iu, iv, &copy) || !copy.texel->beam) return;
     int from = 0, to = 0;
     if (copy.texel->beam->cyclic[1]) {
         const double *foot = f->cell->w_foot.c, *tip = f->cell->w_tip.c;
@@ -437,7 +437,7 @@ static void draw_part(Drawing *d, const SkinCell *cell, int depth) {
     for (size_t i = 0; i < d->skin->texel_count; i++) {
         const PlacedTexel *placed = &d->skin->texels[i];
         TileRange range;
-        if (placed->family_size && tiles_of_cell(cell, placed->reach, &range)) draw_tiles(d, &f, placed, range);
+        if (skin_cell_bears(cell, placed) && tiles_of_cell(cell, placed->reach, &range)) draw_tiles(d, &f, placed, range);
     }
 }
 

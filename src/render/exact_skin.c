@@ -225,7 +225,7 @@ static void shoot_tiles(Shot *shot, const Curve *curve, double s0) {
         for (int64_t iv = v0; iv <= v1 || iv == v0; iv++)
             for (int k = 0; k < side * side && !shot->enough; k++) {
                 TexelCopy copy;
-                if (texel_copy_near(placed, iu, iv, k, &copy)) shoot_copy(shot, &copy, curve, s0, copy.texel->def->cyclic & repeat);
+                if (skin_copy_near(shot->cell->skin, shot->cell->cell, placed, iu, iv, k, &copy)) shoot_copy(shot, &copy, curve, s0, copy.texel->def->cyclic & repeat);
             }
 }
 
@@ -260,7 +260,7 @@ static bool shoot_curve(Walk *w, const ExactCell *c, const Node *a, const Node *
     w->cubics_left--;
     for (size_t i = 0; i < c->skin->texel_count && !shot.enough; i++) {
         shot.placed = &c->skin->texels[i];
-        if (shot.placed->family_size) shoot_texel(&shot, curve, s0);
+        if (skin_cell_bears(c->cell, shot.placed)) shoot_texel(&shot, curve, s0);
     }
     return shot.found;
 }

@@ -36,7 +36,9 @@ typedef struct SkinCell {
     SurfaceNeighbour neighbour[4];
     Box3 bounds;
     bool triangle;
-    uint8_t side; /* CellSide */
+    bool rim;      /* beyond the border of the surface: skin_rim.h */
+    uint8_t side;  /* CellSide */
+    uint32_t part; /* of the surface: those across a seam are others; 0 where there is no rim */
 } SkinCell;
 
 /* One layer of matter of a built texel. */
@@ -76,15 +78,18 @@ typedef struct PlacedTexel {
     InstanceJitter jitter; /* all zero for cyclic texels but for the tint */
     bool alike;          /* every tile holds the same: one copy, cyclic, without tint or gaps */
     int reach;           /* how many tiles away a copy may still cover a point: 0 when copies stay in their tile */
+    double overhang;     /* how far one may reach out of its tile, in tiles */
 } PlacedTexel;
 
 typedef struct CellTree CellTree; /* hierarchy over the cells' bounds, for entering the layer */
+typedef struct TileSet TileSet; /* skin_rim.h */
 typedef struct ExactSkins ExactSkins; /* hierarchy over what is in the cells of all skins, for the reference: exact_skin.h */
 
 typedef struct CompiledSkin {
     const Skin *def;
-    SkinCell *cells;
+    SkinCell *cells;     /* those of the rim are the last */
     size_t cell_count;
+    const TileSet *beyond; /* tiles whose copies are left out, as they stand beyond its border; NULL: none */
     double top;          /* height of the layer in w': more than w_tip when copies are scaled up */
     PlacedTexel *texels;
     size_t texel_count;
@@ -103,6 +108,16 @@ typedef struct SkinPoint {
 } SkinPoint;
 
 /* ---- mapping: skin_map.c ---- */
+
+/* What a cell interpolates between its corners; (a, b) is the corner's own. */
+typedef struct SkinCorner {
+    Vec3 foot, height;
+    double u, v, w_foot, w_tip, a, b;
+} SkinCorner;
+/* Of corner 0 … 3 as the surface's cell numbers them. */
+SkinCorner skin_cell_corner(const SkinCell *cell, int corner);
+/* Sets what follows from three or four corners: all but the neighbours, the rim and the part. */
+void skin_cell_fit(SkinCell *cell, const SkinCorner corner[4], bool triangle);
 
 /* World position, and the columns of the Jacobian ∂world/∂(a, b, w) (may be NULL). */
 Vec3 skin_cell_position(const SkinCell *cell, double a, double b, double w, Mat3 *jacobian);
@@ -150,5 +165,10 @@ bool texel_copy_of(const PlacedTexel *placed, int64_t iu, int64_t iv, TexelCopy 
 /* Candidate k, 0 … (2·reach + 1)² − 1, of the copies whose unit squares may cover some point of tile (iu, iv); false when
  * there is none there. */
 bool texel_copy_near(const PlacedTexel *placed, int64_t iu, int64_t iv, int k, TexelCopy *copy);
+/* Whether a cell shows anything of the texel: those of the rim only what may leave its tile. */
+static inline bool skin_cell_bears(const SkinCell *cell, const PlacedTexel *placed) { return placed->family_size && (!cell->rim || placed->reach); }
+/* The same two for what stands on a skin: without copies beyond its border. */
+bool skin_copy_of(const CompiledSkin *skin, const SkinCell *cell, const PlacedTexel *placed, int64_t iu, int64_t iv, TexelCopy *copy);
+bool skin_copy_near(const CompiledSkin *skin, const SkinCell *cell, const PlacedTexel *placed, int64_t iu, int64_t iv, int k, TexelCopy *copy);
 
 #endif

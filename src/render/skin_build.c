@@ -5,6 +5,7 @@
 #include "base/stopwatch.h"
 #include "pattern/pattern.h"
 #include "render/skin_fold.h"
+#include "render/skin_rim.h"
 #include "tape/noise.h"
 #include "texel/texel_content.h"
 #include "texel/texel_field.h"
@@ -215,18 +216,6 @@ static SkinVertex make_vertex(const Skin *skin, const SurfaceMesh *mesh, size_t 
 
 /* ---- cells ---- */
 
-static BilinearVec fit_vec(const Vec3 corner[4], bool triangle) {
-    BilinearVec f = {{corner[0], vec3_sub(corner[1], corner[0]), vec3_sub(corner[triangle ? 2 : 3], corner[0]), {0, 0, 0}}};
-    if (!triangle) f.c[3] = vec3_sub(vec3_add(corner[0], corner[2]), vec3_add(corner[1], corner[3]));
-    return f;
-}
-
-static Bilinear fit_scalar(const double corner[4], bool triangle) {
-    Bilinear f = {{corner[0], corner[1] - corner[0], corner[triangle ? 2 : 3] - corner[0], 0}};
-    if (!triangle) f.c[3] = corner[0] + corner[2] - corner[1] - corner[3];
-    return f;
-}
-
 /* The mean length of the surface along u and v, weighted by area: what `tile` divides. */
 static void mean_lengths(const SurfaceMesh *mesh, double *along_u, double *along_v) {
     double sum_u = 0, sum_v = 0, weight = 0;
@@ -305,31 +294,19 @@ static void make_cells(const Skin *skin, const SurfaceMesh *mesh, Arena *arena, 
     for (size_t i = 0; i < mesh->cell_count; i++) {
         const SurfaceCell *in = &mesh->cells[i];
         SkinCell *cell = &out->cells[i];
-        Vec3 foot[4] = {{0}}, height[4] = {{0}};
-        double u[4] = {0}, v[4] = {0}, w_foot[4] = {0}, w_tip[4] = {0};
-        cell->triangle = in->corner_count == 3;
+        SkinCorner corner[4] = {{.u = 0}};
         for (int k = 0; k < in->corner_count; k++) {
             const SkinVertex *at = &vertex[in->vertex[k]];
-            foot[k] = mesh->vertices[in->vertex[k]];
-            height[k] = at->height;
-            u[k] = mesh->uvs[in->uv[k]].u * repeat_u + at->shift_u;
-            v[k] = mesh->uvs[in->uv[k]].v * repeat_v + at->shift_v;
-            w_foot[k] = at->w_foot, w_tip[k] = at->w_tip;
-            out->bounds = box3_add_point(box3_add_point(out->bounds, foot[k]), vec3_add(foot[k], height[k]));
+            TexCoord uv = mesh->uvs[in->uv[k]];
+            corner[k] = (SkinCorner){.foot = mesh->vertices[in->vertex[k]], .height = at->height, .u = uv.u * repeat_u + at->shift_u,
+                                     .v = uv.v * repeat_v + at->shift_v, .w_foot = at->w_foot, .w_tip = at->w_tip};
         }
-        cell->foot = fit_vec(foot, cell->triangle);
-        cell->height = fit_vec(height, cell->triangle);
-        cell->u = fit_scalar(u, cell->triangle);
-        cell->v = fit_scalar(v, cell->triangle);
-        cell->w_foot = fit_scalar(w_foot, cell->triangle);
-        cell->w_tip = fit_scalar(w_tip, cell->triangle);
+        skin_cell_fit(cell, corner, in->corner_count == 3);
         memcpy(cell->neighbour, mesh->neighbours[i], sizeof cell->neighbour);
-        cell->bounds = skin_cell_bounds(cell);
-        cell->side = (uint8_t)skin_cell_side(cell, 1);
+        out->bounds = box3_union(out->bounds, cell->bounds);
         note_fold(&folds, cell, i);
     }
     report_folds(&folds, skin, mesh, out->cells, diags);
-    out->overlaps = sheets_overlap(out);
 }
 
 /* ---- resolution: what the view can see ---- */
@@ -357,9 +334,10 @@ static double needed_resolution(const CompiledSkin *skin, const View *view, Vec3
 
 /* ---- placing ---- */
 
-static int copy_reach(const InstanceJitter *jitter) {
+/* How far copies may reach out of their tiles. */
+static double copy_overhang(const InstanceJitter *jitter) {
     double largest = 1 + jitter->scale / 2, half = jitter->rotate != 0 ? 0.70711 : 0.5;
-    return (int)double_clamp(ceil(jitter->displace / 2 + half * largest - 0.5 - 1e-9), 0, MOST_REACH);
+    return double_clamp(jitter->displace / 2 + half * largest - 0.5, 0, MOST_REACH);
 }
 
 static void place_texel(const Skin *skin, size_t index, CompiledScene *compiled, CompiledSkin *out) {
@@ -378,7 +356,8 @@ static void place_texel(const Skin *skin, size_t index, CompiledScene *compiled,
         texel->finest_seen = int_max(texel->finest_seen, (int)needed_resolution(out, &compiled->view, texel->extent, (double)compiled->march.voxel_width, 0));
     }
     placed->jitter = skin->jitter.instance;
-    placed->reach = placed->cyclic || !placed->jitter.present ? 0 : copy_reach(&placed->jitter);
+    placed->overhang = placed->cyclic || !placed->jitter.present ? 0 : copy_overhang(&placed->jitter);
+    placed->reach = (int)ceil(placed->overhang - 1e-9);
     placed->alike = placed->cyclic && placed->family_size == 1 && placed->density >= 1 &&
                     !(placed->jitter.present && placed->jitter.tinted);
     const Texture *texture = in->texture ? in->texture : skin->texture;
@@ -419,6 +398,8 @@ bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, Co
         place_texel(skin, i, compiled, out);
         if (out->texels[i].family_size) out->texel_count = i + 1;
     }
+    skin_rim_add(out, &mesh, compiled->arena);
+    out->overlaps = sheets_overlap(out);
     return true;
 }
 

@@ -25,6 +25,40 @@ Vec3 skin_cell_position(const SkinCell *cell, double a, double b, double w, Mat3
     return vec3_madd(bilinear_vec(&cell->foot, a, b), height, w);
 }
 
+/* Corners of the unit square and the unit triangle. */
+static const double SQUARE[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}}, TRIANGLE[3][2] = {{0, 0}, {1, 0}, {0, 1}};
+
+static double bilinear_at(const Bilinear *f, double a, double b) { return f->c[0] + f->c[1] * a + (f->c[2] + f->c[3] * a) * b; }
+
+SkinCorner skin_cell_corner(const SkinCell *cell, int corner) {
+    const double *at = cell->triangle ? TRIANGLE[corner] : SQUARE[corner];
+    double a = at[0], b = at[1];
+    return (SkinCorner){bilinear_vec(&cell->foot, a, b),   bilinear_vec(&cell->height, a, b), bilinear_at(&cell->u, a, b), bilinear_at(&cell->v, a, b),
+                        bilinear_at(&cell->w_foot, a, b), bilinear_at(&cell->w_tip, a, b), a, b};
+}
+
+static BilinearVec fit_vec(Vec3 p0, Vec3 p1, Vec3 p2, Vec3 p3, bool triangle) {
+    BilinearVec f = {{p0, vec3_sub(p1, p0), vec3_sub(triangle ? p2 : p3, p0), {0, 0, 0}}};
+    if (!triangle) f.c[3] = vec3_sub(vec3_add(p0, p2), vec3_add(p1, p3));
+    return f;
+}
+
+static Bilinear fit_scalar(double x0, double x1, double x2, double x3, bool triangle) {
+    return (Bilinear){{x0, x1 - x0, (triangle ? x2 : x3) - x0, triangle ? 0 : x0 + x2 - x1 - x3}};
+}
+
+void skin_cell_fit(SkinCell *cell, const SkinCorner c[4], bool triangle) {
+    cell->triangle = triangle;
+    cell->foot = fit_vec(c[0].foot, c[1].foot, c[2].foot, c[3].foot, triangle);
+    cell->height = fit_vec(c[0].height, c[1].height, c[2].height, c[3].height, triangle);
+    cell->u = fit_scalar(c[0].u, c[1].u, c[2].u, c[3].u, triangle);
+    cell->v = fit_scalar(c[0].v, c[1].v, c[2].v, c[3].v, triangle);
+    cell->w_foot = fit_scalar(c[0].w_foot, c[1].w_foot, c[2].w_foot, c[3].w_foot, triangle);
+    cell->w_tip = fit_scalar(c[0].w_tip, c[1].w_tip, c[2].w_tip, c[3].w_tip, triangle);
+    cell->bounds = skin_cell_bounds(cell);
+    cell->side = (uint8_t)skin_cell_side(cell, 1);
+}
+
 /* One Newton step towards `world`; *error gets the distance before the step. False where the Jacobian is singular. */
 static bool newton_step(const SkinCell *cell, Vec3 world, SkinPoint *p, double *error) {
     Mat3 j;

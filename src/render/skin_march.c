@@ -367,16 +367,19 @@ static int64_t tile_number(double x) { return isfinite(x) ? (int64_t)double_clam
 
 static TileCopies *copies_at(SkinMarch *m, size_t i, int64_t iu, int64_t iv) {
     const PlacedTexel *placed = &m->skin->texels[i];
+    const SkinCell *cell = &m->skin->cells[m->span.middle.cell];
     if (placed->alike) iu = iv = 0;
     TileCopies *tile = &m->tiles[i * (size_t)m->tiles_kept + ((size_t)((iu & 3) | (iv & 3) << 2) & (size_t)(m->tiles_kept - 1))];
-    if (tile->placed == placed && tile->iu == iu && tile->iv == iv) return tile;
+    if (tile->placed == placed && tile->iu == iu && tile->iv == iv && tile->part == cell->part && tile->rim == cell->rim) return tile;
     tile->placed = placed;
     tile->iu = iu;
     tile->iv = iv;
+    tile->part = cell->part;
+    tile->rim = cell->rim;
     tile->count = 0;
-    int candidates = (2 * placed->reach + 1) * (2 * placed->reach + 1);
+    int candidates = skin_cell_bears(cell, placed) ? (2 * placed->reach + 1) * (2 * placed->reach + 1) : 0;
     for (int k = 0; k < candidates; k++)
-        if (texel_copy_near(placed, iu, iv, k, &tile->copies[tile->count].copy)) tile->copies[tile->count++].cone = 0;
+        if (skin_copy_near(m->skin, cell, placed, iu, iv, k, &tile->copies[tile->count].copy)) tile->copies[tile->count++].cone = 0;
     return tile;
 }
 

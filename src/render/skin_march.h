@@ -69,6 +69,8 @@ typedef struct CopyOnWay {
 typedef struct TileCopies {
     const PlacedTexel *placed; /* NULL: nothing kept */
     int64_t iu, iv;
+    uint32_t part; /* of the surface, and whether it is the rim's: which copies stand there */
+    bool rim;
     int count;
     CopyOnWay *copies; /* room for all that may be around it */
 } TileCopies;

@@ -2,6 +2,7 @@
 #include "render/skin.h"
 
 #include "base/random.h"
+#include "render/skin_rim.h"
 
 static double bilinear(const Bilinear *f, double a, double b) { return f->c[0] + f->c[1] * a + (f->c[2] + f->c[3] * a) * b; }
 
@@ -80,4 +81,17 @@ bool texel_copy_near(const PlacedTexel *placed, int64_t iu, int64_t iv, int k, T
     int reach = placed->reach, side = 2 * reach + 1;
     int64_t du = k % side - reach, dv = k / side - reach;
     return texel_copy_of(placed, iu + du, iv + dv, copy) && (reach == 0 || may_cover(copy, iu, iv));
+}
+
+static bool stands_beyond(const CompiledSkin *skin, const SkinCell *cell, const PlacedTexel *placed, int64_t iu, int64_t iv) {
+    return skin->beyond && placed->reach && tile_set_has(skin->beyond, cell->part, iu, iv);
+}
+
+bool skin_copy_of(const CompiledSkin *skin, const SkinCell *cell, const PlacedTexel *placed, int64_t iu, int64_t iv, TexelCopy *copy) {
+    return !stands_beyond(skin, cell, placed, iu, iv) && texel_copy_of(placed, iu, iv, copy);
+}
+
+bool skin_copy_near(const CompiledSkin *skin, const SkinCell *cell, const PlacedTexel *placed, int64_t iu, int64_t iv, int k, TexelCopy *copy) {
+    int reach = placed->reach, side = 2 * reach + 1;
+    return !stands_beyond(skin, cell, placed, iu + k % side - reach, iv + k / side - reach) && texel_copy_near(placed, iu, iv, k, copy);
 }

@@ -281,6 +281,16 @@ static void jittered_copies_lie_where_the_placing_says(void **state) {
     compare_pictures(&(Trial){"jittered hill", {4, 3, 9, hill_foot, hill_height, 0, 0}, 0, 0.3, 0.7, -2, 11, 10, jitter, {0, 4, -0.6}, 24, 0.0025, false});
 }
 
+/* At the border too, where a copy stands on the surface with the middle of its tile; a skin without a border would be cut there. */
+static void copies_are_whole_at_the_border(void **state) {
+    (void)state;
+    InstanceJitter jitter = {.present = true, .displace = 0.8, .rotate = 360, .scale = 0.5, .mirror = true, .density = 0.9}, large = jitter;
+    large.displace = 0, large.scale = 1.8;
+    compare_pictures(&(Trial){"whole at the border", FLAT, 0, 0.25, 0.75, 0, 5, 1, jitter, NEAR_EYE, 60, 0.003, false});
+    compare_pictures(&(Trial){"of six patches", {3, 2, 5, flat_foot, flat_height, 0, 0}, 0, 0.25, 0.75, 0, 5, 1, jitter, NEAR_EYE, 60, 0.003, false});
+    compare_pictures(&(Trial){"enlarged", FLAT, 0, 0.25, 0.75, 0, 5, 1, large, NEAR_EYE, 60, 0.003, false});
+}
+
 static void mirrored_skins_are_the_objects_mirrored(void **state) {
     (void)state;
     compare_pictures(&(Trial){"mirrored hill", {4, 3, 6, mirrored_foot, mirrored_height, 0, 0}, 0, 0.25, 0.75, 0, 6, 12, {0}, NEAR_EYE, 50, 0.0025, false});
@@ -493,7 +503,7 @@ int main(void) {
                                        cmocka_unit_test(folded_layers_show_all_their_sheets),
                                        cmocka_unit_test(content_goes_on_across_borders_of_tiles),
                                        cmocka_unit_test(jittered_copies_lie_where_the_placing_says),
-                                       cmocka_unit_test(mirrored_skins_are_the_objects_mirrored),
+                                       cmocka_unit_test(copies_are_whole_at_the_border), cmocka_unit_test(mirrored_skins_are_the_objects_mirrored),
                                        cmocka_unit_test(heights_of_the_texel_may_be_shifted_and_stretched),
                                        cmocka_unit_test(superimposed_texels_are_both_there),
                                        cmocka_unit_test(texels_placed_as_objects_are_their_contents),

@@ -1,0 +1,2 @@
+#include "view.inc"
+camera { panoramic location <0, 1.2, 0> look_at <0, 1, 3> right x*image_width/image_height angle 160 }

@@ -12,6 +12,7 @@ typedef struct ImageDraft {
     } palette;
     Span file; /* where the text names it */
     bool made; /* by a function, not from a file */
+    bool textures;
 } ImageDraft;
 
 static void take_file(Reader *reader, ImageDraft *draft, const char *name, Span span) {
@@ -94,6 +95,7 @@ static const WordRule rules[] = {
     {"use_color", WORD_IGNORED, 0, NULL, false},
     {"use_colour", WORD_IGNORED, 0, NULL, false},
     {"use_alpha", WORD_MARK, FIELD(use_alpha), NULL, false},
+    {"bump_size", WORD_FLOAT, FIELD(bump_size), NULL, false},
     {"premultiplied", WORD_CUSTOM, 0, read_premultiplied, false},
     {"gamma", WORD_CUSTOM, 0, read_gamma, false},
     {"filter", WORD_CUSTOM, 0, read_share, false},
@@ -113,6 +115,7 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
     case VALUE_FLOAT: return true; /* function WIDTH, HEIGHT { … } */
     case VALUE_FUNCTION:
     case VALUE_PIGMENT: draft->made = true; return true;
+    case VALUE_TEXTURE: return draft->textures; /* of a material_map: its reader's */
     default: return take_transform(value, &ignored);
     }
 }
@@ -140,7 +143,7 @@ static double usual_gamma(const ImageMap *image, const char *word) {
 }
 
 const ImageMap *image_read(Reader *parent, const Word *word) {
-    ImageDraft draft = {.image.span = word->whole};
+    ImageDraft draft = {.image.span = word->whole, .textures = strcmp(word->text, "material_map") == 0};
     Transform ignored = transform_identity();
     if (!word->body) {
         reader_error(parent, word->span, "'%s' needs its block { … }", word->text);

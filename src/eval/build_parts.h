@@ -60,6 +60,9 @@ BlockBuilder build_interior; /* build_interior.c */
 
 /* ---- build_texture.c ---- */
 BlockBuilder build_texture, build_material, build_inert_value;
+BlockBuilder build_normal; /* build_normal.c */
+/* A copy with its transform followed by `t`. */
+const Normal *normal_placed(const BuildContext *context, const Normal *normal, const Transform *t);
 const Texture *texture_default(const BuildContext *context);
 /* Copies with all layers changed: placed by `t`; laid over `bottom`. */
 const Texture *texture_placed(const BuildContext *context, const Texture *texture, const Transform *t);

@@ -152,6 +152,10 @@ static void read_object(Reader *reader, const Word *word, void *target) {
     take_object_pattern(reader, draft, object);
     for (size_t i = 1; i < word->body->count && draft->pigment.kind == PATTERN_OBJECT; i++) {
         const Argument value = {word->body->items[i].value, word->body->items[i].span};
+        if (draft->is_normal || draft->is_texture) {
+            if (word->body->items[i].kind == ITEM_VALUE) reader->on_value(reader, &value, reader->value_target);
+            continue;
+        }
         if (word->body->items[i].kind != ITEM_VALUE || !take_block_entry(reader, draft, &value))
             reader_error(reader, value.span, "the pattern 'object' lists two colours or pigments");
     }
@@ -240,6 +244,10 @@ static void read_interior(Reader *reader, const Word *word, void *target) {
 
 static void read_list(Reader *reader, const Word *word, PigmentDraft *draft) {
     bool blocks = pattern_block_count(draft->pigment.kind) > 0;
+    if (draft->is_normal) {
+        word_arguments(reader, word, 0, 0);
+        return;
+    }
     for (size_t i = 0; i < word->count; i++)
         if (!blocks || !take_block_entry(reader, draft, &word->arguments[i]))
             reader_error(reader, word->arguments[i].span, "'%s' takes no %s here", word->text,
@@ -404,6 +412,7 @@ const WordRule pattern_rules[] = {
     CUSTOM("pigment_pattern", read_pigment_pattern),
     CUSTOM("density_file", read_density_file),
     CUSTOM("object", read_object),
+    CUSTOM("image_pattern", read_image),
 };
 const size_t pattern_rule_count = VTS_ARRAY_COUNT(pattern_rules);
 

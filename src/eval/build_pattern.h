@@ -9,7 +9,10 @@ typedef struct PigmentDraft {
     Pigment pigment;
     ColorMapEntry *items;
     size_t count, capacity;
-    int magnet; /* of `magnet 1 mandel …`, until its second word is met */
+    int magnet;     /* of `magnet 1 mandel …`, until its second word is met */
+    bool is_normal; /* a number after the pattern is the normal's, and lists hold normals */
+    bool is_texture; /* lists hold textures */
+    bool uv;         /* uv_mapping */
 } PigmentDraft;
 
 /* Names of patterns, what belongs to them, waves, turbulence and warps; target: a PigmentDraft. */
@@ -33,6 +36,11 @@ const Tape *object_inside_tape(const BuildContext *context, const Object *object
 const DensityGrid *density_grid_load(const BuildContext *context, const char *name, Span span, const EvalDensityRequest *request);
 /* The density file that the text at `span` names (eval_density.c); NULL after a report. */
 const DensityGrid *density_load(const BuildContext *context, const char *name, Span span);
+
+/* image_pattern { … }, and image_map { … } of pigments; target: a PigmentDraft. */
+WordHandler read_image;
+/* Entries in the order of their positions; what `list` holds moves along. */
+void map_entries_sort(ColorMapEntry *entries, const void **list, size_t count);
 
 /* The word of a pattern, or NULL. */
 const char *pattern_word(PatternKind kind);

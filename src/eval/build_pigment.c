@@ -9,7 +9,7 @@ static void read_unmodelled(Reader *reader, const Word *word, void *target) {
     inert_add(reader->context, &draft->pigment.inert, word->text, word->span);
 }
 
-static void read_image(Reader *reader, const Word *word, void *target) {
+void read_image(Reader *reader, const Word *word, void *target) {
     Pigment *pigment = &((PigmentDraft *)target)->pigment;
     const ImageMap *image = image_read(reader, word);
     if (!image || !image->picture) read_unmodelled(reader, word, target);
@@ -35,13 +35,27 @@ static const WordRule rules[] = {
     UNMODELLED("aoi"),
     UNMODELLED("facets"),
     {"image_map", WORD_CUSTOM, 0, read_image, false},
-    {"image_pattern", WORD_CUSTOM, 0, read_image, false},
     UNMODELLED("pavement"),
     UNMODELLED("potential"),
     UNMODELLED("proximity"),
     UNMODELLED("tiling"),
-    UNMODELLED("uv_mapping"),
+    {"uv_mapping", WORD_FLAG, offsetof(PigmentDraft, uv), NULL, false},
 };
+
+/* The pigment as the one entry of a map that is seen in u and v. */
+static const Pigment *seen_in_uv(const BuildContext *context, const Pigment *inner) {
+    Pigment *outer = arena_new(context->arena, Pigment);
+    ColorMapEntry *entry = arena_new(context->arena, ColorMapEntry);
+    entry->pigment = inner;
+    *outer = pigment_default();
+    outer->span = inner->span;
+    outer->kind = PATTERN_UV;
+    outer->entries = entry;
+    outer->entry_count = 1;
+    pigment_measure(outer);
+    pigment_rehash(outer);
+    return outer;
+}
 
 /* What stands in a map's place when its pattern cannot be drawn: the mean of its colours. */
 static Color map_mean(const ColorMapEntry *entries, size_t count) {
@@ -186,7 +200,7 @@ static const Pigment *read_from(Reader *reader, const Pigment *start) {
     pigment_measure(&draft->pigment);
     if (!check_size(reader, &draft->pigment)) return NULL;
     pigment_rehash(&draft->pigment);
-    return &draft->pigment;
+    return draft->uv ? seen_in_uv(reader->context, &draft->pigment) : &draft->pigment;
 }
 
 const Pigment *pigment_read(Reader *reader) {

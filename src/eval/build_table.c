@@ -56,7 +56,7 @@ static const struct BlockWord {
     {"pigment", build_pigment},
     {"pattern", build_pattern},
     {"finish", build_finish},
-    {"normal", build_inert_value},
+    {"normal", build_normal},
     {"interior", build_interior},
     {"material", build_material},
     {"color_map", build_color_map},

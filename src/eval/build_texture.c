@@ -59,6 +59,7 @@ static const Texture *with_pigment(BuildContext *context, const Texture *texture
     Transform back = transform_inverse(&texture->transform);
     const Pigment *base = pigment_placed(context, texture->pigment, &texture->transform);
     copy->pigment = pigment_placed(context, pigment_over(context, base, pigment), &back);
+    copy->map = NULL;
     texture_rehash(copy);
     return copy;
 }
@@ -66,6 +67,14 @@ static const Texture *with_pigment(BuildContext *context, const Texture *texture
 static const Texture *with_finish(const BuildContext *context, const Texture *texture, const Finish *finish) {
     Texture *copy = copy_texture(context, texture);
     copy->finish = finish_over(context, texture->finish, finish);
+    texture_rehash(copy);
+    return copy;
+}
+
+static const Texture *with_normal(const BuildContext *context, const Texture *texture, const Normal *normal) {
+    Texture *copy = copy_texture(context, texture);
+    Transform back = transform_inverse(&texture->transform);
+    copy->normal = normal_placed(context, normal, &back);
     texture_rehash(copy);
     return copy;
 }
@@ -80,7 +89,6 @@ typedef struct Material {
 
 const Interior *material_interior(const void *material) { return ((const Material *)material)->interior; }
 
-/* Normals are no more than the name and place of what is not drawn. */
 static void note_inert(const BuildContext *context, const InertNote *made, const InertNote **inert) {
     for (; made; made = made->next) inert_add(context, inert, made->word, made->span);
 }
@@ -107,7 +115,9 @@ bool take_looks(BuildContext *context, const Argument *value, const Texture **te
     case VALUE_FINISH:
         made = with_finish(context, current(context, *texture, place), value->value.as.finish);
         break;
-    case VALUE_NORMAL: note_inert(context, value->value.as.node, inert); return true;
+    case VALUE_NORMAL:
+        made = with_normal(context, current(context, *texture, place), value->value.as.normal);
+        break;
     case VALUE_INTERIOR: return true; /* of what has no inside */
     case VALUE_MATERIAL: {
         const Material *material = value->value.as.node;
@@ -123,141 +133,14 @@ bool take_looks(BuildContext *context, const Argument *value, const Texture **te
     return true;
 }
 
-/* ---- texture { … } ---- */
-
-typedef struct TextureDraft {
-    const Texture *texture; /* in the space before `transform`; NULL: nothing said yet */
-    const InertNote *inert;
-    Transform transform;
-    bool begun;  /* something was read */
-    bool mapped; /* a texture_map was read */
-    bool
-        patterned; /* a pattern chooses among textures: which is not modelled, the first one is seen everywhere */
-} TextureDraft;
-
-static const Texture *texture_read(Reader *reader);
-
-static bool on_value(Reader *reader, const Argument *value, void *target) {
-    TextureDraft *draft = target;
-    bool begun = draft->begun;
-    draft->begun = true;
-    switch (value->value.kind) {
-    case VALUE_FUNCTION:
-        if (draft->patterned) return false;
-        draft->patterned = true;
-        inert_add(reader->context, &draft->inert, "function", value->span);
-        return true;
-    case VALUE_TEXTURE: /* a declared one comes first, those of a pattern's list after it */
-        if (draft->patterned && !draft->texture) draft->texture = value->value.as.texture;
-        if (draft->patterned) return true;
-        if (begun && !reader->block->declared_as) return false; /* #declare L = texture … texture … */
-        break;
-    case VALUE_PIGMENT:
-    case VALUE_NORMAL:
-    case VALUE_FINISH:
-        if (draft->patterned) return false;
-        break;
-    case VALUE_TRANSFORM: break;
-    default: return false;
-    }
-    return take_looks(reader->context, value, &draft->texture, &draft->inert, &draft->transform) ||
-           take_transform(value, &draft->transform);
-}
-
-/* The texture of the first entry of texture_map { … }, or of the declared map that it holds. */
-static const Texture *first_of_map(Reader *reader, const EvalBlock *map) {
-    for (size_t i = 0; i < map->count; i++) {
-        const BlockItem *item = &map->items[i];
-        if (item->kind == ITEM_VALUE && item->value.kind == VALUE_BLOCK)
-            return first_of_map(reader, item->value.as.block);
-        if (item->kind != ITEM_ENTRY) continue;
-        Reader entry = reader_nested(reader, item->entry);
-        Argument position;
-        reader_take_value(&entry, VALUE_FLOAT, &position);
-        const Texture *texture = texture_read(&entry);
-        reader_end_nested(reader, &entry);
-        return texture;
-    }
-    return NULL;
-}
-
-/* tiles { texture … tile2 texture … }, object { O texture … }, material_map { … texture … } */
-static const Texture *first_in(const EvalBlock *block) {
-    for (size_t i = 0; i < block->count; i++)
-        if (block->items[i].kind == ITEM_VALUE && block->items[i].value.kind == VALUE_TEXTURE)
-            return block->items[i].value.as.texture;
-    return NULL;
-}
-
-/* Patterns whose textures stand in a list, not in a map. */
-static bool has_list(const char *pattern) {
-    static const char *const words[] = {"checker", "brick",  "hexagon", "square",       "triangular",
-                                        "cubic",   "object", "tiles",   "material_map", "texture_map"};
-    for (size_t i = 0; i < VTS_ARRAY_COUNT(words); i++)
-        if (strcmp(words[i], pattern) == 0) return true;
-    return false;
-}
-
-static bool read_map(Reader *reader, const Word *word, TextureDraft *draft) {
-    if (!draft->patterned) reader_error(reader, word->span, "'texture_map' needs a pattern before it");
-    draft->mapped = true;
-    if (word->body && !draft->texture && !reader->failed) draft->texture = first_of_map(reader, word->body);
-    return true;
-}
-
-static bool on_word(Reader *reader, const Word *word, void *target) {
-    TextureDraft *draft = target;
-    if (!grammar_word(reader, word)) return false;
-    if (strcmp(word->text, "texture_map") == 0) return read_map(reader, word, draft);
-    bool own = strcmp(word->text, "tiles") == 0 || strcmp(word->text, "material_map") == 0;
-    if (!own && !grammar_has("pattern_types", word->text)) return true;
-    if (draft->patterned) reader_error(reader, word->span, "'%s' is a second pattern", word->text);
-    inert_add(reader->context, &draft->inert, word->text, word->span);
-    draft->patterned = true;
-    draft->mapped = has_list(word->text);
-    if (word->body && !draft->texture && !reader->failed) draft->texture = first_in(word->body);
-    return true;
-}
-
-static const Texture *texture_read(Reader *reader) {
-    TextureDraft draft = {.transform = transform_identity()};
-    reader_add_table(reader, transform_rules, transform_rule_count, &draft.transform);
-    reader->on_value = on_value;
-    reader->on_word = on_word;
-    reader->value_target = &draft;
-    if (!reader_run(reader)) return NULL;
-    if (draft.patterned && !draft.mapped) {
-        reader_error(reader, draft.inert->span, "a pattern of textures needs a 'texture_map'");
-        return NULL;
-    }
-    const Texture *base = draft.texture ? draft.texture : texture_default(reader->context);
-    Texture *texture = copy_texture(reader->context, texture_placed(reader->context, base, &draft.transform));
-    texture->span = reader->block->span;
-    note_inert(reader->context, draft.inert, &texture->inert);
-    return texture;
-}
-
-bool build_texture(BuildContext *context, const EvalBlock *block, Value *out) {
-    Reader reader = reader_begin(context, block);
-    const Texture *texture = texture_read(&reader);
-    *out = (Value){.kind = VALUE_TEXTURE, .as.texture = texture};
-    return texture != NULL;
-}
-
-/* ---- normal, wind_field: a note of what is not drawn ---- */
+/* ---- wind_field: a note of what is not drawn ---- */
 
 bool build_inert_value(BuildContext *context, const EvalBlock *block, Value *out) {
-    static const struct {
-        const char *word;
-        ValueKind kind;
-    } kinds[] = {{"normal", VALUE_NORMAL}, {"wind_field", VALUE_WIND_FIELD}};
     const InertNote *note = NULL;
     Reader reader = reader_begin(context, block);
     if (!grammar_read(&reader, block->word->text)) return false;
     if (block->count) inert_add(context, &note, block->word->text, block->word_span);
-    for (size_t i = 0; i < VTS_ARRAY_COUNT(kinds); i++)
-        if (strcmp(kinds[i].word, block->word->text) == 0)
-            *out = (Value){.kind = kinds[i].kind, .as.node = note};
+    *out = (Value){.kind = VALUE_WIND_FIELD, .as.node = note};
     return true;
 }
 

@@ -61,6 +61,7 @@ typedef struct Value {
         const Camera *camera;
         const Texture *texture;
         const Pigment *pigment;
+        const Normal *normal;
         const Finish *finish;
         const Interior *interior;
         const ColorMap *color_map;

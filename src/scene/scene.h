@@ -113,6 +113,7 @@ typedef struct ImageMap {
     bool premultiplied, straight; /* alpha, if the text says so */
     double gamma;                 /* of the file; 0: the format's own; -1: sRGB */
     double filter_all, transmit_all;
+    double bump_size;             /* of a bump_map; 0: not given */
     const struct Picture *picture; /* image/picture.h; NULL: not drawn */
     const double *palette_filter; /* triples: index, filter, transmit */
     size_t palette_count;

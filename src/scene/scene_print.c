@@ -71,7 +71,9 @@ static const char *const pattern_names[] = {
     "slope",         "function",     "cubic",           "square",  "triangular",   "object",    "dents",
     "quilted",       "ripples",      "waves",           "spiral1", "spiral2",      "mandel",    "julia",
     "magnet mandel", "magnet julia", "pigment_pattern", "average", "density_file", "tiling",
+    "image_map",     "image_pattern", "uv_mapping",    "material_map", "aoi",      "pavement",
 };
+_Static_assert(VTS_ARRAY_COUNT(pattern_names) == PATTERN_PAVEMENT + 1, "a name for each pattern");
 
 static void print_pigment(Printer *p, const char *word, const Pigment *pigment);
 
@@ -163,14 +165,46 @@ static void print_interior(Printer *p, const Interior *interior) {
     end_line(p);
 }
 
+static const char *const normal_forms[] = {"gradient", "bumps",  "dents",    "ripples", "waves",
+                                           "wrinkles", "quilted", "facets", "bump_map", "normal_map"};
+
+static void print_normal(Printer *p, const Normal *normal) {
+    begin_line(p, "normal");
+    strbuf_addf(p->out, " %s", normal_forms[normal->form]);
+    add_number(p, "bump_size", normal->amount);
+    add_unless(p, "accuracy", normal->accuracy, 0.02);
+    add_flag(p, "no_bump_scale", normal->unscaled);
+    for (size_t i = 0; i < normal->slope_count; i++)
+        strbuf_addf(p->out, " [%g <%g, %g>]", normal->slopes[i].position, normal->slopes[i].height, normal->slopes[i].slope);
+    end_line(p);
+    p->depth++;
+    print_pigment(p, "pattern", normal->pattern);
+    for (size_t i = 0; i < normal->normal_count; i++) print_normal(p, normal->normals[i]);
+    p->depth--;
+}
+
+static void print_texture(Printer *p, const Texture *texture);
+
+static void print_map(Printer *p, const TextureMap *map) {
+    p->depth++;
+    print_pigment(p, "pattern", map->pattern);
+    for (size_t i = 0; i < map->count; i++) print_texture(p, map->textures[i]);
+    p->depth--;
+}
+
 static void print_texture(Printer *p, const Texture *texture) {
     for (; texture; texture = texture->under) {
         begin_line(p, "texture");
         add_transform(p, &texture->transform);
         add_inert(p, texture->inert);
         end_line(p);
+        if (texture->map) {
+            print_map(p, texture->map);
+            continue;
+        }
         p->depth++;
         print_pigment(p, "pigment", texture->pigment);
+        if (texture->normal) print_normal(p, texture->normal);
         print_finish(p, texture->finish);
         p->depth--;
     }

@@ -172,7 +172,7 @@ static void add_light(SceneDraft *draft, BuildContext *context, const Light *lig
 /* Lights in unions shine where the transforms of the unions around them put them. */
 static void add_lights_of(SceneDraft *draft, BuildContext *context, const Object *object,
                           const Transform *outer) {
-    if (!object_has_group(object)) return;
+    if (!object_has_group(object) || object->as.group->plain) return;
     Transform own = object_transform(object), t = transform_then(&own, outer);
     for (size_t i = 0; i < object->as.group->light_count; i++)
         add_light(draft, context, light_placed(context, object->as.group->lights[i], &t));

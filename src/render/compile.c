@@ -30,6 +30,7 @@ typedef struct SkinList {
 } SkinList;
 
 static void find_placed_texels(const Object *object, const Transform *parent, const Texture *inherited, Arena *arena, SkinList *out) {
+    if (object_has_group(object) && object->as.group->plain) return;
     Transform own = object_transform(object), to_world = transform_then(&own, parent);
     const Texture *texture = object->texture ? object->texture : inherited;
     if (object->kind == OBJECT_TEXEL) *list_push(arena, out) = skin_of_texel(object, &to_world, texture, arena);

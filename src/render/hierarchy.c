@@ -1,423 +1,424 @@
 #include "render/hierarchy.h"
 
-#include "grow/particles.h"
-#include "pattern/pattern.h"
+#include "base/random.h"
+#include "render/cluster.h"
 #include "render/embree_ray.h"
-#include "shape/extent.h"
+#include "shape/box_tree.h"
 #include "shape/intersect.h"
-#include "shape/surface_mesh.h"
-#include "shape/tessellate.h"
-
-#include <embree3/rtcore.h>
-#include <stdlib.h>
-#include <string.h>
-
-/* Something drawn: one solid, or one set of triangles. */
-typedef struct Part {
-    const Object *object; /* the solid; NULL for triangles */
-    Transform to_world;
-    const Look *look;
-    bool casts_shadow, visible;
-    TriangleSoup soup; /* world space */
-    const Vec3 *origin; /* the hierarchy's */
-} Part;
-
-typedef struct PartList {
-    Part **items;
-    size_t count, capacity;
-} PartList;
 
 struct Hierarchy {
     RTCDevice device;
-    RTCScene scene;
-    Vec3 origin;      /* Embree's floats count from here, the middle of the scene: what is far from <0, 0, 0> stays exact */
-    PartList parts;   /* geomID − 1 … in the order of attachment */
-    PartList planes;  /* endless: tested one by one */
+    ClusterSet set;
+    const Cluster *all;
 };
 
-typedef struct Builder {
-    Hierarchy *hierarchy;
-    const Scene *scene;
-    Arena *arena;
-    DiagList *diags;
-    double tolerance;
-    ShapeTracer *tracer;
-} Builder;
+enum { SOLIDS = 0, TRIANGLES = 1 }; /* geomID in a cluster */
 
-static const Look *make_look(Builder *b, const Texture *texture) {
-    Look *look = arena_new(b->arena, Look);
-    *look = look_from_texture(texture, &b->scene->settings);
-    return look;
+/* ---- what is met ---- */
+
+/* The nearest so far. What is said of places and normals holds in the innermost cluster. */
+typedef struct Found {
+    double t;
+    const Item *path[CLUSTER_DEEPEST + 2]; /* copies from the outside in, and the item at last */
+    int depth;
+    Vec3 normal, flat;
+    const Cluster *cluster; /* of triangles; NULL for solids */
+    uint32_t triangle;
+    double u, v;
+    BodyHit body;           /* of solids */
+} Found;
+
+typedef struct Query {
+    struct RTCIntersectContext context; /* first: Embree hands back its address */
+    const Cluster *cluster;
+    const struct Query *outer;
+    const Item *copy; /* that this cluster is seen through */
+    Ray ray;          /* in the cluster */
+    double t_min, shift; /* Embree's t counts from shift */
+    RayPurpose purpose;
+    bool any;         /* whatever is met will do */
+    Found *found;
+} Query;
+
+static void keep_path(const Query *query, const Item *item) {
+    int depth = 1;
+    for (const Query *q = query; q->copy; q = q->outer) depth++;
+    query->found->depth = depth;
+    query->found->path[--depth] = item;
+    for (const Query *q = query; q->copy; q = q->outer) query->found->path[--depth] = q->copy;
 }
 
-static Part *add_part(Builder *b, PartList *list, const Object *object, const Transform *to_world, const Look *look) {
-    Part *part = arena_new(b->arena, Part);
-    *part = (Part){.object = object, .to_world = *to_world, .look = look, .casts_shadow = !object->no_shadow,
-                   .visible = !object->no_image, .origin = &b->hierarchy->origin};
-    *list_push(b->arena, list) = part;
-    return part;
+static bool meet_plain(const Object *object, const Ray *ray, double t_min, double t_max, BodyHit *hit) {
+    ShapeHit met;
+    if (!shape_intersect(object, ray, t_min, t_max, &met)) return false;
+    *hit = (BodyHit){.t = met.t, .normal = object->inverse ? vec3_negate(met.normal) : met.normal, .leaf = object, .data = object,
+                     .place = met.point, .tag = {.part = met.part}};
+    hit->flat = hit->normal;
+    return true;
 }
 
-static void add_triangles(Builder *b, const Object *object, const Transform *parent, const Transform *to_world, const Look *look) {
-    Part *part = add_part(b, &b->hierarchy->parts, object, to_world, look);
-    TessellateOptions options = {.tolerance = b->tolerance, .particles = particles_tessellate};
-    ShapeRefusal refusal;
-    part->object = NULL;
-    if (!tessellate(object, parent, &options, b->arena, &part->soup, &refusal)) {
-        diag_warning(b->diags, refusal.span, "not drawn: %s", refusal.reason);
-        b->hierarchy->parts.count--;
-    }
+static bool cluster_meet(Query *query);
+
+static bool meet_copy(const Query *outer, const Item *item) {
+    Query query = {.cluster = item->cluster, .outer = outer, .copy = item, .ray = item_ray(item, &outer->ray), .t_min = outer->t_min,
+                   .purpose = outer->purpose, .any = outer->any, .found = outer->found};
+    return cluster_meet(&query);
 }
 
-/* How far triangles may be off what they stand for: a fraction of a pixel of usual pictures, where the object is nearest. */
-static double view_tolerance(const Builder *b, Box3 box) {
-    static const double SHARE = 5e-4;
-    const Camera *camera = &b->scene->camera;
-    double width = vec3_length(camera->right);
-    if (camera->kind == CAMERA_PERSPECTIVE) {
-        Vec3 nearest = vec3_max(box.min, vec3_min(box.max, camera->location));
-        width *= vec3_length(vec3_sub(nearest, camera->location)) / vec3_length(camera->direction);
-    }
-    Vec3 size = vec3_sub(box.max, box.min);
-    double tolerance = double_clamp(SHARE * width, 0.01 * b->tolerance, 0.01 * vec3_length(size));
-    return isfinite(tolerance) && tolerance > 0 ? tolerance : b->tolerance;
+/* Whether the item is met nearer than what was found so far, which it then replaces. */
+static bool meet_item(const Query *query, const Item *item) {
+    Found *found = query->found;
+    if (item->hidden >> query->purpose & 1) return false;
+    if (item->cluster) return meet_copy(query, item);
+    const Ray ray = item_ray(item, &query->ray);
+    BodyHit hit;
+    bool met = item->body ? body_meet(item->body, item->object, &ray, query->t_min, found->t, &hit)
+                          : meet_plain(item->object, &ray, query->t_min, found->t, &hit);
+    if (!met || !(hit.t < found->t)) return false;
+    found->t = hit.t;
+    found->body = hit;
+    found->normal = mat3_apply_transposed(&item->back.linear, hit.normal);
+    found->flat = mat3_apply_transposed(&item->back.linear, hit.flat);
+    found->cluster = NULL;
+    keep_path(query, item);
+    return true;
 }
 
-/* The triangles of one surface of a set, which has its own texture. */
-static void add_set_surface(Builder *b, const Object *object, const TriangleSoup *soup, size_t surface,
-                            const TessellateSurface *from, const Texture *inherited) {
-    TriangleSoup own = {.vertices = soup->vertices};
-    for (size_t t = 0; t < soup->triangles.count; t++)
-        if (soup->triangles.items[t].surface == surface) *list_push(b->arena, &own.triangles) = soup->triangles.items[t];
-    if (own.triangles.count == 0) return;
-    Part *part = add_part(b, &b->hierarchy->parts, object, &from->place, make_look(b, from->texture ? from->texture : inherited));
-    part->object = NULL;
-    part->soup = own;
+/* ---- triangles ---- */
+
+typedef struct ExactTriangle {
+    Vec3 normal; /* (b - a) × (c - a) */
+    double t;
+} ExactTriangle;
+
+/* Embree's t is as coarse as floats are; shadows start at it. */
+static ExactTriangle exact_triangle(const Query *query, uint32_t number, double t) {
+    uint32_t triangle;
+    const Item *owner;
+    const Cluster *c = query->cluster;
+    const MeshData *mesh = cluster_triangle(c, number, &triangle, &owner);
+    Vec3 p[3];
+    for (int k = 0; k < 3; k++) p[k] = mesh->vertices[mesh->triangles[triangle][k]];
+    if (!c->mesh) {
+        const Transform place = item_place(owner);
+        for (int k = 0; k < 3; k++) p[k] = transform_point(&place, p[k]);
+    }
+    ExactTriangle out = {vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0])), t};
+    double exact = vec3_dot(out.normal, vec3_sub(p[0], query->ray.origin)) / vec3_dot(out.normal, query->ray.direction);
+    double most = 1e-3 * fabs(t - query->shift) + 1e-5 * vec3_length(vec3_sub(c->bounds.max, c->bounds.min)) / vec3_length(query->ray.direction);
+    if (fabs(exact - t) < most) out.t = exact; /* seen edge-on the plane says nothing */
+    return out;
 }
 
-static bool looks_alike(const TessellateSurface *a, const TessellateSurface *b) { return a->texture == b->texture; }
-
-/* Surfaces with the same texture become one part. */
-static void add_set(Builder *b, const Object *object, const Transform *parent, const Texture *inherited) {
-    TessellateSurfaces surfaces = {0};
-    ShapeRefusal refusal, doubt = {0};
-    TriangleSoup soup = {0};
-    Transform own = object_transform(object), to_world = transform_then(&own, parent);
-    Box3 box = box3_transform(parent, shape_extent(b->tracer, object));
-    const TessellateOptions options = {.tolerance = view_tolerance(b, box), .particles = particles_tessellate, .doubt = &doubt,
-                                       .surfaces = &surfaces};
-    if (!tessellate(object, parent, &options, b->arena, &soup, &refusal)) {
-        diag_warning(b->diags, refusal.span, "not drawn: %s", refusal.reason);
-        return;
-    }
-    if (doubt.reason) diag_warning(b->diags, doubt.span, "this is coarser than asked: %s", doubt.reason);
-    if (surfaces.count == 0) *list_push(b->arena, &surfaces) = (TessellateSurface){NULL, to_world};
-    for (size_t t = 0; t < soup.triangles.count; t++) {
-        uint16_t surface = soup.triangles.items[t].surface;
-        for (uint16_t i = 0; i < surface; i++)
-            if (looks_alike(&surfaces.items[i], &surfaces.items[surface])) {
-                soup.triangles.items[t].surface = i;
-                break;
-            }
-    }
-    for (size_t i = 0; i < surfaces.count; i++) add_set_surface(b, object, &soup, i, &surfaces.items[i], inherited);
+static void filter_triangle(const struct RTCFilterFunctionNArguments *args) {
+    if (args->N != 1 || args->valid[0] != -1) return;
+    const Query *query = (const Query *)(const void *)args->context;
+    const struct RTCRay *ray = (const struct RTCRay *)(const void *)args->ray;
+    const struct RTCHit *hit = (const struct RTCHit *)(const void *)args->hit;
+    double t = exact_triangle(query, hit->primID, query->shift + (double)ray->tfar).t;
+    if (!(t > query->t_min && t < query->found->t)) args->valid[0] = 0;
 }
 
-static void add_surface(Builder *b, const Object *object, const Transform *to_world, const Look *look) {
-    SurfaceMeshOptions options = {.tolerance = b->tolerance};
-    SurfaceMesh mesh;
-    ShapeRefusal refusal;
-    const Surface *surface = object->as.surface;
-    if (!surface_mesh_build(surface, &options, b->arena, &mesh, &refusal)) {
-        diag_error(b->diags, refusal.span, "this surface cannot be drawn: %s", refusal.reason);
-        return;
-    }
-    Part *part = add_part(b, &b->hierarchy->parts, object, to_world, look);
-    part->object = NULL;
-    TriangleSoup *soup = &part->soup;
-    for (size_t i = 0; i < mesh.vertex_count; i++)
-        soup_vertex(b->arena, soup, transform_point(to_world, mesh.vertices[i]), vec3(0, 0, 0), (double)NAN, (double)NAN);
-    /* A bilinear patch is cut along both diagonals through its middle, which lies on the patch. */
-    for (size_t i = 0; i < mesh.cell_count; i++) {
-        const SurfaceCell *cell = &mesh.cells[i];
-        const uint32_t *v = cell->vertex;
-        if (cell->corner_count == 3) {
-            soup_triangle(b->arena, soup, v[0], v[1], v[2], false);
-            continue;
-        }
-        Vec3 middle = vec3(0, 0, 0);
-        for (int k = 0; k < 4; k++) middle = vec3_madd(middle, mesh.vertices[v[k]], 0.25);
-        uint32_t m = soup_vertex(b->arena, soup, transform_point(to_world, middle), vec3(0, 0, 0), (double)NAN, (double)NAN);
-        for (int k = 0; k < 4; k++) soup_triangle(b->arena, soup, v[k], v[(k + 1) % 4], m, false);
-    }
-}
-
-/* Flattens the tree of objects: each leaf gets its own part, the transform to the scene and the texture it inherits. */
-static void add_object(Builder *b, const Object *object, const Transform *parent, const Texture *inherited) {
-    Transform own = object_transform(object), to_world = transform_then(&own, parent);
-    const Texture *texture = object->texture ? object->texture : inherited;
-    if (object_clipped_by(object).count) {
-        add_set(b, object, parent, texture);
-        return;
-    }
-    switch (object->kind) {
-    case OBJECT_UNION:
-    case OBJECT_MERGE:
-        for (size_t i = 0; i < object->as.group->count; i++) add_object(b, object->as.group->items[i], &to_world, texture);
-        return;
-    case OBJECT_SPHERE: case OBJECT_BOX: case OBJECT_CYLINDER: case OBJECT_CONE: case OBJECT_DISC: case OBJECT_TORUS:
-        add_part(b, &b->hierarchy->parts, object, &to_world, make_look(b, texture));
-        return;
-    case OBJECT_PLANE: add_part(b, &b->hierarchy->planes, object, &to_world, make_look(b, texture)); return;
-    case OBJECT_TRIANGLES:
-    case OBJECT_PARTICLES: add_triangles(b, object, parent, &to_world, make_look(b, texture)); return;
-    case OBJECT_SURFACE:
-        if (!object->texture && object->as.surface->texture) texture = object->as.surface->texture;
-        add_surface(b, object, &to_world, make_look(b, texture));
-        return;
-    case OBJECT_TEXEL: return; /* a skin of its own */
-    case OBJECT_INTERSECTION:
-    case OBJECT_DIFFERENCE:
-    case OBJECT_SOLID: add_set(b, object, parent, texture); return;
-    case OBJECT_UNMODELLED:
-        return; /* named in a warning when the scene was read */
-    }
+static void keep_triangle(const Query *query, const struct RTCRayHit *rayhit) {
+    Found *found = query->found;
+    uint32_t triangle;
+    const Item *owner;
+    ExactTriangle exact = exact_triangle(query, rayhit->hit.primID, query->shift + (double)rayhit->ray.tfar);
+    found->t = exact.t;
+    found->cluster = query->cluster;
+    found->triangle = rayhit->hit.primID;
+    found->u = (double)rayhit->hit.u;
+    found->v = (double)rayhit->hit.v;
+    found->normal = found->flat = exact.normal;
+    cluster_triangle(query->cluster, rayhit->hit.primID, &triangle, &owner);
+    keep_path(query, owner);
 }
 
 /* ---- Embree ---- */
 
-static void bound_solid(const struct RTCBoundsFunctionArguments *args) {
-    const Part *part = args->geometryUserPtr;
-    Box3 box = box3_transform(&part->to_world, shape_bounds(part->object));
-    box = (Box3){vec3_sub(box.min, *part->origin), vec3_sub(box.max, *part->origin)};
-    Vec3 m = vec3_max(vec3_max(vec3_negate(box.min), box.max), vec3_max(box.min, vec3_negate(box.max)));
-    double margin = 1e-6 * (m.x + m.y + m.z) + 1e-30; /* floats are coarser than doubles */
+static void bound_item(const struct RTCBoundsFunctionArguments *args) {
+    const Cluster *cluster = args->geometryUserPtr;
+    Box3 box = item_box(&cluster->items.items[args->primID]);
+    Vec3 size = vec3_sub(cluster->bounds.max, cluster->bounds.min);
+    double margin = 3e-7 * (size.x + size.y + size.z) + 1e-30; /* floats are coarser than doubles */
+    Vec3 low = vec3_sub(vec3_sub(box.min, cluster->origin), vec3_splat(margin)),
+         high = vec3_add(vec3_sub(box.max, cluster->origin), vec3_splat(margin));
     struct RTCBounds *b = args->bounds_o;
-    b->lower_x = (float)(box.min.x - margin), b->upper_x = (float)(box.max.x + margin);
-    b->lower_y = (float)(box.min.y - margin), b->upper_y = (float)(box.max.y + margin);
-    b->lower_z = (float)(box.min.z - margin), b->upper_z = (float)(box.max.z + margin);
+    b->lower_x = (float)low.x, b->lower_y = (float)low.y, b->lower_z = (float)low.z;
+    b->upper_x = (float)high.x, b->upper_y = (float)high.y, b->upper_z = (float)high.z;
 }
 
-typedef struct HitQuery {
-    struct RTCIntersectContext context; /* first: Embree hands back its address */
-    const Ray *ray;
-    double t_min, t;
-    Vec3 normal; /* of the nearest solid so far, scene space, not normalised */
-    const Part *part;
-    bool shadow;
-} HitQuery;
-
-static bool hit_solid(const Part *part, const Ray *ray, double t_min, double t_max, double *t, Vec3 *normal) {
-    Ray local = {transform_point_back(&part->to_world, ray->origin), transform_vector_back(&part->to_world, ray->direction)};
-    ShapeHit hit;
-    if (!shape_intersect(part->object, &local, t_min, t_max, &hit)) return false;
-    *t = hit.t;
-    *normal = transform_normal(&part->to_world, hit.normal);
-    return true;
-}
-
-static void try_part(HitQuery *query, const Part *part) {
-    double t;
-    Vec3 normal;
-    if (query->shadow ? !part->casts_shadow : !part->visible) return;
-    if (!hit_solid(part, query->ray, query->t_min, query->t, &t, &normal) || t >= query->t) return;
-    query->t = t;
-    query->normal = normal;
-    query->part = part;
-}
-
-static void intersect_solid(const struct RTCIntersectFunctionNArguments *args) {
+static void intersect_item(const struct RTCIntersectFunctionNArguments *args) {
     if (!args->valid[0]) return;
-    HitQuery *query = (HitQuery *)(void *)args->context;
+    const Query *query = (const Query *)(const void *)args->context;
     struct RTCRayHit *rayhit = (struct RTCRayHit *)(void *)args->rayhit;
-    double before = query->t;
-    query->t = fmin(query->t, (double)rayhit->ray.tfar);
-    const Part *part = args->geometryUserPtr, *nearest = query->part;
-    query->part = NULL;
-    try_part(query, part);
-    if (!query->part) {
-        query->t = before;
-        query->part = nearest;
+    const Cluster *cluster = args->geometryUserPtr;
+    double before = query->found->t; /* triangles that were met are not in it yet */
+    query->found->t = fmin(before, query->shift + (double)rayhit->ray.tfar);
+    if (!meet_item(query, &cluster->items.items[args->primID])) {
+        query->found->t = before;
         return;
     }
-    rayhit->ray.tfar = (float)query->t;
-    rayhit->hit.geomID = args->geomID;
+    rayhit->ray.tfar = (float)(query->found->t - query->shift);
+    rayhit->hit.geomID = SOLIDS;
     rayhit->hit.primID = args->primID;
 }
 
-static void occlude_solid(const struct RTCOccludedFunctionNArguments *args) {
+static void occlude_item(const struct RTCOccludedFunctionNArguments *args) {
     if (!args->valid[0]) return;
-    HitQuery *query = (HitQuery *)(void *)args->context;
-    try_part(query, args->geometryUserPtr);
-    if (query->part) ((struct RTCRay *)(void *)args->ray)->tfar = -INFINITY;
+    const Query *query = (const Query *)(const void *)args->context;
+    const Cluster *cluster = args->geometryUserPtr;
+    if (meet_item(query, &cluster->items.items[args->primID])) ((struct RTCRay *)(void *)args->ray)->tfar = -INFINITY;
 }
 
-enum { MASK_CAMERA = 1, MASK_SHADOW = 2 };
-
-static RTCGeometry triangle_geometry(RTCDevice device, const Part *part) {
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    size_t nv = part->soup.vertices.count, nt = part->soup.triangles.count;
-    float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), nv);
-    unsigned *t = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), nt);
-    for (size_t i = 0; i < nv; i++) {
-        Vec3 p = vec3_sub(part->soup.vertices.items[i].position, *part->origin);
-        v[3 * i] = (float)p.x, v[3 * i + 1] = (float)p.y, v[3 * i + 2] = (float)p.z;
-    }
-    for (size_t i = 0; i < nt; i++)
-        for (int k = 0; k < 3; k++) t[3 * i + (size_t)k] = part->soup.triangles.items[i].vertex[k];
-    return geometry;
-}
-
-static void attach(Hierarchy *h, Part *part) {
-    RTCGeometry geometry;
-    if (part->object) {
-        geometry = rtcNewGeometry(h->device, RTC_GEOMETRY_TYPE_USER);
-        rtcSetGeometryUserPrimitiveCount(geometry, 1);
-        rtcSetGeometryBoundsFunction(geometry, bound_solid, NULL);
-        rtcSetGeometryIntersectFunction(geometry, intersect_solid);
-        rtcSetGeometryOccludedFunction(geometry, occlude_solid);
-    } else {
-        geometry = triangle_geometry(h->device, part);
-    }
-    rtcSetGeometryUserData(geometry, part);
-    rtcSetGeometryMask(geometry, (part->visible ? MASK_CAMERA : 0u) | (part->casts_shadow ? MASK_SHADOW : 0u));
+static void attach(RTCScene scene, RTCGeometry geometry, const Cluster *cluster, unsigned id) {
+    rtcSetGeometryUserData(geometry, (void *)(uintptr_t)cluster);
     rtcCommitGeometry(geometry);
-    rtcAttachGeometry(h->scene, geometry);
+    rtcAttachGeometryByID(scene, geometry, id);
     rtcReleaseGeometry(geometry);
 }
 
-/* Of everything finite: what is small in the scene is small against its size. */
-static Box3 scene_box(const Scene *scene) {
-    Box3 box = box3_empty();
-    for (size_t i = 0; i < scene->object_count; i++) {
-        const Object *object = scene->objects[i];
-        Box3 own = shape_bounds(object);
-        Transform place = object_transform(object);
-        if (vec3_is_finite(own.min) && vec3_is_finite(own.max)) box = box3_union(box, box3_transform(&place, own));
+static void attach_solids(RTCDevice device, const Cluster *cluster) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)cluster->loose);
+    rtcSetGeometryBoundsFunction(geometry, bound_item, NULL);
+    rtcSetGeometryIntersectFunction(geometry, intersect_item);
+    rtcSetGeometryOccludedFunction(geometry, occlude_item);
+    attach(cluster->scene, geometry, cluster, SOLIDS);
+}
+
+static void put_vertex(const Cluster *cluster, float *out, Vec3 p) {
+    Vec3f f = vec3f_from(vec3_sub(p, cluster->origin));
+    out[0] = f.x, out[1] = f.y, out[2] = f.z;
+}
+
+static void fill_mesh(const Cluster *cluster, float *vertices, unsigned *indices) {
+    const MeshData *mesh = cluster->mesh;
+    for (size_t i = 0; i < mesh->vertex_count; i++) put_vertex(cluster, vertices + 3 * i, mesh->vertices[i]);
+    for (size_t i = 0; i < mesh->triangle_count; i++)
+        for (size_t k = 0; k < 3; k++) indices[3 * i + k] = mesh->triangles[i][k];
+}
+
+static void fill_single(const Cluster *cluster, float *vertices, unsigned *indices) {
+    for (size_t i = 0; i < cluster->triangles.count; i++) {
+        const ClusterTriangle *t = &cluster->triangles.items[i];
+        const Item *owner = &cluster->owners.items[t->owner];
+        const Transform place = item_place(owner);
+        const MeshData *mesh = owner->object->as.mesh;
+        for (size_t k = 0; k < 3; k++) {
+            put_vertex(cluster, vertices + 9 * i + 3 * k, transform_point(&place, mesh->vertices[mesh->triangles[t->triangle][k]]));
+            indices[3 * i + k] = (unsigned)(3 * i + k);
+        }
     }
-    return box3_is_empty(box) ? (Box3){{0, 0, 0}, {1, 0, 0}} : box;
+}
+
+static bool attach_triangles(RTCDevice device, const Cluster *cluster, size_t vertex_count, size_t triangle_count) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertex_count);
+    unsigned *t = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), triangle_count);
+    if (!v || !t) {
+        rtcReleaseGeometry(geometry);
+        return false;
+    }
+    (cluster->mesh ? fill_mesh : fill_single)(cluster, v, t);
+    rtcSetGeometryIntersectFilterFunction(geometry, filter_triangle);
+    rtcSetGeometryOccludedFilterFunction(geometry, filter_triangle);
+    attach(cluster->scene, geometry, cluster, TRIANGLES);
+    return true;
+}
+
+static bool commit(RTCDevice device, Cluster *cluster) {
+    bool ok = true;
+    cluster->scene = rtcNewScene(device);
+    rtcSetSceneFlags(cluster->scene, RTC_SCENE_FLAG_ROBUST);
+    if (cluster->loose) attach_solids(device, cluster);
+    if (cluster->mesh && cluster->mesh->triangle_count)
+        ok = attach_triangles(device, cluster, cluster->mesh->vertex_count, cluster->mesh->triangle_count);
+    else if (cluster->triangles.count)
+        ok = attach_triangles(device, cluster, 3 * cluster->triangles.count, cluster->triangles.count);
+    rtcCommitScene(cluster->scene);
+    return ok && rtcGetDeviceError(device) == RTC_ERROR_NONE;
 }
 
 Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags) {
     Hierarchy *h = arena_new(arena, Hierarchy);
-    Box3 box = scene_box(scene);
-    h->origin = vec3_scale(vec3_add(box.min, box.max), 0.5);
-    Builder builder = {h, scene, arena, diags, 1e-4 * fmax(vec3_length(vec3_sub(box.max, box.min)), 1e-6),
-                       shape_tracer_create(arena)};
-    Transform identity = transform_identity();
-    for (size_t i = 0; i < scene->object_count; i++) add_object(&builder, scene->objects[i], &identity, scene->default_texture);
+    clusters_build(scene, arena, diags, &h->set);
+    h->all = h->set.clusters.items[h->set.clusters.count - 1];
     /* From here on nothing is taken from the arena: if memory ran out, the device would be lost. */
     h->device = rtcNewDevice("threads=1,set_affinity=0");
     if (!h->device) {
         diag_error(diags, (Span){0}, "Embree cannot be started on this machine");
         return NULL;
     }
-    h->scene = rtcNewScene(h->device);
-    rtcSetSceneFlags(h->scene, RTC_SCENE_FLAG_ROBUST);
-    for (size_t i = 0; i < h->parts.count; i++) attach(h, h->parts.items[i]);
-    rtcCommitScene(h->scene);
+    for (size_t i = 0; i < h->set.clusters.count; i++)
+        if (!commit(h->device, h->set.clusters.items[i])) {
+            hierarchy_destroy(h);
+            diag_error(diags, (Span){0}, "there is not enough memory for the objects");
+            return NULL;
+        }
     return h;
 }
 
 void hierarchy_destroy(Hierarchy *h) {
     if (!h) return;
-    if (h->scene) rtcReleaseScene(h->scene);
+    for (size_t i = 0; i < h->set.clusters.count; i++)
+        if (h->set.clusters.items[i]->scene) rtcReleaseScene(h->set.clusters.items[i]->scene);
     if (h->device) rtcReleaseDevice(h->device);
 }
 
-size_t hierarchy_object_count(const Hierarchy *h) { return h->parts.count + h->planes.count; }
+size_t hierarchy_object_count(const Hierarchy *h) { return h->set.part_count; }
+
 bool hierarchy_bounds(const Hierarchy *h, Box3 *box) {
-    struct RTCBounds b;
-    *box = box3_empty();
-    if (h->planes.count) return false;
-    if (!h->parts.count) return true;
-    rtcGetSceneBounds(h->scene, &b);
-    Vec3 lower = vec3((double)b.lower_x, (double)b.lower_y, (double)b.lower_z), upper = vec3((double)b.upper_x, (double)b.upper_y, (double)b.upper_z);
-    double margin = 1e-6 * vec3_length(vec3_sub(upper, lower));
-    *box = (Box3){vec3_sub(vec3_add(h->origin, lower), vec3_splat(margin)), vec3_add(vec3_add(h->origin, upper), vec3_splat(margin))};
+    *box = h->all->box;
+    if (box3_is_empty(*box)) return true;
+    double margin = 1e-6 * vec3_length(vec3_sub(box->max, box->min));
+    *box = (Box3){vec3_sub(box->min, vec3_splat(margin)), vec3_add(box->max, vec3_splat(margin))};
     return vec3_is_finite(box->min) && vec3_is_finite(box->max);
 }
 
 void *hierarchy_device(const Hierarchy *h) { return h->device; }
 
-static struct RTCRay to_embree(const Hierarchy *h, const Ray *ray, double t_min, double t_max, unsigned mask) {
-    Vec3f o = vec3f_from(vec3_sub(ray->origin, h->origin));
-    return (struct RTCRay){.org_x = o.x, .org_y = o.y, .org_z = o.z,
-                           .dir_x = (float)ray->direction.x, .dir_y = (float)ray->direction.y, .dir_z = (float)ray->direction.z,
-                           .tnear = (float)t_min, .tfar = t_max < 1e30 ? (float)t_max : INFINITY, .mask = mask};
+/* ---- rays ---- */
+
+/* The part of the ray that is near what Embree knows, so that its floats are as fine as the cluster is small; false for none. */
+static bool to_embree(Query *query, struct RTCRay *out) {
+    const Cluster *c = query->cluster;
+    if (box3_is_empty(c->bounds)) return false;
+    Vec3 size = vec3_sub(c->bounds.max, c->bounds.min), margin = vec3_splat(1e-6 * (size.x + size.y + size.z) + 1e-30);
+    const Box3 box = {vec3_sub(c->bounds.min, margin), vec3_add(c->bounds.max, margin)};
+    double near = query->t_min, far = query->found->t;
+    if (!box_tree_clip(&box, &query->ray, &near, &far)) return false;
+    query->shift = isfinite(near) ? near : 0;
+    Vec3 from = vec3_madd(query->ray.origin, query->ray.direction, query->shift);
+    Vec3f o = vec3f_from(vec3_sub(from, c->origin)), d = vec3f_from(query->ray.direction);
+    double span = far - query->shift;
+    *out = (struct RTCRay){.org_x = o.x, .org_y = o.y, .org_z = o.z, .dir_x = d.x, .dir_y = d.y, .dir_z = d.z,
+                           .tnear = 0, .tfar = span < 1e30 ? (float)(span * (1 + 1e-6)) : INFINITY, .mask = UINT32_MAX};
+    return embree_takes(out);
 }
 
-static uint32_t part_number(const Hierarchy *h, const Part *part) {
-    for (size_t i = 0; i < h->planes.count; i++)
-        if (h->planes.items[i] == part) return (uint32_t)(h->parts.count + i);
-    return UINT32_MAX;
+static bool meet_loose(const Query *query) {
+    bool met = false;
+    const ItemList *items = &query->cluster->items;
+    for (size_t i = query->cluster->loose; i < items->count; i++) {
+        met |= meet_item(query, &items->items[i]);
+        if (met && query->any) break;
+    }
+    return met;
 }
 
-/* The hit again in doubles: Embree's t is as coarse as floats at the ray's origin are, and shadows start there. */
-static double on_triangle(const Part *part, unsigned triangle, const Ray *ray, double t, Vec3 *normal) {
-    const uint32_t *v = part->soup.triangles.items[triangle].vertex;
-    const SoupVertex *at = part->soup.vertices.items;
-    Vec3 p = at[v[0]].position;
-    *normal = vec3_cross(vec3_sub(at[v[1]].position, p), vec3_sub(at[v[2]].position, p));
-    double exact = vec3_dot(*normal, vec3_sub(p, ray->origin)) / vec3_dot(*normal, ray->direction);
-    return fabs(exact - t) < 1e-3 * fabs(t) ? exact : t; /* seen edge-on the plane says nothing */
+static bool cluster_meet(Query *query) {
+    struct RTCRayHit rayhit = {.hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
+    bool met = meet_loose(query);
+    if ((met && query->any) || !to_embree(query, &rayhit.ray)) return met;
+    rtcInitIntersectContext(&query->context);
+    if (query->any) {
+        rtcOccluded1(query->cluster->scene, &query->context, &rayhit.ray);
+        return rayhit.ray.tfar < 0;
+    }
+    rtcIntersect1(query->cluster->scene, &query->context, &rayhit);
+    if (rayhit.hit.geomID == TRIANGLES) keep_triangle(query, &rayhit);
+    return met || rayhit.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
-bool hierarchy_intersect(const Hierarchy *h, const Ray *ray, double t_min, double t_max, SurfaceHit *hit) {
-    HitQuery query = {.ray = ray, .t_min = t_min, .t = t_max};
-    rtcInitIntersectContext(&query.context);
-    for (size_t i = 0; i < h->planes.count; i++) try_part(&query, h->planes.items[i]);
-    const Part *plane = query.part;
-    struct RTCRayHit rayhit = {.ray = to_embree(h, ray, t_min, query.t, MASK_CAMERA), .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
-    if (embree_takes(&rayhit.ray)) rtcIntersect1(h->scene, &query.context, &rayhit);
-    const Part *part = plane;
-    if (rayhit.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
-        part = h->parts.items[rayhit.hit.geomID];
-        hit->object = rayhit.hit.geomID;
-        if (part->object) {
-            hit->t = query.t;
-        } else {
-            hit->t = on_triangle(part, rayhit.hit.primID, ray, (double)rayhit.ray.tfar, &query.normal);
-        }
-    } else if (part) {
-        hit->object = part_number(h, part);
-        hit->t = query.t;
+/* ---- all about a hit ---- */
+
+/* Smooth normals where the triangles have them. */
+static void triangle_normals(Found *found) {
+    uint32_t triangle;
+    const Item *owner;
+    const MeshData *mesh = cluster_triangle(found->cluster, found->triangle, &triangle, &owner);
+    if (!mesh->normals) return;
+    const uint32_t *n = mesh->normal_triangles ? mesh->normal_triangles[triangle] : mesh->triangles[triangle];
+    Vec3 smooth = vec3_scale(vec3_normalize(mesh->normals[n[0]]), 1 - found->u - found->v);
+    smooth = vec3_madd(smooth, vec3_normalize(mesh->normals[n[1]]), found->u);
+    smooth = vec3_madd(smooth, vec3_normalize(mesh->normals[n[2]]), found->v);
+    if (!(vec3_length_squared(smooth) > 1e-4)) return;
+    found->normal = found->cluster->mesh ? smooth : mat3_apply_transposed(&owner->back.linear, smooth);
+}
+
+static const Texture *triangle_texture(const Found *found) {
+    uint32_t triangle;
+    const Item *owner;
+    const MeshData *mesh = cluster_triangle(found->cluster, found->triangle, &triangle, &owner);
+    return mesh->triangle_textures && mesh->texture_count ? mesh->textures[mesh->triangle_textures[triangle]] : NULL;
+}
+
+/* The innermost object with a texture gives it, and its space. */
+static void find_look(const Hierarchy *h, const Found *found, SurfaceHit *out) {
+    const Item *item = found->path[found->depth - 1];
+    const Texture *texture = found->cluster ? triangle_texture(found) : found->body.looked ? found->body.looked->texture : NULL;
+    int i = found->depth - 1;
+    out->look = NULL;
+    if (texture) {
+        const Transform place = item_place(item);
+        out->look = look_table_find(&h->set.looks, texture);
+        out->space = found->cluster || !found->body.looked ? place : transform_then(&found->body.looked_place, &place);
+        i--;
     } else {
-        return false;
+        for (; i >= 0 && !out->look; i--)
+            if (found->path[i]->look) {
+                out->look = found->path[i]->look;
+                out->space = found->path[i]->look_place ? *found->path[i]->look_place : item_place(found->path[i]);
+            }
     }
-    Vec3 normal = vec3_normalize(query.normal);
-    hit->flat = vec3_dot(normal, ray->direction) > 0 ? vec3_negate(normal) : normal;
-    if (!part->object && part->soup.vertices.items) {
-        /* Smooth normals where the triangles have them. */
-        const SoupTriangle *triangle = &part->soup.triangles.items[rayhit.hit.primID];
-        const SoupVertex *v = part->soup.vertices.items;
-        double u = (double)rayhit.hit.u, w = (double)rayhit.hit.v;
-        Vec3 smooth = vec3_madd(vec3_madd(vec3_scale(v[triangle->vertex[0]].normal, 1 - u - w), v[triangle->vertex[1]].normal, u),
-                                v[triangle->vertex[2]].normal, w);
-        if (vec3_length_squared(smooth) > 0.01) normal = vec3_normalize(smooth);
+    if (!out->look) {
+        out->look = h->set.default_look;
+        out->space = transform_identity();
+        return;
     }
-    hit->normal = vec3_dot(normal, ray->direction) > 0 ? vec3_negate(normal) : normal;
-    hit->look = part->look;
-    hit->space = part->to_world;
-    hit->uv = (TexCoord){0, 0};
-    hit->leaving = vec3_dot(query.normal, ray->direction) > 0;
-    hit->solid = part->object;
-    hit->interior = NULL;
-    hit->filled = hit->object;
-    return true;
+    for (; i >= 0; i--) {
+        const Transform place = item_place(found->path[i]);
+        out->space = transform_then(&out->space, &place);
+    }
+}
+
+static uint64_t path_number(const Found *found) {
+    uint64_t number = 0;
+    for (int i = 0; i < found->depth; i++) number = random_mix(number ^ (uintptr_t)found->path[i]);
+    return number;
+}
+
+static void finish_hit(const Hierarchy *h, Found *found, const Ray *ray, SurfaceHit *out) {
+    const Item *item = found->path[found->depth - 1];
+    if (found->cluster) triangle_normals(found);
+    Vec3 normal = found->normal, flat = found->flat;
+    for (int i = found->depth - 2; i >= 0; i--) {
+        normal = mat3_apply_transposed(&found->path[i]->back.linear, normal);
+        flat = mat3_apply_transposed(&found->path[i]->back.linear, flat);
+    }
+    normal = vec3_normalize(normal), flat = vec3_normalize(flat);
+    out->t = found->t;
+    out->leaving = vec3_dot(flat, ray->direction) > 0;
+    out->flat = out->leaving ? vec3_negate(flat) : flat;
+    out->normal = vec3_dot(normal, ray->direction) > 0 ? vec3_negate(normal) : normal;
+    out->filled = path_number(found);
+    out->solid = found->cluster ? item->object : found->body.leaf;
+    out->object = (uint32_t)random_mix(out->filled ^ (uintptr_t)out->solid);
+    out->uv = (TexCoord){0, 0};
+    out->interior = NULL;
+    find_look(h, found, out);
+}
+
+static bool meet(const Hierarchy *h, RayPurpose purpose, bool any, const Ray *ray, double t_min, double t_max, Found *found) {
+    if (!vec3_is_finite(ray->origin) || !vec3_is_finite(ray->direction)) return false;
+    found->t = t_max;
+    Query query = {.cluster = h->all, .ray = *ray, .t_min = t_min, .purpose = purpose, .any = any, .found = found};
+    return cluster_meet(&query);
 }
 
 bool hierarchy_meet(const Hierarchy *h, RayPurpose purpose, const Ray *ray, double t_min, double t_max, SurfaceHit *hit) {
-    (void)purpose;
-    return hierarchy_intersect(h, ray, t_min, t_max, hit);
+    Found found;
+    if (!meet(h, purpose, false, ray, t_min, t_max, &found)) return false;
+    finish_hit(h, &found, ray, hit);
+    return true;
+}
+
+bool hierarchy_intersect(const Hierarchy *h, const Ray *ray, double t_min, double t_max, SurfaceHit *hit) {
+    return hierarchy_meet(h, RAY_SEES, ray, t_min, t_max, hit);
 }
 
 bool hierarchy_occluded(const Hierarchy *h, const Ray *ray, double t_min, double t_max) {
-    HitQuery query = {.ray = ray, .t_min = t_min, .t = t_max, .shadow = true};
-    rtcInitIntersectContext(&query.context);
-    for (size_t i = 0; i < h->planes.count && !query.part; i++) try_part(&query, h->planes.items[i]);
-    if (query.part) return true;
-    struct RTCRay shadow = to_embree(h, ray, t_min, t_max, MASK_SHADOW);
-    if (embree_takes(&shadow)) rtcOccluded1(h->scene, &query.context, &shadow);
-    return shadow.tfar < 0;
+    Found found;
+    return meet(h, RAY_SHADOWS, true, ray, t_min, t_max, &found);
 }

@@ -319,6 +319,7 @@ typedef struct ObjectGroup {
     Hash128 shape_hash, hash;
     bool hashed;
     int unhashed_depth; /* groups within each other that are not hashed yet, this one included */
+    bool plain;         /* it is known that there are neither lights nor texels in it, however deep */
 } ObjectGroup;
 
 /* What few objects have. */

@@ -230,9 +230,14 @@ enum { DEEPEST_UNHASHED = 64 };
 
 void object_group_settle(ObjectGroup *group) {
     group->unhashed_depth = 1;
-    for (size_t i = 0; i < group->count; i++)
-        if (object_has_group(group->items[i]))
-            group->unhashed_depth = int_max(group->unhashed_depth, group->items[i]->as.group->unhashed_depth + 1);
+    group->plain = group->light_count == 0;
+    for (size_t i = 0; i < group->count; i++) {
+        const Object *object = group->items[i];
+        if (object->kind == OBJECT_TEXEL) group->plain = false;
+        if (!object_has_group(object)) continue;
+        group->plain = group->plain && object->as.group->plain;
+        group->unhashed_depth = int_max(group->unhashed_depth, object->as.group->unhashed_depth + 1);
+    }
     if (group->unhashed_depth > DEEPEST_UNHASHED) hashed_group(group);
 }
 

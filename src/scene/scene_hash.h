@@ -20,7 +20,8 @@ void mesh_rehash(MeshData *mesh); /* without its textures */
 Hash128 object_hash(const Object *object);
 /* the geometry before the place, without looks. */
 Hash128 object_shape_hash(const Object *object);
-/* To be called when a group is complete: hashes it now if it is deep, so that asking later never goes far down. */
+/* To be called when a group is complete: hashes it now if it is deep, so that asking later never goes far down; and finds
+ * out whether it is plain. */
 void object_group_settle(ObjectGroup *group);
 void layer_rehash(TexelLayer *layer);
 void texel_rehash(TexelDef *texel);

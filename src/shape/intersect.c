@@ -342,7 +342,8 @@ int shape_crossings(const Object *object, const Ray *ray, ShapeCrossing out[SHAP
 ShapeHit shape_hit_at(const Object *object, const Ray *ray, const ShapeCrossing *crossing) {
     ShapeHit hit = {.t = crossing->t,
                     .point = vec3_madd(ray->origin, ray->direction, crossing->t),
-                    .leaving = crossing->leaving};
+                    .leaving = crossing->leaving,
+                    .part = crossing->part};
     switch (object->kind) {
     case OBJECT_SPHERE: finish_sphere(object, &hit); break;
     case OBJECT_BOX: finish_box(object, crossing->part, &hit); break;

@@ -12,6 +12,7 @@ typedef struct ShapeHit {
     Vec3 normal;  /* unit, to the outside (disc: its own; plane: its own; open cone: away from the axis) */
     TexCoord uv;  /* as tessellate_solids.h numbers them; planes: lengths along two axes of theirs */
     bool leaving; /* the ray goes from the inside out; false on sheets */
+    uint8_t part; /* which of the surface's parts */
 } ShapeHit;
 
 /* A place where the ray's line crosses the surface. For solids they come in pairs, in and out, in ascending order. */

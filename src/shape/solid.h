@@ -33,6 +33,8 @@ typedef struct SolidOps {
     Vec3 (*normal)(const void *data, Vec3 point, const SolidTag *tag);
     /* NULL: nothing is inside. The boundary may count either way. */
     bool (*inside)(const void *data, Vec3 point);
+    /* The normal of the surface itself, where `normal` is interpolated; NULL: the same. */
+    Vec3 (*flat)(const void *data, Vec3 point, const SolidTag *tag);
     /* Holds all of the surface; infinite where there is no end. */
     Box3 (*bounds)(const void *data);
     bool keeps_normal; /* `inverse` does not turn its normals, as in POV-Ray */

@@ -255,7 +255,7 @@ static void unions_are_flattened(void **state) {
     assert_true(fabs(b.t - 9) < 1e-9 && b.look->texture == &own);
     assert_int_not_equal(a.object, b.object);
     Vec3 local = transform_point_back(&a.space, vec3(0, 0, 7));
-    assert_true(vec3_length(vec3_sub(local, vec3(1, 0, 0))) < 1e-9); /* the ball's own space */
+    assert_true(vec3_length(vec3_sub(local, vec3(3, 0, 0))) < 1e-9); /* the union's space, which has the texture */
     world_end(&w);
 }
 

@@ -1,0 +1,40 @@
+/* Any object of the language, prepared for rays and points: sets, copies, clips and all. What is prepared is shared by all objects of
+ * the same shape and never changed again, so that any number of threads may ask. */
+#ifndef VTS_SHAPE_BODY_H
+#define VTS_SHAPE_BODY_H
+
+#include "shape/solid.h"
+#include "shape/soup.h"
+#include "shape/trace.h"
+
+typedef struct Body Body;
+
+/* The nearest crossing of a ray with a body. */
+typedef struct BodyHit {
+    double t;             /* in lengths of the ray's direction */
+    Vec3 normal;          /* unit, as POV-Ray directs it; zero where the surface has none */
+    Vec3 flat;            /* of the surface itself: differs from `normal` on smooth triangles and fields */
+    const Object *leaf;   /* whose surface it is */
+    const void *data;     /* what its kind prepared */
+    Vec3 place;           /* the point in the leaf's own space */
+    SolidTag tag;
+    const Object *looked; /* the innermost object around it that has a texture; NULL: none */
+    Transform looked_place; /* from that one's space to the space of the ray */
+    const Object *filled; /* the innermost that has an interior; NULL: none */
+} BodyHit;
+
+/* NULL for sets within sets without end. `object` must live as long as the tracer. */
+const Body *body_of(ShapeTracer *tracer, const Object *object);
+
+/* A box around its surface, in the object's own space; empty where there is none, infinite where there is no end. */
+Box3 body_bounds(const Body *body);
+/* What its kind prepared; NULL for sets and where there is nothing to meet. */
+const void *body_data(const Body *body);
+
+/* The nearest crossing with t_min < t < t_max, in the object's own space (its place is the caller's to apply). `object` may be any one
+ * of this shape: its looks and those within it are what the hit names. */
+bool body_meet(const Body *body, const Object *object, const Ray *ray, double t_min, double t_max, BodyHit *hit);
+/* Whether the point of the object's own space is inside. */
+bool body_inside(const Body *body, Vec3 point);
+
+#endif

@@ -16,7 +16,7 @@ size_of() {
     meadow_ball) echo 400x400 ;;
     hillside) echo 480x320 ;;
     teddy) echo 480x480 ;;
-    contents | forest | jitter) echo 640x360 ;;
+    contents | deformed | forest | jitter | superimposed) echo 640x360 ;;
     *) echo 480x360 ;;
   esac
 }

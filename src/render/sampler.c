@@ -93,6 +93,13 @@ static bool surfaces_vary(const CompiledScene *compiled, double x, double y, boo
     return false;
 }
 
+/* The cone of a sample; false where the picture shows nothing. */
+static bool view_sample(const View *view, const Draw *draw, double x, double y, double width, Cone *cone) {
+    double u = 0.5, v = 0.5;
+    if (view_has_lens(view)) draw_pair(draw, DRAW_LENS, &u, &v);
+    return view_ray(view, x, y, u, v, width, cone);
+}
+
 static Vec3f shown(const Sampler *sp, Vec3f color) {
     float gain = sp->plan.gain;
     return vec3f(float_clamp(color.x * gain, 0, 1), float_clamp(color.y * gain, 0, 1), float_clamp(color.z * gain, 0, 1));
@@ -105,11 +112,11 @@ static void add_sample(Sampler *sp, Cell *cell, int px, int py, double x, double
     Tracer *tracer = &sp->tracer;
     SurfaceHit hit;
     float reaching = 1;
-    Cone cone = view_cone(&sp->compiled->view, px + x, py + y, width);
+    Cone cone;
     uint64_t pixel = random_hash((uint64_t)px, (uint64_t)py, sp->plan.seed, 0);
     tracer->draw = (Draw){pixel, (uint32_t)cell->count};
     tracer->seed = cell->count ? random_mix(pixel + (uint64_t)cell->count) : pixel;
-    bool ray = vec3_length_squared(cone.direction) > 0; /* some cameras see nothing at the picture's rim */
+    bool ray = view_sample(&sp->compiled->view, &tracer->draw, px + x, py + y, width, &cone);
     bool found = ray && find_surface(sp->compiled, &cone, &hit);
     Radiance seen = ray ? trace_cone(tracer, &cone, found ? &hit : NULL, &reaching) : (Radiance){{0, 0, 0}, 0};
     Vec3f light = shown(sp, seen.color);

@@ -312,6 +312,7 @@ VtsStatus session_draw(VtsSession *session, bool exact, RenderStats *stats) {
     RenderOptions options = {.pool = session->pool, .progress = &session->progress, .interrupted = &session->interrupted,
                              .samples = exact ? o->reference_samples : session->scene->settings.samples,
                              .seed = o->seed, .exposure = o->exposure, .alpha = o->alpha};
+    if (o->aovs) options.aovs = &session->aovs;
     memcpy(options.region, o->region, sizeof options.region);
     if (options.region[2] == 0) options.region[2] = o->width, options.region[3] = o->height;
     bool done = !session->interrupted && (exact ? reference_picture : render_picture)(&session->compiled, &options, &session->memory,
@@ -331,9 +332,24 @@ VtsStatus session_spare_sources(VtsSession *session, const char *output_path) {
     return status;
 }
 
+/* Which further channels there are to be, in a picture that can hold them. */
+static VtsStatus plan_aovs(VtsSession *session, const char *output_path) {
+    StrBuf why = {0};
+    bool valid = !session->options.aovs || aov_plan_parse(session->options.aovs, &session->aovs, &why);
+    if (valid && session->options.aovs && image_format_of(output_path) != IMAGE_FORMAT_EXR) {
+        strbuf_addf(&why, "'%s' cannot hold further channels: only .exr can", output_path);
+        valid = false;
+    }
+    if (!valid) diag_error(&session->diags, (Span){0}, "--aov: %s", why.data);
+    strbuf_free(&why);
+    return valid ? VTS_OK : VTS_ERROR_USAGE;
+}
+
 /* The picture as users see it, or the reference. */
 static VtsStatus render(VtsSession *session, const char *scene_path, const char *output_path, bool exact) {
     const VtsOptions *o = &session->options;
+    VtsStatus planned = plan_aovs(session, output_path);
+    if (planned != VTS_OK) return planned;
     StrBuf error = {0};
     bool writable = image_can_write(output_path, &error);
     VtsStatus status = writable ? session_evaluate(session, scene_path, (EvalMode){0}) : session_file_error(session, &error);

@@ -15,6 +15,7 @@ struct VtsSession {
     MemoryBudget memory;
     jmp_buf out_of_memory; /* valid while `guarded` */
     Pool *pool;
+    AovPlan aovs;
     TexelCache *texels; /* built and loaded, from one call to the next */
     Progress progress;
     atomic_bool interrupted; /* set from signal handlers and other threads */

@@ -72,6 +72,7 @@ struct BeamTracer {
     bool bounded;
     Box3 explicit_bounds;
     TraceCounters counters;
+    AovSum *aovs;          /* of the tile's pixels; NULL: not wanted */
 };
 
 /* Of the line through (x, y) of the tile: from `origin` along `direction`, whose length is that of one unit of q.z. */

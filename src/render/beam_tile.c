@@ -93,6 +93,7 @@ static bool see_sky(const BeamTracer *tr, Radiance *out) {
         Vec3f color = sky_radiance(scene, tr->cones[i].direction, tr->cones[i].spread);
         Air air = air_between(scene, &(Ray){tr->cones[i].origin, tr->cones[i].direction}, VTS_INFINITY);
         out[i] = (Radiance){air_over(&air, color, 1), 0};
+        if (tr->aovs) tr->aovs[i].samples = 1;
     }
     return true;
 }
@@ -116,6 +117,25 @@ static ConeStart starts_of(const BeamTracer *tr, const Sight *sight) {
     return start;
 }
 
+static AovSample aov_of_sight(const Sight *s) {
+    AovSample seen = {.share = 1, .depth = (double)s->t, .position = s->point, .normal = s->normal, .albedo = s->color, .level = -1};
+    if (!s->surface) return seen;
+    seen.object = s->surface->object + 1;
+    seen.u = (float)s->surface->uv.u, seen.v = (float)s->surface->uv.v;
+    return seen;
+}
+
+/* Of `transmittance` of its samples it is what lies behind voxels. */
+static void see_aovs(BeamTracer *tr, const Sight *sight, const MatterAov *met, float transmittance) {
+    AovSum *sum = &tr->aovs[sight->pixel];
+    AovSample seen = sight->look ? aov_of_sight(sight) : (AovSample){.share = 0};
+    AovSample matter = matter_sum_end(met, &tr->cones[sight->pixel]);
+    seen.share *= transmittance;
+    aov_add(sum, &matter, sight->count);
+    aov_add(sum, &seen, sight->count);
+    sum->samples += sight->count;
+}
+
 /* What a sight sends through fog and voxels, to all of its samples and to the odd ones. */
 static void see_sight(BeamTracer *tr, const Sight *sight, Radiance *all, Vec3f *odd) {
     const Scene *scene = tr->compiled->scene;
@@ -126,12 +146,18 @@ static void see_sight(BeamTracer *tr, const Sight *sight, Radiance *all, Vec3f *
     Air air = air_between(scene, &(Ray){cone.origin, cone.direction}, t);
     *all = (Radiance){air_over(&air, sight->look ? sight->light : sky, 1), sight->look ? 1 : 0};
     *odd = air_over(&air, sight->look ? sight->odd_light : sky, 1);
-    if (!sight->beyond) return;
+    MatterAov met = {.share = 0};
+    if (!sight->beyond) {
+        if (tr->aovs) see_aovs(tr, sight, &met, 1);
+        return;
+    }
     ConeStart start = starts_of(tr, sight);
     cone = beam_sight_cone(tr, sight, &t);
     float transmittance;
+    tr->volumes.matter = tr->aovs ? &met : NULL;
     tr->volumes.seed = random_hash((uint64_t)(tr->x0 + sight->pixel % tr->columns), (uint64_t)(tr->y0 + sight->pixel / tr->columns), 1, tr->seed);
     Vec3f matter = trace_skins(&tr->volumes, &cone, &start, t, &transmittance);
+    if (tr->aovs) see_aovs(tr, sight, &met, transmittance);
     all->color = vec3f_madd(matter, all->color, transmittance);
     all->alpha = 1 - transmittance * (1 - all->alpha);
     *odd = vec3f_madd(matter, *odd, transmittance);
@@ -218,9 +244,10 @@ static void learn(ErrorLaw *law, double error, int samples) {
 }
 
 /* Passes until the error should be small enough. */
-void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out) {
+void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out, AovSum *aovs) {
     int pixels = (x1 - x0) * (y1 - y0), wanted = tr->plan.first;
     tr->x0 = x0, tr->y0 = y0, tr->columns = x1 - x0, tr->rows = y1 - y0;
+    tr->aovs = aovs;
     beam_aim(tr);
     for (int i = 0; i < pixels; i++) tr->cones[i] = view_cone(&tr->compiled->view, x0 + i % tr->columns + 0.5, y0 + i / tr->columns + 0.5, 1);
     memset(out, 0, (size_t)pixels * sizeof *out);

@@ -2,6 +2,8 @@
 
 #include <math.h>
 #include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
 
 typedef struct Film {
     const RenderOptions *options;
@@ -9,6 +11,7 @@ typedef struct Film {
     FilmTile *tile;
     void *context;
     Image *image;
+    AovSum *aovs; /* of the tiles that the workers see */
     int tiles_x, tiles_y;
     float gain;
     atomic_size_t done;
@@ -25,15 +28,19 @@ static void expose_tile(void *context, size_t index, int worker) {
     int x1 = int_min(x0 + FILM_TILE, options->region[2]), y1 = int_min(y0 + FILM_TILE, options->region[3]);
     x0 = int_max(x0, options->region[0]), y0 = int_max(y0, options->region[1]);
     Radiance seen[FILM_TILE * FILM_TILE];
-    film->tile(film->context, worker, x0, y0, x1, y1, seen);
+    AovSum *aovs = film->aovs ? film->aovs + (size_t)worker * FILM_TILE * FILM_TILE : NULL;
+    if (aovs) memset(aovs, 0, sizeof *aovs * FILM_TILE * FILM_TILE);
+    film->tile(film->context, worker, x0, y0, x1, y1, seen, aovs);
     for (int y = y0; y < y1; y++)
         for (int x = x0; x < x1; x++) {
-            Radiance r = seen[(y - y0) * (x1 - x0) + x - x0];
+            int i = (y - y0) * (x1 - x0) + x - x0;
+            Radiance r = seen[i];
             float *sample = image_pixel(film->image, x - options->region[0], y - options->region[1]);
             sample[0] = r.color.x * film->gain;
             sample[1] = r.color.y * film->gain;
             sample[2] = r.color.z * film->gain;
             if (options->alpha) sample[3] = r.alpha;
+            if (aovs) aov_write(options->aovs, &aovs[i], r.alpha, sample + (options->alpha ? 4 : 3));
         }
     size_t done = atomic_fetch_add(&film->done, 1) + 1;
     pthread_mutex_lock(&film->progress_lock);
@@ -41,16 +48,30 @@ static void expose_tile(void *context, size_t index, int worker) {
     pthread_mutex_unlock(&film->progress_lock);
 }
 
+/* R G B, A if wanted, and the further channels. */
+static bool init_image(const RenderOptions *options, MemoryBudget *memory, Image *out, StrBuf *error) {
+    const char *names[4 + AOV_MOST_CHANNELS] = {"R", "G", "B"};
+    int width = options->region[2] - options->region[0], height = options->region[3] - options->region[1], count = 3;
+    if (options->alpha) names[count++] = "A";
+    for (int i = 0; options->aovs && i < options->aovs->channels; i++) names[count++] = options->aovs->names[i];
+    return image_init(out, width, height, count, names, memory, error);
+}
+
 bool film_expose(const RenderOptions *options, const char *stage, FilmTile *tile, void *context, MemoryBudget *memory, Image *out,
                  StrBuf *error) {
-    int width = options->region[2] - options->region[0], height = options->region[3] - options->region[1];
-    if (!image_init(out, width, height, options->alpha ? 4 : 3, NULL, memory, error)) return false;
+    if (!init_image(options, memory, out, error)) return false;
     Film film = {.options = options, .stage = stage, .tile = tile, .context = context, .image = out, .gain = (float)exp2(options->exposure),
                  .tiles_x = (options->region[2] - 1) / FILM_TILE - options->region[0] / FILM_TILE + 1,
                  .tiles_y = (options->region[3] - 1) / FILM_TILE - options->region[1] / FILM_TILE + 1};
+    if (options->aovs) film.aovs = calloc((size_t)pool_threads(options->pool) * FILM_TILE * FILM_TILE, sizeof *film.aovs);
+    if (options->aovs && !film.aovs) {
+        image_free(out);
+        return false;
+    }
     pthread_mutex_init(&film.progress_lock, NULL);
     bool done = pool_run(options->pool, (size_t)film.tiles_x * (size_t)film.tiles_y, expose_tile, &film);
     pthread_mutex_destroy(&film.progress_lock);
+    free(film.aovs);
     if (!done) image_free(out);
     return done;
 }

@@ -6,6 +6,7 @@
 #include "base/progress.h"
 #include "base/vec.h"
 #include "image/image.h"
+#include "render/aov.h"
 
 #include <stdatomic.h>
 
@@ -23,15 +24,16 @@ typedef struct RenderOptions {
     uint64_t seed;   /* of what is sampled */
     double exposure; /* EV */
     bool alpha;      /* keep the background transparent */
+    const AovPlan *aovs; /* further channels; or NULL */
 } RenderOptions;
 
 enum { FILM_TILE = 32 };
 
-/* What the pixels of [x0, x1) × [y0, y1), at most FILM_TILE each way, see: rows of x1 − x0 in `out`. Called by worker `worker` of the
- * pool; must not depend on it. */
-typedef void FilmTile(void *context, int worker, int x0, int y0, int x1, int y1, Radiance *out);
+/* What the pixels of [x0, x1) × [y0, y1), at most FILM_TILE each way, see: rows of x1 − x0 in `out`, and in `aovs` (NULL: not
+ * wanted; comes as zeros). Called by worker `worker` of the pool; must not depend on it. */
+typedef void FilmTile(void *context, int worker, int x0, int y0, int x1, int y1, Radiance *out, AovSum *aovs);
 
-/* Exposes the region (R G B, or R G B A with alpha; `out` is initialised here). False when cancelled or out of memory (text
+/* Exposes the region (R G B, or R G B A with alpha, then the further channels; `out` is initialised here). False when cancelled or out of memory (text
  * in `error`, which may be NULL); `out` then holds nothing. */
 bool film_expose(const RenderOptions *options, const char *stage, FilmTile *tile, void *context, MemoryBudget *memory, Image *out,
                  StrBuf *error);

@@ -127,6 +127,7 @@ static void close_group(Tracer *tr, const Cone *cone, Group *group, int nearest,
     *record = (ShadeRecord){.weight = group->weight, .t = t, .tolerance = 0.02 * group->voxel_world / (double)group->weight,
                             .skin = (uint32_t)nearest, .point = skin_march_guess(&tr->marches[nearest], t)};
     record->ambient = shade_group(tr, cone, group, tr->light_rays, direct);
+    for (int i = 0; tr->matter && i < group->sum_count; i++) tr->matter->albedo = vec3f_add(tr->matter->albedo, group->sums[i].color);
     *group = (Group){0};
 }
 
@@ -204,6 +205,7 @@ static size_t gather(Tracer *tr, const Cone *cone, const ConeStart *start, doubl
         last = nearest;
         float hidden = pass_segment(&passed, &scene->skins[nearest], segment);
         if (hidden > 0) group_add(&group, cone, segment, hidden);
+        if (hidden > 0 && tr->matter) matter_sum_add(tr->matter, segment, hidden, scene->march.voxel_width);
         if (coarser < (int)VTS_ARRAY_COUNT(COARSER_BELOW) && passed.transmittance < COARSER_BELOW[coarser]) {
             coarser++;
             for (size_t k = 0; k < met; k++) skin_march_coarsen(&tr->marches[tr->met[k]], coarser);
@@ -350,6 +352,7 @@ static Vec3f shade_surface(Tracer *tr, const Cone *cone, const SurfaceHit *hit, 
 Vec3f trace_skins(Tracer *tr, const Cone *cone, const ConeStart *start, double t_max, float *transmittance) {
     const Scene *scene = tr->compiled->scene;
     tr->counters.camera_rays++;
+    if (tr->matter) matter_sum_begin(tr->matter);
     size_t count = gather(tr, cone, start, t_max, transmittance);
     Vec3f color = {0, 0, 0};
     double mean_t = 0;

@@ -2,6 +2,7 @@
 #ifndef VTS_RENDER_INTEGRATE_H
 #define VTS_RENDER_INTEGRATE_H
 
+#include "render/aov_trace.h"
 #include "render/compile.h"
 #include "render/draw.h"
 #include "render/film.h"
@@ -25,6 +26,7 @@ typedef struct Tracer {
     LightRay *light_rays;      /* [light], at the segment that is being shaded */
     uint64_t seed;             /* of what is sampled in this pixel */
     Draw draw;                 /* likewise, of samples that follow each other in one pixel: lens, lights, glossy directions */
+    MatterAov *matter;         /* gets what a cone sees of skins; NULL: not wanted */
     TraceCounters counters;
 } Tracer;
 

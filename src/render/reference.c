@@ -16,6 +16,7 @@ typedef struct Sample {
     double width, spread; /* of the pixel's cone: what is too small to matter */
     uint64_t random; /* of the directions that it asks */
     TraceCounters *counters;
+    AovSum *aovs;    /* or NULL */
 } Sample;
 
 /* What a ray has met. */
@@ -26,6 +27,8 @@ typedef struct Facet {
     Vec3 up;           /* its ambient light comes from the hemisphere about it; zero: from everywhere */
     const Look *look;
     Vec3f color;
+    uint32_t object;   /* from 1; 0: matter of a skin */
+    TexCoord uv;
 } Facet;
 
 static Vec3 facet_point(const Sample *s, double t) { return vec3_madd(s->ray.origin, s->ray.direction, t); }
@@ -36,7 +39,7 @@ static Facet surface_facet(const Sample *s, const SurfaceHit *hit) {
     Vec3 local = transform_point_back(&hit->space, facet_point(s, hit->t));
     Vec3 local_normal = vec3_normalize(mat3_apply_transposed(&hit->space.linear, hit->normal));
     return (Facet){.t = hit->t, .normal = hit->normal, .flat = hit->flat, .bias = 1e-5 * hit->t + 0.01 * (s->width + s->spread * hit->t),
-                   .look = hit->look, .color = look_color(hit->look, local, local_normal, 0)};
+                   .look = hit->look, .color = look_color(hit->look, local, local_normal, 0), .object = hit->object + 1, .uv = hit->uv};
 }
 
 static Facet skin_facet(const Sample *s, const SkinHit *hit) {
@@ -100,11 +103,19 @@ static Vec3f shade(const Sample *s, const Facet *facet) {
     return sum;
 }
 
+static void tell(const Sample *s, const Facet *facet) {
+    AovSample seen = {.share = 1, .depth = facet->t, .position = facet_point(s, facet->t), .normal = vec3f_from(facet->normal), .albedo = facet->color,
+                      .u = (float)facet->uv.u, .v = (float)facet->uv.v, .object = facet->object, .level = -1};
+    aov_add(s->aovs, &seen, 1);
+}
+
 static Radiance trace_sample(const Sample *s) {
     const Scene *scene = s->compiled->scene;
-    Facet facet;
+    Facet facet = {.t = 0};
     s->counters->camera_rays++;
     bool met = nearest_facet(s, &facet);
+    if (s->aovs) s->aovs->samples++;
+    if (s->aovs && met) tell(s, &facet);
     Air air = air_between(scene, &s->ray, met ? facet.t : VTS_INFINITY);
     return (Radiance){air_over(&air, met ? shade(s, &facet) : sky_radiance(scene, s->ray.direction, 0), 1), met};
 }
@@ -122,7 +133,7 @@ static int strata_columns(const Strata *strata, int row) {
     return strata->samples / strata->rows + (row < strata->samples % strata->rows);
 }
 
-static Radiance see_pixel(void *context, int worker, int px, int py) {
+static Radiance see_pixel(void *context, int worker, int px, int py, AovSum *aovs) {
     const Reference *reference = context;
     const RenderOptions *options = reference->options;
     Strata strata = strata_of(int_max(1, options->samples));
@@ -134,9 +145,10 @@ static Radiance see_pixel(void *context, int worker, int px, int py) {
         for (int column = 0; column < columns; column++) {
             uint64_t bits = random_hash((uint64_t)px, (uint64_t)py, number++, options->seed);
             double x = (column + random_unit(bits)) / columns, y = (row + random_unit(random_mix(bits))) / strata.rows;
-            Cone cone = view_cone(&reference->compiled->view, px + x, py + y, 1);
-            if (vec3_length_squared(cone.direction) == 0) continue;
-            Sample sample = {reference->compiled, {cone.origin, cone.direction}, cone.width, cone.spread, random_mix(bits + 2), &reference->counters[worker]};
+            double u = random_unit(random_mix(bits + 3)), v = random_unit(random_mix(bits + 4));
+            Cone cone;
+            if (!view_ray(&reference->compiled->view, px + x, py + y, u, v, 1, &cone)) continue;
+            Sample sample = {reference->compiled, {cone.origin, cone.direction}, cone.width, cone.spread, random_mix(bits + 2), &reference->counters[worker], aovs};
             Radiance seen = trace_sample(&sample);
             sum.color = vec3f_madd(sum.color, seen.color, share);
             sum.alpha += seen.alpha * share;
@@ -145,9 +157,9 @@ static Radiance see_pixel(void *context, int worker, int px, int py) {
     return sum;
 }
 
-static void see_tile(void *context, int worker, int x0, int y0, int x1, int y1, Radiance *out) {
+static void see_tile(void *context, int worker, int x0, int y0, int x1, int y1, Radiance *out, AovSum *aovs) {
     for (int y = y0; y < y1; y++)
-        for (int x = x0; x < x1; x++) *out++ = see_pixel(context, worker, x, y);
+        for (int x = x0; x < x1; x++) *out++ = see_pixel(context, worker, x, y, aovs ? aovs++ : NULL);
 }
 
 bool reference_picture(const CompiledScene *compiled, const RenderOptions *options, MemoryBudget *memory, Image *out,

@@ -3,24 +3,33 @@
 #include "render/beam_tile.h"
 #include "render/sampler.h"
 
+#include <string.h>
+
 typedef struct Frame {
     const CompiledScene *compiled;
     const RenderOptions *options;
     BeamTracer **beams; /* one for each worker; NULL: no skin is near, */
     Sampler **samplers; /* and these see the picture */
+    AovSum *aovs;       /* of the tile that each worker sees; or NULL */
 } Frame;
 
 /* The whole tile, of which a region may want a part: what is seen hangs on all of it. */
-static void see_tile(void *context, int worker, int x0, int y0, int x1, int y1, Radiance *out) {
+static void see_tile(void *context, int worker, int x0, int y0, int x1, int y1, Radiance *out, AovSum *aovs) {
     Frame *frame = context;
     const View *view = &frame->compiled->view;
     Radiance seen[FILM_TILE * FILM_TILE];
+    AovSum *whole = frame->aovs ? frame->aovs + (size_t)worker * FILM_TILE * FILM_TILE : NULL;
+    if (whole) memset(whole, 0, sizeof *whole * FILM_TILE * FILM_TILE);
     int left = x0 - x0 % FILM_TILE, top = y0 - y0 % FILM_TILE;
     int right = int_min(left + FILM_TILE, view->width), bottom = int_min(top + FILM_TILE, view->height);
-    if (frame->beams) beam_tile(frame->beams[worker], left, top, right, bottom, seen);
-    else sampler_tile(frame->samplers[worker], left, top, right, bottom, seen);
+    if (frame->beams) beam_tile(frame->beams[worker], left, top, right, bottom, seen, whole);
+    else sampler_tile(frame->samplers[worker], left, top, right, bottom, seen, whole);
     for (int y = y0; y < y1; y++)
-        for (int x = x0; x < x1; x++) *out++ = seen[(y - top) * (right - left) + x - left];
+        for (int x = x0; x < x1; x++) {
+            int i = (y - top) * (right - left) + x - left;
+            *out++ = seen[i];
+            if (aovs) *aovs++ = whole[i];
+        }
 }
 
 static bool has_exact_skins(const CompiledScene *compiled) {
@@ -33,6 +42,7 @@ static void make_workers(Frame *frame, int workers) {
     const CompiledScene *compiled = frame->compiled;
     const RenderOptions *options = frame->options;
     Arena *arena = compiled->arena;
+    if (options->aovs) frame->aovs = arena_new_array(arena, AovSum, (size_t)workers * FILM_TILE * FILM_TILE);
     if (has_exact_skins(compiled)) {
         BeamPlan plan = {.first = compiled->samples, .most = compiled->most_samples, .max_error = compiled->max_error};
         if (options->samples > 0) plan = (BeamPlan){.first = options->samples, .most = options->samples};

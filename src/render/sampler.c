@@ -47,6 +47,7 @@ struct Sampler {
     SamplePlan plan;
     Tracer tracer;
     Cell cells[CELLS];
+    AovSum *aovs; /* of the tile without what is around it; NULL: not wanted */
     int x0, y0, columns, rows;
     Learned contrasts[CONTRASTS], levels[LEVELS];
     Candidate heap[4 * CELLS];
@@ -105,6 +106,13 @@ static Vec3f shown(const Sampler *sp, Vec3f color) {
     return vec3f(float_clamp(color.x * gain, 0, 1), float_clamp(color.y * gain, 0, 1), float_clamp(color.z * gain, 0, 1));
 }
 
+/* What a pixel beside the tile sees is not wanted. */
+static AovSum *aovs_of(const Sampler *sp, int px, int py) {
+    int column = px - sp->x0, row = py - sp->y0;
+    bool within = column >= 0 && row >= 0 && column < sp->columns && row < sp->rows;
+    return sp->aovs && within ? &sp->aovs[row * sp->columns + column] : NULL;
+}
+
 static float mean_square(Vec3f a) { return vec3f_dot(a, a) / 3; }
 
 /* Adds the sample at (x, y) of the pixel (px, py), `width` pixels wide. Whether the pixel's error can be that of edges is found at its first. */
@@ -117,9 +125,19 @@ static void add_sample(Sampler *sp, Cell *cell, int px, int py, double x, double
     tracer->draw = (Draw){pixel, (uint32_t)cell->count};
     tracer->seed = cell->count ? random_mix(pixel + (uint64_t)cell->count) : pixel;
     bool ray = view_sample(&sp->compiled->view, &tracer->draw, px + x, py + y, width, &cone);
+    AovSum *aovs = aovs_of(sp, px, py);
+    MatterAov matter = {.share = 0};
+    tracer->matter = aovs ? &matter : NULL;
     bool found = ray && find_surface(sp->compiled, &cone, &hit);
     Radiance seen = ray ? trace_cone(tracer, &cone, found ? &hit : NULL, &reaching) : (Radiance){{0, 0, 0}, 0};
     Vec3f light = shown(sp, seen.color);
+    if (aovs) {
+        AovSample surface = found ? aov_of_surface(&cone, &hit, reaching) : (AovSample){.share = 0};
+        AovSample voxels = matter_sum_end(&matter, &cone);
+        aov_add(aovs, &voxels, 1);
+        aov_add(aovs, &surface, 1);
+        aovs->samples++;
+    }
     if (cell->count == 0) {
         cell->first = light;
         cell->refinable = reaching >= ALL_EXPLICIT || (reaching >= EDGE_WORTH && surfaces_vary(sp->compiled, px + x, py + y, found, &hit));
@@ -356,7 +374,8 @@ static double see_fixed(Sampler *sp) {
     return sum;
 }
 
-void sampler_tile(Sampler *sp, int x0, int y0, int x1, int y1, Radiance *out) {
+void sampler_tile(Sampler *sp, int x0, int y0, int x1, int y1, Radiance *out, AovSum *aovs) {
+    sp->aovs = aovs;
     sp->x0 = x0, sp->y0 = y0, sp->columns = x1 - x0, sp->rows = y1 - y0;
     memset(sp->contrasts, 0, sizeof sp->contrasts);
     memset(sp->levels, 0, sizeof sp->levels);

@@ -16,8 +16,9 @@ typedef struct SamplePlan {
 typedef struct Sampler Sampler; /* of one worker */
 
 Sampler *sampler_create(const CompiledScene *compiled, const SamplePlan *plan, Arena *arena);
-/* A whole tile, [x0, x1) × [y0, y1), at most FILM_TILE each way: rows of x1 − x0 in `out`. What it gives depends on the tile alone. */
-void sampler_tile(Sampler *sampler, int x0, int y0, int x1, int y1, Radiance *out);
+/* A whole tile, [x0, x1) × [y0, y1), at most FILM_TILE each way: rows of x1 − x0 in `out`, and what is seen
+ * there added to `aovs`, unless NULL. What it gives depends on the tile alone. */
+void sampler_tile(Sampler *sampler, int x0, int y0, int x1, int y1, Radiance *out, AovSum *aovs);
 
 /* Sums over all tiles so far: of the squared errors to be expected, of pixels, and of those that took more than one sample. */
 typedef struct SamplerTally {

@@ -191,6 +191,16 @@ case_settings() { # what --set asks for is known before the scene is, also where
   run check scene.vts --set max_error=1/100; want_status 0
 }
 
+case_channels() { # --aov
+  scene
+  run render scene.vts -s 16x12 -o a.exr --aov depth,normal,samples; want_status 0
+  grep -q normal.X a.exr || fail "no channel normal.X in a.exr"
+  refused render scene.vts -s 16x12 -o a.exr --aov ''
+  run render scene.vts -s 16x12 -o b.exr --aov depth,foo; want_status 2; want_in err "no channel 'foo'"
+  run render scene.vts -s 16x12 -o b.png --aov depth; want_status 2; want_in err 'only .exr'
+  want_only scene.vts a.exr
+}
+
 case_compare() {
   scene
   run render scene.vts -s 24x18 -o a.png; want_status 0

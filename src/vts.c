@@ -3,6 +3,7 @@
 #include "base/stopwatch.h"
 #include "eval/eval.h"
 #include "hooks.h"
+#include "render/preview.h"
 #include "render/reference.h"
 #include "render/report.h"
 #include "scene/knobs.h"
@@ -64,6 +65,7 @@ static const char *option_fault(const VtsOptions *o) {
     if ((r[0] || r[1] || r[2] || r[3]) && (r[0] < 0 || r[1] < 0 || r[2] > o->width || r[3] > o->height || r[0] >= r[2] || r[1] >= r[3]))
         return "the region must lie in the picture and hold at least one pixel";
     if (!isfinite(o->clock) || !isfinite(o->exposure)) return "clock and exposure must be finite numbers";
+    if (o->preview && !preview_address_valid(o->preview)) return "preview must be HOST:PORT, the port 1 to 65535";
     if (fabs(o->exposure) > 100) return "exposure must be -100 to 100 EV";
     return NULL;
 }
@@ -100,6 +102,9 @@ VtsSession *vts_session_create(const VtsOptions *options, const char **error) {
 }
 
 static void end_call(VtsSession *session) {
+    preview_close(session->preview);
+    session->preview = NULL;
+    session->scene_name = NULL;
     compiled_scene_destroy(&session->compiled);
     image_free(&session->picture);
     session->picture = (Image){0};
@@ -307,6 +312,16 @@ VtsStatus session_save_picture(VtsSession *session, const char *scene_path, cons
     return status;
 }
 
+/* A viewer is a help, not a result: without one the picture is made all the same. */
+static Preview *connect_preview(VtsSession *session) {
+    StrBuf why = {0};
+    Preview *preview = preview_connect(session->options.preview, &why);
+    if (!preview) diag_warning(&session->diags, (Span){0}, "--preview %s: %s; rendering without", session->options.preview, why.data ? why.data : "");
+    strbuf_free(&why);
+    if (!preview) session_print_diagnostics(session);
+    return preview;
+}
+
 VtsStatus session_draw(VtsSession *session, bool exact, RenderStats *stats) {
     const VtsOptions *o = &session->options;
     RenderOptions options = {.pool = session->pool, .progress = &session->progress, .interrupted = &session->interrupted,
@@ -315,8 +330,12 @@ VtsStatus session_draw(VtsSession *session, bool exact, RenderStats *stats) {
     if (o->aovs) options.aovs = &session->aovs;
     memcpy(options.region, o->region, sizeof options.region);
     if (options.region[2] == 0) options.region[2] = o->width, options.region[3] = o->height;
+    if (!session->interrupted && o->preview) options.preview = session->preview = connect_preview(session);
+    options.name = session->scene_name ? session->scene_name : "vts";
     bool done = !session->interrupted && (exact ? reference_picture : render_picture)(&session->compiled, &options, &session->memory,
                                                                                       &session->picture, stats, NULL);
+    preview_close(session->preview);
+    session->preview = NULL;
     if (session->interrupted) return VTS_INTERRUPTED;
     if (!done) memory_budget_fail(&session->memory);
     return VTS_OK;
@@ -348,6 +367,7 @@ static VtsStatus plan_aovs(VtsSession *session, const char *output_path) {
 /* The picture as users see it, or the reference. */
 static VtsStatus render(VtsSession *session, const char *scene_path, const char *output_path, bool exact) {
     const VtsOptions *o = &session->options;
+    session->scene_name = scene_path;
     VtsStatus planned = plan_aovs(session, output_path);
     if (planned != VTS_OK) return planned;
     StrBuf error = {0};

@@ -61,6 +61,7 @@ typedef struct VtsOptions {
     int reference_samples;           /* rays of a pixel of vts_reference(), 1 to 65536; default 64 */
     double exposure;                 /* EV, the picture is multiplied by 2^exposure */
     bool alpha;                      /* transparent background */
+    const char *preview;             /* "host:port" of a viewer that speaks tev's protocol; NULL: none. One that does not answer is warned of */
     const char *aovs;                /* further channels of EXR pictures, "depth,normal"; NULL: none */
     int region[4];                   /* x0, y0, x1, y1 (x1, y1 exclusive) in pixels; all 0: the whole picture */
     size_t memory_limit;             /* bytes; 0: none */

@@ -16,6 +16,8 @@ struct VtsSession {
     jmp_buf out_of_memory; /* valid while `guarded` */
     Pool *pool;
     AovPlan aovs;
+    struct Preview *preview;
+    const char *scene_name; /* of the picture that is being drawn */
     TexelCache *texels; /* built and loaded, from one call to the next */
     Progress progress;
     atomic_bool interrupted; /* set from signal handlers and other threads */

@@ -92,6 +92,10 @@ static const char *apply_aov(Settings *s, const char *value) {
     s->options.aovs = value;
     return *value ? NULL : "names of channels, such as depth,normal";
 }
+static const char *apply_preview(Settings *s, const char *value) {
+    s->options.preview = value;
+    return *value ? NULL : "HOST:PORT";
+}
 static const char *apply_float_type(Settings *s, const char *value) {
     s->options.float_type = value;
     return strcmp(value, "half") == 0 || strcmp(value, "float") == 0 ? NULL : "half or float";
@@ -221,7 +225,8 @@ static const Option OPTIONS[] = {
     {"resume", 0, NULL, COMMAND_ALL, NULL, NULL},
     {"aov", 0, "NAMES", COMMAND_RENDER | COMMAND_REFERENCE, apply_aov,
      "further channels of an EXR: some of depth,normal,albedo,alpha,position,object,uv,texel_level,samples"},
-    {"preview", 0, "HOST:PORT", COMMAND_ALL, NULL, NULL},
+    {"preview", 0, "HOST:PORT", COMMAND_RENDER | COMMAND_REFERENCE, apply_preview,
+     "shows the picture as it grows in a viewer that speaks tev's protocol"},
     {"cache", 0, "DIR|off", COMMAND_ALL & ~COMMAND_CHART, apply_cache,
      "keeps built texels in this folder from one run to the next; default: off"},
     {"metric", 0, "NAMES", COMMAND_COMPARE, apply_metric, "of rmse,psnr,flip,max; default rmse,psnr,flip"},

@@ -1,5 +1,7 @@
 #include "render/film.h"
 
+#include "render/preview.h"
+
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
@@ -42,6 +44,8 @@ static void expose_tile(void *context, size_t index, int worker) {
             if (options->alpha) sample[3] = r.alpha;
             if (aovs) aov_write(options->aovs, &aovs[i], r.alpha, sample + (options->alpha ? 4 : 3));
         }
+    if (options->preview)
+        preview_tile(options->preview, x0 - options->region[0], y0 - options->region[1], x1 - options->region[0], y1 - options->region[1]);
     size_t done = atomic_fetch_add(&film->done, 1) + 1;
     pthread_mutex_lock(&film->progress_lock);
     progress_update(options->progress, film->stage, done, (size_t)film->tiles_x * (size_t)film->tiles_y);
@@ -68,10 +72,12 @@ bool film_expose(const RenderOptions *options, const char *stage, FilmTile *tile
         image_free(out);
         return false;
     }
+    if (options->preview) preview_begin(options->preview, options->name, out, film.tiles_x * film.tiles_y);
     pthread_mutex_init(&film.progress_lock, NULL);
     bool done = pool_run(options->pool, (size_t)film.tiles_x * (size_t)film.tiles_y, expose_tile, &film);
     pthread_mutex_destroy(&film.progress_lock);
     free(film.aovs);
+    if (options->preview) preview_end(options->preview, !done || (options->interrupted && *options->interrupted));
     if (!done) image_free(out);
     return done;
 }

@@ -25,6 +25,8 @@ typedef struct RenderOptions {
     double exposure; /* EV */
     bool alpha;      /* keep the background transparent */
     const AovPlan *aovs; /* further channels; or NULL */
+    struct Preview *preview; /* is shown the tiles as they are done; or NULL */
+    const char *name;        /* of the picture, there */
 } RenderOptions;
 
 enum { FILM_TILE = 32 };

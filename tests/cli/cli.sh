@@ -84,7 +84,7 @@ case_usage() {
   refused render scene.vts --alpha=1
   local word
   for word in farm info stitch; do refused $word scene.vts; want_in err 'not available in this version'; done
-  for word in --resume --preview=h:1 --aov=depth --frames=1-3 -f1-3; do refused render scene.vts $word; want_in err 'not available in this version'; done
+  for word in --resume --frames=1-3 -f1-3; do refused render scene.vts $word; want_in err 'not available in this version'; done
   want_only scene.vts
 }
 
@@ -199,6 +199,14 @@ case_channels() { # --aov
   run render scene.vts -s 16x12 -o b.exr --aov depth,foo; want_status 2; want_in err "no channel 'foo'"
   run render scene.vts -s 16x12 -o b.png --aov depth; want_status 2; want_in err 'only .exr'
   want_only scene.vts a.exr
+}
+
+case_preview() { # nobody listens at port 1
+  scene
+  run render scene.vts -s 16x12 -o a.ppm --preview 127.0.0.1:1; want_status 0; want_file a.ppm; want_in err 'no viewer answers'
+  local word
+  for word in nonsense '' host: :14158 host:0 host:70000 host:1x a:b:c; do refused render scene.vts -o b.ppm --preview "$word"; done
+  want_only scene.vts a.ppm
 }
 
 case_compare() {

@@ -4,6 +4,7 @@
 
 #include "eval/build_reader.h"
 #include "eval/eval.h"
+#include "grow/lsystem.h"
 #include "scene/scene_hash.h"
 
 /* ---- build_transform.c: translate rotate scale matrix transform; target: a Transform, composed onto ---- */
@@ -118,6 +119,9 @@ bool settings_read(BuildContext *context, const EvalBlock *block,
                    GlobalSettings *settings); /* build_settings.c */
 BlockBuilder build_texel;                     /* build_texel.c */
 BlockBuilder build_particles;                 /* build_particles.c */
+BlockBuilder build_lsystem;                   /* build_lsystem.c */
+/* The word that a system derives (eval_plant.c); false after a report, or interrupted. */
+bool plant_derive(const BuildContext *context, const LSystem *system, LSystemWord *word);
 BlockBuilder build_surface;                   /* build_surface.c */
 /* ARRAY of `count` vectors, or a kept block { n, <…>, … } of them; `what` names it in messages. NULL after an error. */
 const Vec3 *vectors_read(Reader *reader, const EvalBlock *body, const char *what, size_t *count);

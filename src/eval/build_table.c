@@ -47,7 +47,7 @@ static const struct BlockWord {
     {"sphere_sweep", build_sweep},
     {"superellipsoid", build_superellipsoid},
     {"text", build_text},
-    {"lsystem", build_unmodelled},
+    {"lsystem", build_lsystem},
     {"volume", build_unmodelled},
     {"terrain", build_unmodelled},
     {"cloth", build_unmodelled},

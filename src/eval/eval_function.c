@@ -268,7 +268,7 @@ static TapeRef compile_call(Compiler *c, const Node *n, int output) {
         VarBinding *b = scope_find(c->ev, base->as.name);
         if (!b || !b->slot->set) {
             const KnownFunction *known = known_function_find(base->as.name);
-            if (known) return compile_known(c, n, known);
+            if (known && known->compile) return compile_known(c, n, known);
             Diagnostic *d =
                 diag_error(c->ev->diags, base->span, "function '%s' is not declared", base->as.name->text);
             if (strncmp(base->as.name->text, "f_", 2) == 0)

@@ -14,10 +14,15 @@ typedef struct KnownFunction {
     /* The value of the call for the compiled arguments; false after a report. NULL: not for functions. */
     bool (*compile)(Eval *ev, TapeBuilder *tape, const Node *call, const TapeRef *arguments, size_t count,
                     TapeRef *out);
+    Value (*value)(Eval *ev, const Node *call); /* of those that are not for functions */
 } KnownFunction;
 const KnownFunction *known_function_find(Name name);
 /* Whether the call has the right number of arguments (at most 8); reported. */
 bool known_function_takes(Eval *ev, const Node *call, const KnownFunction *function);
+
+/* lsystem_string(), lsystem_count() (eval_plant.c). */
+Value eval_lsystem_string(Eval *ev, const Node *call);
+Value eval_lsystem_count(Eval *ev, const Node *call);
 
 /* A function that is nothing but one external. */
 Value external_function(Eval *ev, const Node *node, const TapeExternal *external);

@@ -129,10 +129,12 @@ static bool compile_fbm(Eval *ev, TapeBuilder *tape, const Node *call, const Tap
 }
 
 static const KnownFunction known_functions[] = {
-    {"perlin", 3, false, compile_perlin},
-    {"worley", 4, false, compile_worley},
-    {"sparse_convolution", 4, false, compile_sparse},
-    {"fbm", 7, true, compile_fbm},
+    {"perlin", 3, false, compile_perlin, NULL},
+    {"worley", 4, false, compile_worley, NULL},
+    {"sparse_convolution", 4, false, compile_sparse, NULL},
+    {"fbm", 7, true, compile_fbm, NULL},
+    {"lsystem_string", 1, false, NULL, eval_lsystem_string},
+    {"lsystem_count", 2, false, NULL, eval_lsystem_count},
 };
 
 const KnownFunction *known_function_find(Name name) {
@@ -154,6 +156,7 @@ Value call_known_function(Eval *ev, const Node *node, bool *known) {
     if (!f) return value_error();
     const NodeList *list = &node->as.apply.list;
     if (!known_function_takes(ev, node, f)) return value_error();
+    if (f->value) return f->value(ev, node);
     TapeBuilder *tape = tape_builder_create(&ev->temp, 0);
     TapeRef arguments[8] = {0}, out;
     for (size_t i = f->takes_noise ? 1 : 0; i < list->count; i++) {

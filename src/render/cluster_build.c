@@ -327,6 +327,7 @@ static void add_object(Builder *b, Cluster *cluster, const Object *object, const
         else
             add_mesh(b, cluster, object, &place, &has);
         return;
+    case OBJECT_BRANCHES:
     case OBJECT_PARTICLES: add_particles(b, cluster, object, parent, &place, &has); return;
     case OBJECT_SURFACE:
         if (!object->texture && object->as.surface->texture) has.look = look_of(b, object->as.surface->texture), has.look_place = NULL;

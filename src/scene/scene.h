@@ -261,6 +261,7 @@ typedef enum ObjectKind {
     OBJECT_UNION,     /* children; also merge until CSG is complete */
     OBJECT_INTERSECTION, OBJECT_DIFFERENCE, OBJECT_MERGE,
     OBJECT_PARTICLES, /* blades, hairs: swept trajectories */
+    OBJECT_BRANCHES,  /* of an L-system: chains of frusta */
     OBJECT_SURFACE,   /* the surface of a skin drawn itself */
     OBJECT_SOLID,     /* the rarer shapes: solids.h */
     OBJECT_TEXEL,     /* a texel placed once, without a surface */
@@ -299,6 +300,23 @@ typedef struct Particle {
     double twist; /* degrees from foot to tip */
 } Particle;
 
+/* A place on a branch, `radius` thick; a frustum joins it to the one before. Each is `previous` of one other at most, which stands later. */
+typedef struct BranchNode {
+    Vec3 position;
+    double radius;
+    uint32_t previous; /* BRANCH_FIRST: the branch begins here */
+} BranchNode;
+#define BRANCH_FIRST UINT32_MAX
+
+/* What an L-system has grown: its word, and the objects made of it. */
+typedef struct Plant {
+    const char *letters;     /* of the word, each with parameters first[i] to first[i + 1] */
+    const uint32_t *first;
+    const double *parameters;
+    size_t count;
+    const Object *branches, *symbols; /* unions; what `parts` takes */
+} Plant;
+
 typedef struct Surface Surface;
 typedef struct TexelDef TexelDef;
 typedef struct Light Light;
@@ -315,6 +333,7 @@ typedef struct ObjectGroup {
     /* Copied to Scene.lights, transformed; here they only remember where they came from. */
     const Light *const *lights;
     size_t light_count;
+    const Plant *plant; /* of the union that an L-system is; else NULL */
     /* Kept by scene_hash.c once they were asked for. */
     Hash128 shape_hash, hash;
     bool hashed;
@@ -355,6 +374,7 @@ struct Object {
         const Solid *solid;
         const ObjectGroup *group; /* of OBJECT_UNION, INTERSECTION, DIFFERENCE, MERGE */
         struct { const Particle *items; size_t count; } particles;
+        struct { const BranchNode *items; size_t count; } branches;
         const Surface *surface;
         const TexelDef *texel;
         const char *word; /* of OBJECT_UNMODELLED */

@@ -113,6 +113,16 @@ static Box3 particles_bounds(const Object *o, const Transform *t) {
     return box;
 }
 
+static Box3 branches_bounds(const Object *o, const Transform *t) {
+    Box3 box = box3_empty();
+    for (size_t i = 0; i < o->as.branches.count; i++) {
+        const BranchNode *node = &o->as.branches.items[i];
+        Vec3 r = vec3_splat(fabs(node->radius));
+        box = box3_union(box, box3_transform(t, (Box3){vec3_sub(node->position, r), vec3_add(node->position, r)}));
+    }
+    return box;
+}
+
 static Box3 bounds_under(const Object *o, const Transform *outer) {
     Transform own = object_transform(o), t = transform_then(&own, outer);
     switch (o->kind) {
@@ -132,6 +142,7 @@ static Box3 bounds_under(const Object *o, const Transform *outer) {
     case OBJECT_DIFFERENCE:
         return o->as.group->count ? bounds_under(o->as.group->items[0], &t) : box3_empty();
     case OBJECT_PARTICLES: return particles_bounds(o, &t);
+    case OBJECT_BRANCHES: return branches_bounds(o, &t);
     case OBJECT_SURFACE: return surface_bounds(o->as.surface, &t);
     case OBJECT_TEXEL:
         return is_bounded(o->as.texel->bounds) ? box3_transform(&t, o->as.texel->bounds) : everything();

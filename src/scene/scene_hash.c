@@ -206,6 +206,14 @@ static void add_particles(Hash128 *h, const Particle *items, size_t count) {
     }
 }
 
+static void add_branches(Hash128 *h, const BranchNode *items, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        hash_add_vec3(h, items[i].position);
+        hash_add_double(h, items[i].radius);
+        hash_add_u64(h, items[i].previous);
+    }
+}
+
 static void add_objects(Hash128 *h, const ObjectList *list) {
     hash_add_u64(h, list->count);
     for (size_t i = 0; i < list->count; i++) hash_add_hash(h, object_geometry_hash(list->items[i]));
@@ -281,6 +289,7 @@ Hash128 object_shape_hash(const Object *o) {
         hash_add_hash(&h, hashed_group(o->as.group)->shape_hash);
         break;
     case OBJECT_PARTICLES: add_particles(&h, o->as.particles.items, o->as.particles.count); break;
+    case OBJECT_BRANCHES: add_branches(&h, o->as.branches.items, o->as.branches.count); break;
     case OBJECT_SURFACE: hash_add_hash(&h, o->as.surface->hash); break;
     case OBJECT_TEXEL: hash_add_hash(&h, o->as.texel->hash); break;
     case OBJECT_SOLID: hash_add_hash(&h, o->as.solid->hash); break;

@@ -17,7 +17,7 @@ const char *object_word(const Object *o) {
         [OBJECT_TORUS] = "torus",         [OBJECT_TRIANGLES] = "mesh",
         [OBJECT_UNION] = "union",         [OBJECT_INTERSECTION] = "intersection",
         [OBJECT_DIFFERENCE] = "difference", [OBJECT_MERGE] = "merge",
-        [OBJECT_PARTICLES] = "particles", [OBJECT_SURFACE] = "surface",
+        [OBJECT_PARTICLES] = "particles", [OBJECT_BRANCHES] = "lsystem", [OBJECT_SURFACE] = "surface",
         [OBJECT_TEXEL] = "texel",
     };
     if (o->kind == OBJECT_UNMODELLED) return o->as.word;
@@ -42,6 +42,7 @@ static size_t object_size(ObjectKind kind) {
     case OBJECT_DISC: member = sizeof o->as.disc; break;
     case OBJECT_TORUS: member = sizeof o->as.torus; break;
     case OBJECT_PARTICLES: member = sizeof o->as.particles; break;
+    case OBJECT_BRANCHES: member = sizeof o->as.branches; break;
     case OBJECT_TRIANGLES:
     case OBJECT_UNION:
     case OBJECT_INTERSECTION:

@@ -265,6 +265,7 @@ static void add_shape(const Printer *p, const Object *o) {
     case OBJECT_INTERSECTION:
     case OBJECT_DIFFERENCE: strbuf_addf(p->out, " of %zu", o->as.group->count); break;
     case OBJECT_PARTICLES: strbuf_addf(p->out, " of %zu", o->as.particles.count); break;
+    case OBJECT_BRANCHES: strbuf_addf(p->out, " of %zu branch nodes", o->as.branches.count); break;
     case OBJECT_TEXEL: strbuf_addf(p->out, " %s", o->as.texel->name); break;
     case OBJECT_SURFACE:
     case OBJECT_SOLID:

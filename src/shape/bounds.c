@@ -55,6 +55,7 @@ static bool inside_shape(const Object *object, Vec3 p) {
     case OBJECT_DISC:
     case OBJECT_TRIANGLES:
     case OBJECT_PARTICLES:
+    case OBJECT_BRANCHES:
     case OBJECT_SURFACE:
     case OBJECT_TEXEL:
     case OBJECT_SOLID:
@@ -189,6 +190,12 @@ Box3 shape_bounds(const Object *object) {
     case OBJECT_MERGE: return union_bounds(object);
     case OBJECT_INTERSECTION: return intersection_bounds(object);
     case OBJECT_DIFFERENCE: return difference_bounds(object);
+    case OBJECT_BRANCHES:
+        for (size_t i = 0; i < object->as.branches.count; i++) {
+            const BranchNode *node = &object->as.branches.items[i];
+            box = box3_union(box, around(node->position, vec3_splat(fabs(node->radius))));
+        }
+        return box;
     case OBJECT_PARTICLES:
         for (size_t i = 0; i < object->as.particles.count; i++) {
             box = box3_union(box, particle_bounds(&object->as.particles.items[i]));

@@ -331,6 +331,7 @@ int shape_crossings(const Object *object, const Ray *ray, ShapeCrossing out[SHAP
     case OBJECT_DIFFERENCE:
     case OBJECT_MERGE:
     case OBJECT_PARTICLES:
+    case OBJECT_BRANCHES:
     case OBJECT_SURFACE:
     case OBJECT_TEXEL:
     case OBJECT_SOLID:

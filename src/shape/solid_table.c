@@ -41,6 +41,7 @@ const SolidOps *solid_ops(const Object *object) {
     case OBJECT_DIFFERENCE:
     case OBJECT_MERGE:
     case OBJECT_PARTICLES:
+    case OBJECT_BRANCHES:
     case OBJECT_TEXEL:
     case OBJECT_UNMODELLED: break;
     }

@@ -1,5 +1,6 @@
 #include "shape/tessellate.h"
 
+#include "shape/tessellate_branches.h"
 #include "shape/tessellate_mesh.h"
 #include "shape/tessellate_parts.h"
 #include "shape/tessellate_rare.h"
@@ -66,6 +67,7 @@ bool tessellate_shape(TessellateWalk *walk, const Object *object, double toleran
     case OBJECT_TORUS: tessellate_torus(object, tolerance, parts, walk->arena, walk->out); return true;
     case OBJECT_TRIANGLES: return push_mesh(walk, object);
     case OBJECT_PARTICLES: return push_particles(walk, object, tolerance);
+    case OBJECT_BRANCHES: tessellate_branches(object, tolerance, walk->arena, walk->out); return true;
     case OBJECT_SURFACE:
         return tessellate_surface(object->as.surface, tolerance, walk->arena, walk->out, walk->refusal);
     case OBJECT_PLANE:

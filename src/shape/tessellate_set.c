@@ -56,7 +56,7 @@ bool tessellate_is_set(const Object *object) {
 
 static bool is_flat(const Object *object) {
     return object->kind == OBJECT_BOX || object->kind == OBJECT_PLANE || object->kind == OBJECT_DISC ||
-           object->kind == OBJECT_TRIANGLES || object->kind == OBJECT_PARTICLES || object->kind == OBJECT_SURFACE;
+           object->kind == OBJECT_TRIANGLES || object->kind == OBJECT_PARTICLES || object->kind == OBJECT_BRANCHES || object->kind == OBJECT_SURFACE;
 }
 
 static bool has_no_end(const SetLeaf *leaf) {

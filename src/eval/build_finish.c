@@ -89,7 +89,7 @@ static void read_reflection(Reader *reader, const Word *word, void *target) {
     }
     if (colors.count == 0) return;
     finish->reflection_max = colors.colors[colors.count - 1];
-    finish->reflection_min = colors.count == 2 ? colors.colors[0] : finish->reflection_max;
+    finish->reflection_min = colors.count == 2 ? colors.colors[0] : finish->fresnel ? (Color){0} : finish->reflection_max;
 }
 
 /* POV-Ray lets the colour be missing: nothing changes then. */

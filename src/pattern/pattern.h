@@ -54,6 +54,11 @@ Color texture_layer_color(const TexturePart *part, const Texture *layer, Vec3 no
 /* The unit normal of the scene as the layer perturbs it, `normal` as it is without that. Bumps finer than the footprint are smoothed. */
 Vec3 texture_layer_normal(const TexturePart *part, const Texture *layer, Vec3 normal);
 
+/* Whether it lets light through nowhere, as far as can be told without looking everywhere. */
+bool texture_is_opaque(const Texture *texture);
+/* Whether it mirrors anywhere. */
+bool texture_mirrors(const Texture *texture);
+
 /* `top` laid over `below`. Light that comes back: top's own, where it is opaque, and what its filter lets through of the
  * layer below. */
 Color color_over(Color top, Color below);

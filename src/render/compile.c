@@ -158,6 +158,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     out->march.slab = out->shadow_march.slab = detail_of(scene->settings.detail) == DETAIL_SLAB;
     out->hierarchy = hierarchy_build(scene, arena, diags);
     if (!out->hierarchy) return COMPILE_FAILED;
+    out->clear_shadows = hierarchy_is_clear(out->hierarchy);
     SkinList skins = {0};
     for (size_t i = 0; i < scene->skin_count; i++) *list_push(arena, &skins) = scene->skins[i];
     Transform identity = transform_identity();

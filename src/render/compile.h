@@ -39,6 +39,7 @@ typedef struct CompiledScene {
     Quadrature quadrature;
     TexelFiltering filtering;
     double shadow_aperture;
+    bool clear_shadows;   /* some explicit objects let light through */
     double max_error;     /* the RMSE that is accepted */
     int most_samples;     /* a pixel, to keep it */
     int samples;          /* a pixel, of the first pass of what is drawn by beams */

@@ -10,6 +10,7 @@ struct Hierarchy {
     RTCDevice device;
     ClusterSet set;
     const Cluster *all;
+    bool clear; /* something lets light through */
 };
 
 enum { SOLIDS = 0, TRIANGLES = 1 }; /* geomID in a cluster */
@@ -244,6 +245,8 @@ Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags) {
     Hierarchy *h = arena_new(arena, Hierarchy);
     clusters_build(scene, arena, diags, &h->set);
     h->all = h->set.clusters.items[h->set.clusters.count - 1];
+    h->clear = !h->set.default_look->opaque;
+    for (size_t i = 0; i < h->set.looks.slot_count; i++) h->clear |= h->set.looks.slots[i] && !h->set.looks.slots[i]->opaque;
     /* From here on nothing is taken from the arena: if memory ran out, the device would be lost. */
     h->device = rtcNewDevice("threads=1,set_affinity=0");
     if (!h->device) {
@@ -276,6 +279,8 @@ bool hierarchy_bounds(const Hierarchy *h, Box3 *box) {
     return vec3_is_finite(box->min) && vec3_is_finite(box->max);
 }
 
+Vec3 hierarchy_origin(const Hierarchy *h) { return h->all->origin; }
+bool hierarchy_is_clear(const Hierarchy *h) { return h->clear; }
 void *hierarchy_device(const Hierarchy *h) { return h->device; }
 
 /* ---- rays ---- */
@@ -373,10 +378,19 @@ static void find_look(const Hierarchy *h, const Found *found, SurfaceHit *out) {
     }
 }
 
-static uint64_t path_number(const Found *found) {
+static uint64_t path_number(const Found *found, int depth) {
     uint64_t number = 0;
-    for (int i = 0; i < found->depth; i++) number = random_mix(number ^ (uintptr_t)found->path[i]);
+    for (int i = 0; i < depth; i++) number = random_mix(number ^ (uintptr_t)found->path[i]);
     return number;
+}
+
+/* The innermost object with an interior; all of the same set have the same number. */
+static void find_interior(const Found *found, SurfaceHit *out) {
+    const Object *filled = found->cluster ? NULL : found->body.filled;
+    int depth = found->depth;
+    while (!filled && depth > 0) filled = found->path[--depth]->filled;
+    out->interior = filled ? filled->rest->interior : NULL;
+    out->filled = filled ? random_mix(path_number(found, depth) ^ (uintptr_t)filled) : 0;
 }
 
 static void finish_hit(const Hierarchy *h, Found *found, const Ray *ray, SurfaceHit *out) {
@@ -392,11 +406,10 @@ static void finish_hit(const Hierarchy *h, Found *found, const Ray *ray, Surface
     out->leaving = vec3_dot(flat, ray->direction) > 0;
     out->flat = out->leaving ? vec3_negate(flat) : flat;
     out->normal = vec3_dot(normal, ray->direction) > 0 ? vec3_negate(normal) : normal;
-    out->filled = path_number(found);
     out->solid = found->cluster ? item->object : found->body.leaf;
-    out->object = (uint32_t)random_mix(out->filled ^ (uintptr_t)out->solid);
+    out->object = (uint32_t)random_mix(path_number(found, found->depth) ^ (uintptr_t)out->solid);
     out->uv = (TexCoord){0, 0};
-    out->interior = NULL;
+    find_interior(found, out);
     find_look(h, found, out);
 }
 

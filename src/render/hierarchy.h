@@ -31,6 +31,10 @@ typedef struct SurfaceHit {
 Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags);
 void hierarchy_destroy(Hierarchy *hierarchy);
 size_t hierarchy_object_count(const Hierarchy *hierarchy);
+/* Where its floats count from: they are as coarse as the distance from there is long. */
+Vec3 hierarchy_origin(const Hierarchy *hierarchy);
+/* Whether something lets light through, so that shadows have colours. */
+bool hierarchy_is_clear(const Hierarchy *hierarchy);
 void *hierarchy_device(const Hierarchy *hierarchy);
 
 /* A box around everything that is drawn, empty if nothing is; false when there is something endless. */

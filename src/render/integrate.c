@@ -291,64 +291,6 @@ static Vec3f add_shadowed(Tracer *tr, const Cone *cone, size_t count, size_t lig
     return sum;
 }
 
-/* ---- explicit surfaces ---- */
-
-/* Points of the footprint on an explicit surface from which its shadow is tested, so that edges of shadows are not stairs. */
-enum { SHADOW_SAMPLES = 4 };
-
-static float surface_visibility(Tracer *tr, const Light *light, const LightRay *ray, const Cone *cone, const SurfaceHit *hit, double bias) {
-    if (light->shadowless) return 1;
-    Vec3 point = cone_point(cone, hit->t), s, t;
-    double width = cone_diameter(cone, hit->t), turn = 2 * VTS_PI * random_unit(random_mix(tr->seed));
-    vec3_frame(cone->direction, &s, &t);
-    double facing = vec3_dot(cone->direction, hit->flat), free_samples = 0;
-    /* In the hollow of a mesh a place beside the point lies under the neighbouring face, by less than the footprint's width: what is
-     * nearer than that casts no shadow that this cone could tell. */
-    double clear = 0.7 * width;
-    for (int i = 0; i < SHADOW_SAMPLES; i++) {
-        double angle = turn + 2 * VTS_PI * i / SHADOW_SAMPLES;
-        Vec3 across = vec3_madd(vec3_scale(s, 0.35 * width * cos(angle)), t, 0.35 * width * sin(angle));
-        /* Along the cone back onto the surface's plane; at grazing angles straight down to it. */
-        double height = vec3_dot(across, hit->flat);
-        across = fabs(facing) > 0.1 ? vec3_madd(across, cone->direction, -height / facing) : vec3_madd(across, hit->flat, -height);
-        Vec3 from = vec3_madd(vec3_add(point, across), hit->flat, bias);
-        Ray shadow = {from, ray->direction};
-        free_samples += !hierarchy_occluded(tr->compiled->hierarchy, &shadow, fmax(fabs(bias), clear), ray->distance);
-    }
-    tr->counters.shadow_rays += SHADOW_SAMPLES;
-    if (free_samples == 0) return 0;
-    double aperture = tr->compiled->shadow_aperture;
-    Cone shadow_cone = {vec3_madd(point, hit->flat, bias), ray->direction, width * aperture, cone->spread * aperture};
-    return (float)(free_samples / SHADOW_SAMPLES) * skin_light_through(&tr->light, &shadow_cone, ray->distance, -1);
-}
-
-/* `reaching` of its light comes to the eye. */
-static Vec3f shade_surface(Tracer *tr, const Cone *cone, const SurfaceHit *hit, float reaching) {
-    const Scene *scene = tr->compiled->scene;
-    Vec3 point = cone_point(cone, hit->t);
-    double width = cone_diameter(cone, hit->t), facing = fmax(0.05, -vec3_dot(hit->normal, cone->direction));
-    Vec3 local = transform_point_back(&hit->space, point);
-    Vec3 local_normal = vec3_normalize(mat3_apply_transposed(&hit->space.linear, hit->normal));
-    double shrink = cbrt(fabs(mat3_determinant(&hit->space.inverse_linear)));
-    Vec3f color = look_color(hit->look, local, local_normal, width / facing * shrink);
-    Vec3f sum = vec3f_mul(vec3f_add(hit->look->ambient, hit->look->emission), color);
-    double bias = 1e-5 * hit->t + 0.01 * width;
-    for (size_t l = 0; l < scene->light_count; l++) {
-        LightRay ray = light_ray(&scene->lights[l], point);
-        NdfShade shade = sheet_shade(vec3f_from(hit->normal), vec3f_from(vec3_negate(cone->direction)), vec3f_from(ray.direction),
-                                     &hit->look->sheet);
-        if (shade.diffuse <= 0 && shade.highlight <= 0) continue;
-        Vec3f tone = vec3f_mul(shade_tone(&shade, hit->look, color), ray.color);
-        float visible = 1;
-        if (reaching * luminance(tone) > SHADOW_WORTH) {
-            double outside = vec3_dot(ray.direction, hit->flat) > 0 ? bias : -bias;
-            visible = surface_visibility(tr, &scene->lights[l], &ray, cone, hit, outside);
-        }
-        sum = vec3f_madd(sum, tone, visible);
-    }
-    return sum;
-}
-
 Vec3f trace_skins(Tracer *tr, const Cone *cone, const ConeStart *start, double t_max, float *transmittance) {
     const Scene *scene = tr->compiled->scene;
     tr->counters.camera_rays++;
@@ -369,19 +311,40 @@ Vec3f trace_skins(Tracer *tr, const Cone *cone, const ConeStart *start, double t
     return color;
 }
 
+/* ---- explicit surfaces ---- */
+
+static Vec3f matter_before(void *tracer, const Cone *cone, double t_max, float *transmittance) {
+    const ConeStart everything = {.count = 0};
+    return trace_skins(tracer, cone, &everything, t_max, transmittance);
+}
+
+static float passing_matter(void *tracer, const Cone *cone, double t_max) {
+    return skin_light_through(&((Tracer *)tracer)->light, cone, t_max, -1);
+}
+
+SurfaceTracer tracer_of_surfaces(Tracer *tr) {
+    SurfaceTracer surfaces = {.compiled = tr->compiled, .counters = &tr->counters, .seed = tr->seed, .skins = tr};
+    if (tr->compiled->skin_count) surfaces.matter = matter_before, surfaces.passing = passing_matter;
+    return surfaces;
+}
+
 Radiance trace_cone(Tracer *tr, const Cone *cone, const SurfaceHit *hit, float *reaching) {
     const Scene *scene = tr->compiled->scene;
-    const ConeStart everything = {.count = 0};
     float transmittance = 1;
-    Radiance out = {trace_skins(tr, cone, &everything, hit ? hit->t : VTS_INFINITY, &transmittance), 1 - transmittance};
+    Radiance out = {matter_before(tr, cone, hit ? hit->t : VTS_INFINITY, &transmittance), 1 - transmittance};
     *reaching = transmittance;
     if (transmittance <= 0) return out;
     Air air = air_between(scene, &(Ray){cone->origin, cone->direction}, hit ? hit->t : VTS_INFINITY);
+    Vec3f behind;
     if (hit) {
-        out.color = vec3f_madd(out.color, air_over(&air, shade_surface(tr, cone, hit, transmittance), 1), transmittance);
+        SurfaceTracer surfaces = tracer_of_surfaces(tr);
+        Leg leg = surface_leg(cone);
+        leg.weight = transmittance;
+        behind = surface_radiance(&surfaces, &leg, hit);
         out.alpha = 1;
     } else {
-        out.color = vec3f_madd(out.color, air_over(&air, sky_radiance(scene, cone->direction, cone->spread), 1), transmittance);
+        behind = sky_radiance(scene, cone->direction, cone->spread);
     }
+    out.color = vec3f_madd(out.color, air_over(&air, behind, 1), transmittance);
     return out;
 }

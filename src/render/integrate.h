@@ -8,6 +8,7 @@
 #include "render/film.h"
 #include "render/lighting.h"
 #include "render/skin_light.h"
+#include "render/surface.h"
 
 enum { MOST_SHADE_RECORDS = 256 };
 
@@ -39,6 +40,9 @@ typedef struct ConeStart {
 } ConeStart;
 
 void tracer_init(Tracer *tracer, const CompiledScene *compiled, Arena *arena);
+
+/* Surfaces whose mirrors show the tracer's skins. */
+SurfaceTracer tracer_of_surfaces(Tracer *tracer);
 
 /* `hit` (NULL: nothing) is the nearest explicit surface on the cone's axis. *reaching gets the share of the light from
  * there that is not hidden by skins. */

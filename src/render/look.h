@@ -12,6 +12,8 @@ typedef struct Look {
     bool uniform;             /* one colour: `color` */
     Vec3f color;
     const Texture *texture;   /* never NULL */
+    bool opaque;              /* light passes it nowhere */
+    bool plain;               /* opaque, mirrors nothing, one layer: no line of sight goes on from it */
 } Look;
 
 Look look_from_texture(const Texture *texture, const GlobalSettings *settings);

@@ -1,0 +1,273 @@
+#include "render/surface.h"
+
+#include "base/random.h"
+#include "pattern/pattern.h"
+
+enum { MOST_PARTS = 4, MOST_LAYERS = 12, DEEPEST_LEGS = 256, MOST_STRAIGHT = 4096 };
+/* Rays begin so far from their surface: some steps of the hierarchy's floats, and of doubles. */
+static double clearance(const SurfaceTracer *tracer, Vec3 point, double t) {
+    return 1e-6 * vec3_length(vec3_sub(point, hierarchy_origin(tracer->compiled->hierarchy))) + 1e-12 * vec3_length(point) + 1e-9 * t;
+}
+/* Indices of refraction that differ by less leave a ray straight. */
+static const double SAME_INDEX = 1e-6;
+/* Light that would make less than this in the eye is taken as unshadowed. */
+static const float SHADOW_WORTH = 1.0f / 2048;
+
+static Vec3f follow(SurfaceTracer *tracer, Leg *leg, const SurfaceHit *first);
+
+static float most_of(Vec3f c) { return float_max(c.x, float_max(c.y, c.z)); }
+static float grey_of(Vec3f c) { return 0.297f * c.x + 0.589f * c.y + 0.114f * c.z; }
+
+Leg surface_leg(const Cone *cone) { return (Leg){.cone = *cone, .clear = 1e-9, .purpose = RAY_SEES, .weight = 1, .wave = -1}; }
+
+/* A place where a leg has met a surface. */
+typedef struct Meeting {
+    const Leg *leg;
+    const SurfaceHit *hit;
+    Vec3 point;
+    double width, clear;     /* of the cone there; how near to it nothing is met */
+    uint64_t seed;
+    const TexturePart *part; /* of its texture, that is being looked at */
+    SurfaceLayer layers[MOST_LAYERS];
+    int layer_count;
+    Vec3f through;           /* what all layers let through */
+} Meeting;
+
+/* What a surface makes of a leg: light, and the share with which the leg goes on straight (0: it ends). */
+typedef struct Outcome {
+    Vec3f light, straight;
+} Outcome;
+
+static Vec3f rgb_of(Color c) { return vec3f((float)c.red, (float)c.green, (float)c.blue); }
+
+/* ---- the indices of refraction on both sides ---- */
+
+static double index_of(const Leg *leg, const Interior *interior) {
+    if (leg->wave < 0 || interior->dispersion == 1) return interior->ior;
+    int samples = interior->dispersion_samples;
+    return interior->ior * pow(interior->dispersion, (leg->wave + 0.5) / samples - 0.5);
+}
+
+static double outermost_but(const Leg *leg, int but) {
+    for (int i = leg->enclosure_count - 1; i >= 0; i--)
+        if (i != but) return index_of(leg, leg->enclosures[i].interior);
+    return 1;
+}
+
+/* Behind the surface over before it. */
+static double index_ratio(const Leg *leg, const SurfaceHit *hit) {
+    if (!hit->interior) return 1;
+    int at = surface_enclosure(leg->enclosures, leg->enclosure_count, hit);
+    double own = index_of(leg, hit->interior);
+    return at < 0 ? own / outermost_but(leg, -1) : outermost_but(leg, at) / own;
+}
+
+/* ---- layers ---- */
+
+static void read_layers(Meeting *m, float bailout) {
+    Vec3f above = {1, 1, 1};
+    const SurfaceHit *hit = m->hit;
+    m->layer_count = 0;
+    for (const Texture *layer = m->part->texture; layer && m->layer_count < MOST_LAYERS; layer = layer->under) {
+        SurfaceLayer *seen = &m->layers[m->layer_count++];
+        Vec3 normal = texture_layer_normal(m->part, layer, hit->normal);
+        Color c = texture_layer_color(m->part, layer, normal);
+        *seen = (SurfaceLayer){layer->finish, normal, rgb_of(c), above, (float)(1 - c.filter - c.transmit)};
+        float filter = (float)c.filter, transmit = (float)c.transmit;
+        above = vec3f_mul(above, vec3f(filter * seen->color.x + transmit, filter * seen->color.y + transmit, filter * seen->color.z + transmit));
+        if (layer->finish->conserve_energy) {
+            double cosine = fabs(vec3_dot(normal, m->leg->cone.direction));
+            Vec3f mirrored = surface_reflectivity(layer->finish, seen->color, cosine, index_ratio(m->leg, hit));
+            above = vec3f_mul(above, vec3f_sub(vec3f(1, 1, 1), mirrored));
+        }
+        if (fabsf(grey_of(above)) <= bailout) break;
+    }
+    m->through = fabsf(grey_of(above)) > bailout ? above : vec3f(0, 0, 0);
+    if (hit->interior && surface_enclosure(m->leg->enclosures, m->leg->enclosure_count, hit) >= 0)
+        m->through = vec3f_mul(m->through, surface_faded(hit->interior, hit->t));
+}
+
+/* ---- light of its own and from lights ---- */
+
+static Vec3f own_light(const SurfaceTracer *tracer, const Meeting *m) {
+    Vec3f sum = {0, 0, 0}, everywhere = rgb_of(tracer->compiled->scene->settings.ambient_light);
+    for (int i = 0; i < m->layer_count; i++) {
+        const SurfaceLayer *layer = &m->layers[i];
+        Vec3f glow = vec3f_add(vec3f_mul(rgb_of(layer->finish->ambient), everywhere), rgb_of(layer->finish->emission));
+        sum = vec3f_madd(sum, vec3f_mul(vec3f_mul(glow, layer->color), layer->above), layer->opaque);
+    }
+    return sum;
+}
+
+static Vec3f light_from(SurfaceTracer *tracer, const Meeting *m, size_t number) {
+    const Scene *scene = tracer->compiled->scene;
+    const Light *light = &scene->lights[number];
+    LightRay way = light_ray(light, m->point);
+    Vec3f sum = {0, 0, 0};
+    if (!(most_of(way.color) > 0)) return sum;
+    bool both_sides = m->hit->solid && m->hit->solid->double_illuminate;
+    for (int i = 0; i < m->layer_count; i++) {
+        Vec3f one = surface_layer_light(&m->layers[i], m->leg->cone.direction, way.direction, both_sides, scene->settings.irid_wavelength,
+                                        random_mix(m->seed + number));
+        sum = vec3f_add(sum, one);
+    }
+    sum = vec3f_mul(sum, way.color);
+    if (sum.x == 0 && sum.y == 0 && sum.z == 0) return sum;
+    if (m->leg->weight * most_of(sum) < SHADOW_WORTH) return sum;
+    double side = vec3_dot(way.direction, m->hit->flat) > 0 ? m->clear : -m->clear;
+    Vec3 from = vec3_madd(m->point, m->hit->flat, side);
+    return vec3f_mul(sum, surface_shadow(tracer, light, &way, m->leg, from, m->clear, random_mix(m->seed ^ (number << 8))));
+}
+
+/* ---- further legs ---- */
+
+static Leg leg_from(const Meeting *m, Vec3 direction, float share) {
+    Leg leg = *m->leg;
+    double side = vec3_dot(direction, m->hit->flat) > 0 ? m->clear : -m->clear;
+    leg.cone = (Cone){vec3_madd(m->point, m->hit->flat, side), direction, m->width, m->leg->cone.spread};
+    leg.clear = m->clear;
+    leg.weight *= share;
+    return leg;
+}
+
+static Vec3f mirrored_light(SurfaceTracer *tracer, const Meeting *m, Vec3 normal, float share) {
+    Leg leg = leg_from(m, surface_mirrored(m->leg->cone.direction, normal, m->hit->flat), share);
+    leg.purpose = RAY_MIRRORS;
+    return follow(tracer, &leg, NULL);
+}
+
+static float power_of(float x, double exponent) { return x > 0 ? (float)pow((double)x, exponent) : 0; }
+
+static Vec3f mirror(SurfaceTracer *tracer, const Meeting *m, bool all_of_it) {
+    Vec3f sum = {0, 0, 0};
+    float bailout = (float)tracer->compiled->scene->settings.adc_bailout;
+    for (int i = 0; i < m->layer_count; i++) {
+        const SurfaceLayer *layer = &m->layers[i];
+        const Finish *f = layer->finish;
+        const Color *high = &f->reflection_max, *low = &f->reflection_min;
+        if (high->red + high->green + high->blue == 0 && low->red + low->green + low->blue == 0) continue;
+        /* Where glass has reflected all, the mirror would be a second one. */
+        if (all_of_it && vec3_length_squared(vec3_sub(layer->normal, m->layers[0].normal)) < 1e-12) continue;
+        double cosine = fabs(vec3_dot(layer->normal, m->leg->cone.direction));
+        Vec3f share = surface_reflectivity(f, layer->color, cosine, index_ratio(m->leg, m->hit));
+        share = vec3f_mul(share, layer->above);
+        if (!(m->leg->weight * most_of(share) > bailout)) continue;
+        Vec3f light = mirrored_light(tracer, m, layer->normal, most_of(share));
+        double exponent = f->reflection_exponent > 0 ? 1 / f->reflection_exponent : 1;
+        if (exponent != 1) light = vec3f(power_of(light.x, exponent), power_of(light.y, exponent), power_of(light.z, exponent));
+        sum = vec3f_add(sum, vec3f_mul(light, share));
+    }
+    return sum;
+}
+
+/* What comes bent, or all reflected, through the surface. */
+static Vec3f bent_light(SurfaceTracer *tracer, const Meeting *m, double ratio, bool *all_of_it) {
+    Vec3 direction, normal = m->layers[0].normal;
+    if (vec3_dot(normal, m->leg->cone.direction) > 0) normal = vec3_negate(normal);
+    if (!surface_bent(m->leg->cone.direction, normal, 1 / ratio, &direction)) {
+        *all_of_it = true;
+        return mirrored_light(tracer, m, normal, most_of(m->through));
+    }
+    Leg leg = leg_from(m, direction, most_of(m->through));
+    surface_cross(leg.enclosures, &leg.enclosure_count, m->hit);
+    return follow(tracer, &leg, NULL);
+}
+
+static Outcome see_part(SurfaceTracer *tracer, Meeting *m) {
+    const Scene *scene = tracer->compiled->scene;
+    Outcome out = {{0, 0, 0}, {0, 0, 0}};
+    bool all_of_it = false;
+    read_layers(m, (float)scene->settings.adc_bailout);
+    out.light = own_light(tracer, m);
+    for (size_t l = 0; l < scene->light_count; l++) out.light = vec3f_add(out.light, light_from(tracer, m, l));
+    if (m->through.x != 0 || m->through.y != 0 || m->through.z != 0) {
+        double ratio = index_ratio(m->leg, m->hit);
+        if (fabs(ratio - 1) < SAME_INDEX) out.straight = m->through;
+        else out.light = vec3f_add(out.light, vec3f_mul(m->through, bent_light(tracer, m, ratio, &all_of_it)));
+    }
+    out.light = vec3f_add(out.light, mirror(tracer, m, all_of_it));
+    return out;
+}
+
+static const Texture *texture_met(const SurfaceHit *hit) {
+    const ObjectRest *rest = hit->solid ? hit->solid->rest : NULL;
+    return hit->leaving && rest && rest->interior_texture ? rest->interior_texture : hit->look->texture;
+}
+
+static Outcome see_surface(SurfaceTracer *tracer, const Leg *leg, const SurfaceHit *hit) {
+    Vec3 point = cone_point(&leg->cone, hit->t), direction = leg->cone.direction;
+    double width = cone_diameter(&leg->cone, hit->t), facing = fmax(0.05, fabs(vec3_dot(hit->normal, direction)));
+    Vec3 across = vec3_normalize(vec3_cross(hit->normal, direction)), along = vec3_cross(hit->normal, across);
+    if (vec3_length_squared(across) == 0) vec3_frame(hit->normal, &across, &along);
+    SurfacePlace place = {.point = point, .normal = hit->normal, .footprint = width / facing, .space = &hit->space,
+                          .axes = {vec3_scale(along, width / facing), vec3_scale(across, width)},
+                          .surface = {.direction = direction, .uv = {hit->uv.u, hit->uv.v}}};
+    TexturePart parts[MOST_PARTS];
+    size_t count = texture_parts(texture_met(hit), &place, parts, MOST_PARTS);
+    Meeting m = {.leg = leg, .hit = hit, .point = point, .width = width, .clear = clearance(tracer, point, hit->t),
+                 .seed = random_mix(tracer->seed + (uint64_t)leg->level)};
+    Outcome out = {{0, 0, 0}, {0, 0, 0}};
+    for (size_t i = 0; i < count; i++) {
+        m.part = &parts[i];
+        Outcome one = see_part(tracer, &m);
+        out.light = vec3f_madd(out.light, one.light, (float)parts[i].weight);
+        out.straight = vec3f_madd(out.straight, one.straight, (float)parts[i].weight);
+    }
+    return out;
+}
+
+/* ---- legs ---- */
+
+/* What is seen along the leg up to t, before `behind` shows: adds it and dims that. False when nothing more is seen. */
+static bool gather_before(SurfaceTracer *tracer, const Leg *leg, double t, Vec3f *sum, Vec3f *through) {
+    if (tracer->matter) {
+        float transmittance = 1;
+        Vec3f matter = tracer->matter(tracer->skins, &leg->cone, t, &transmittance);
+        *sum = vec3f_add(*sum, vec3f_mul(matter, *through));
+        *through = vec3f_scale(*through, transmittance);
+        if (transmittance <= 0) return false;
+    }
+    Air air = air_between(tracer->compiled->scene, &(Ray){leg->cone.origin, leg->cone.direction}, t);
+    *sum = vec3f_add(*sum, vec3f_mul(*through, air.add));
+    *through = vec3f_mul(*through, air.keep);
+    return true;
+}
+
+/* Light along the leg and on straight through what is clear. `first` was met already, and what is before it taken care of. */
+static Vec3f follow(SurfaceTracer *tracer, Leg *leg, const SurfaceHit *first) {
+    const CompiledScene *compiled = tracer->compiled;
+    const GlobalSettings *settings = &compiled->scene->settings;
+    Vec3f sum = {0, 0, 0}, through = {1, 1, 1};
+    int deepest = int_min(settings->max_trace_level, DEEPEST_LEGS);
+    for (int i = 0; i < MOST_STRAIGHT; i++) {
+        SurfaceHit hit;
+        if (first) {
+            hit = *first;
+            first = NULL;
+        } else {
+            if (leg->level >= deepest || leg->weight < (float)settings->adc_bailout) return sum;
+            const Ray ray = {leg->cone.origin, leg->cone.direction};
+            bool found = hierarchy_meet(compiled->hierarchy, leg->purpose, &ray, leg->clear, VTS_INFINITY, &hit);
+            tracer->counters->camera_rays++;
+            if (i == 0) leg->level++; /* but where it goes on straight */
+            if (!gather_before(tracer, leg, found ? hit.t : VTS_INFINITY, &sum, &through)) return sum;
+            if (!found) return vec3f_add(sum, vec3f_mul(through, sky_radiance(compiled->scene, ray.direction, leg->cone.spread)));
+        }
+        Outcome seen = see_surface(tracer, leg, &hit);
+        sum = vec3f_add(sum, vec3f_mul(through, seen.light));
+        if (seen.straight.x == 0 && seen.straight.y == 0 && seen.straight.z == 0) return sum;
+        through = vec3f_mul(through, seen.straight);
+        Vec3 point = cone_point(&leg->cone, hit.t);
+        leg->clear = clearance(tracer, point, hit.t);
+        leg->cone = (Cone){point, leg->cone.direction, cone_diameter(&leg->cone, hit.t), leg->cone.spread};
+        leg->weight *= most_of(seen.straight);
+        surface_cross(leg->enclosures, &leg->enclosure_count, &hit);
+    }
+    return sum;
+}
+
+Vec3f surface_radiance(SurfaceTracer *tracer, const Leg *first, const SurfaceHit *hit) {
+    Leg leg = *first;
+    leg.level = 1;
+    return follow(tracer, &leg, hit);
+}

@@ -1,0 +1,84 @@
+/* Explicit surfaces in full, as POV-Ray 3.7 has them: what lights, mirrors and glass make of a line of sight. Where skins stand in the
+ * scene, mirrors show them and they dim what passes. */
+#ifndef VTS_RENDER_SURFACE_H
+#define VTS_RENDER_SURFACE_H
+
+#include "render/compile.h"
+#include "render/lighting.h"
+
+/* An object that a ray is inside of. */
+typedef struct Enclosure {
+    const Interior *interior;
+    uint64_t filled; /* as SurfaceHit's */
+} Enclosure;
+enum { MOST_ENCLOSURES = 12 }; /* of more, the outermost are forgotten */
+
+/* One leg of a line of sight: from the eye, a mirror, or glass. */
+typedef struct Leg {
+    Cone cone;
+    double clear;       /* what is nearer is not met: where the leg begins */
+    RayPurpose purpose;
+    int level;          /* legs before it, and it once it was begun; going on straight through something clear does not count */
+    float weight;       /* the most that its light makes in the eye */
+    int wave;           /* which colour of a dispersed ray; -1: all */
+    int enclosure_count;
+    Enclosure enclosures[MOST_ENCLOSURES];
+} Leg;
+
+/* What one worker needs. */
+typedef struct SurfaceTracer {
+    const CompiledScene *compiled;
+    TraceCounters *counters;
+    uint64_t seed;      /* of what is sampled: for each line of sight anew */
+    /* Matter of skins: what a cone gathers of it before t_max, the air before it included, and what shows of the rest; NULL: none. */
+    Vec3f (*matter)(void *skins, const Cone *cone, double t_max, float *transmittance);
+    /* The share of light that passes it. */
+    float (*passing)(void *skins, const Cone *cone, double t_max);
+    void *skins;
+} SurfaceTracer;
+
+/* The first leg of a line of sight. */
+Leg surface_leg(const Cone *cone);
+
+/* What comes from the surface that the leg has met back along it: its own light, and what it mirrors and lets through. Without the air
+ * and matter before it. */
+Vec3f surface_radiance(SurfaceTracer *tracer, const Leg *leg, const SurfaceHit *hit);
+
+/* ---- surface_light.c: what a finish does with light ---- */
+
+/* A layer of a texture where a ray has met it. */
+typedef struct SurfaceLayer {
+    const Finish *finish;
+    Vec3 normal;     /* perturbed, unit */
+    Vec3f color;     /* of the pigment */
+    Vec3f above;     /* what the layers over it let through, of light that comes back */
+    float opaque;    /* 1 - filter - transmit: of diffuse light */
+} SurfaceLayer;
+
+/* What a layer sends along −view of light that comes from `to_light`, for each unit of it; `view` is the ray's direction.
+ * `both_sides`: of `double_illuminate`. `place`: where, for grain and thickness. */
+Vec3f surface_layer_light(const SurfaceLayer *layer, Vec3 view, Vec3 to_light, bool both_sides, Vec3 wavelengths, uint64_t seed);
+
+/* ---- surface_bend.c: directions and shares of what is mirrored and bent; pure ---- */
+
+Vec3 surface_mirrored(Vec3 direction, Vec3 normal, Vec3 flat);
+/* `ratio`: the index of refraction before over that behind. False where all is reflected. The normal is against the direction. */
+bool surface_bent(Vec3 direction, Vec3 normal, double ratio, Vec3 *out);
+/* Fresnel's equations for unpolarized light; `ratio`: the index behind over that before. */
+double surface_fresnel(double cosine, double ratio);
+/* The share that a finish mirrors of light under this angle. */
+Vec3f surface_reflectivity(const Finish *finish, Vec3f pigment, double cosine, double ratio);
+/* What is left of light that went so far in an interior. */
+Vec3f surface_faded(const Interior *interior, double distance);
+
+/* ---- surface_shadow.c ---- */
+
+/* The index of the enclosure that the surface bounds, or −1. */
+int surface_enclosure(const Enclosure *enclosures, int count, const SurfaceHit *hit);
+/* Steps over the surface: into its object, or out. */
+void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit);
+/* The share of a light's colours that comes to the point, `bias` beside which rays begin; `width` and `spread`: of the cone that saw it. */
+Vec3f surface_shadow(SurfaceTracer *tracer, const Light *light, const LightRay *ray, const Leg *leg, Vec3 point, double bias,
+                     uint64_t seed);
+
+#endif

@@ -1,0 +1,57 @@
+/* Diffuse light, highlights and thin layers by POV-Ray 3.7's formulas (its documentation, "Finish"; measured where that is silent). */
+#include "base/random.h"
+#include "render/surface.h"
+
+/* White highlights of plastic, coloured ones of metal: which whiten where the light grazes. */
+static Vec3f highlight_color(const Finish *finish, Vec3f pigment, double cosine) {
+    if (finish->metallic == 0) return vec3f(1, 1, 1);
+    double x = acos(double_clamp(cosine, -1, 1)) / (VTS_PI / 2), d = x - 1.12;
+    double white = double_clamp(0.014567225 / (d * d) - 0.011612903, 0, 1);
+    float metal = (float)(finish->metallic * (1 - white));
+    return vec3f(1 + metal * (pigment.x - 1), 1 + metal * (pigment.y - 1), 1 + metal * (pigment.z - 1));
+}
+
+static double highlight(const SurfaceLayer *layer, Vec3 view, Vec3 to_light) {
+    const Finish *f = layer->finish;
+    double sum = 0;
+    if (f->phong > 0) {
+        Vec3 mirrored = vec3_madd(view, layer->normal, -2 * vec3_dot(view, layer->normal));
+        double cosine = vec3_dot(mirrored, to_light), amount = f->phong;
+        if (f->phong_albedo) amount *= (f->phong_size + 1) / 2;
+        if (cosine > 0) sum += amount * pow(cosine, f->phong_size);
+    }
+    if (f->specular > 0) {
+        double cosine = vec3_dot(vec3_normalize(vec3_sub(to_light, view)), layer->normal), amount = f->specular, size = 1 / f->roughness;
+        if (f->specular_albedo) amount *= (size + 2) / (4 * (2 - exp2(-size / 2)));
+        if (cosine > 0) sum += amount * pow(cosine, size);
+    }
+    return sum;
+}
+
+/* Waves that a thin layer gives back from its top and from its bottom meet in step or against it. */
+static Vec3f thin_layer(const SurfaceLayer *layer, Vec3 view, double cosine, Vec3 wavelengths) {
+    const Finish *f = layer->finish;
+    double phase = 4 * VTS_PI * f->irid_thickness * (cosine - vec3_dot(view, layer->normal)), amount = f->irid * cosine;
+    Vec3 w = wavelengths;
+    return vec3f((float)(amount * (1 - w.x * cos(phase / w.x))), (float)(amount * (1 - w.y * cos(phase / w.y))),
+                 (float)(amount * (1 - w.z * cos(phase / w.z))));
+}
+
+Vec3f surface_layer_light(const SurfaceLayer *layer, Vec3 view, Vec3 to_light, bool both_sides, Vec3 wavelengths, uint64_t seed) {
+    const Finish *f = layer->finish;
+    double cosine = vec3_dot(layer->normal, to_light);
+    bool back = cosine <= 0 && !both_sides;
+    double amount = back ? f->transmission : f->diffuse;
+    if (back && amount == 0) return vec3f(0, 0, 0);
+    double lambert = f->brilliance == 1 ? fabs(cosine) : pow(fabs(cosine), f->brilliance);
+    if (f->diffuse_albedo) amount *= (f->brilliance + 1) / 2;
+    double diffuse = amount * lambert * (double)layer->opaque;
+    if (f->crand > 0) diffuse -= f->crand * random_unit(seed);
+    Vec3f sum = vec3f_scale(layer->color, (float)diffuse);
+    if (!back && (f->phong > 0 || f->specular > 0)) {
+        double bright = highlight(layer, view, to_light);
+        if (bright > 0) sum = vec3f_madd(sum, highlight_color(f, layer->color, cosine), (float)bright);
+    }
+    if (!back && f->irid > 0) sum = vec3f_add(sum, thin_layer(layer, view, cosine, wavelengths));
+    return vec3f_mul(sum, layer->above);
+}

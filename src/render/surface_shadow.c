@@ -1,0 +1,115 @@
+#include "base/random.h"
+#include "pattern/pattern.h"
+#include "render/surface.h"
+
+static float most_of(Vec3f c) { return float_max(c.x, float_max(c.y, c.z)); }
+
+int surface_enclosure(const Enclosure *enclosures, int count, const SurfaceHit *hit) {
+    for (int i = count - 1; i >= 0; i--)
+        if (enclosures[i].interior == hit->interior && enclosures[i].filled == hit->filled) return i;
+    return -1;
+}
+
+void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit) {
+    if (!hit->interior) return;
+    int at = surface_enclosure(enclosures, *count, hit);
+    if (at < 0 && *count == MOST_ENCLOSURES) at = 0; /* makes room */
+    bool entering = at < 0 || surface_enclosure(enclosures, *count, hit) < 0;
+    if (at >= 0) {
+        for (int i = at; i + 1 < *count; i++) enclosures[i] = enclosures[i + 1];
+        --*count;
+    }
+    if (entering) enclosures[(*count)++] = (Enclosure){hit->interior, hit->filled};
+}
+
+/* What a surface lets through of light: of each layer filter × pigment + transmit. */
+static Vec3f filtered(const Texture *texture, const Ray *ray, const SurfaceHit *hit) {
+    SurfacePlace place = {.point = vec3_madd(ray->origin, ray->direction, hit->t), .normal = hit->normal, .space = &hit->space,
+                          .surface = {.direction = ray->direction, .uv = {hit->uv.u, hit->uv.v}}};
+    enum { MOST_PARTS = 4 };
+    TexturePart parts[MOST_PARTS];
+    size_t count = texture_parts(texture, &place, parts, MOST_PARTS);
+    Vec3f sum = {0, 0, 0};
+    for (size_t i = 0; i < count; i++) {
+        Vec3f through = {1, 1, 1};
+        for (const Texture *layer = parts[i].texture; layer && most_of(through) > 0; layer = layer->under) {
+            Color c = texture_layer_color(&parts[i], layer, hit->normal);
+            through = vec3f_mul(through, vec3f((float)(c.filter * c.red + c.transmit), (float)(c.filter * c.green + c.transmit),
+                                               (float)(c.filter * c.blue + c.transmit)));
+        }
+        sum = vec3f_madd(sum, through, (float)parts[i].weight);
+    }
+    return sum;
+}
+
+/* Light through everything clear on the way, of which there may be much; nothing more than so much is followed. */
+enum { MOST_CLEAR = 1000 };
+
+static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from, double distance, const Leg *leg) {
+    const CompiledScene *compiled = tracer->compiled;
+    Vec3f through = {1, 1, 1};
+    Enclosure enclosures[MOST_ENCLOSURES];
+    int count = leg->enclosure_count;
+    double bailout = compiled->scene->settings.adc_bailout, begun = 0;
+    for (int i = 0; i < count; i++) enclosures[i] = leg->enclosures[i];
+    for (int i = 0; i < MOST_CLEAR; i++) {
+        SurfaceHit hit;
+        if (!hierarchy_meet(compiled->hierarchy, RAY_SHADOWS, ray, from, distance, &hit)) return through;
+        if (hit.look->opaque) break;
+        through = vec3f_mul(through, filtered(hit.look->texture, ray, &hit));
+        if (hit.interior && surface_enclosure(enclosures, count, &hit) >= 0)
+            through = vec3f_mul(through, surface_faded(hit.interior, hit.t - begun));
+        if (hit.interior && hit.interior->caustics != 0)
+            through = vec3f_scale(through, (float)(1 + pow(fabs(vec3_dot(hit.normal, ray->direction)), hit.interior->caustics)));
+        surface_cross(enclosures, &count, &hit);
+        if (most_of(through) < (float)bailout) break;
+        begun = hit.t;
+        from = hit.t * (1 + 1e-9) + leg->clear;
+    }
+    return vec3f(0, 0, 0);
+}
+
+static Vec3f one_way(SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, double clear, double width) {
+    const CompiledScene *compiled = tracer->compiled;
+    Vec3f through = {1, 1, 1};
+    tracer->counters->shadow_rays++;
+    if (compiled->clear_shadows) through = clear_way(tracer, ray, clear, distance, leg);
+    else if (hierarchy_occluded(compiled->hierarchy, ray, clear, distance)) return vec3f(0, 0, 0);
+    if (!tracer->passing || most_of(through) <= 0) return through;
+    double aperture = compiled->shadow_aperture;
+    Cone cone = {ray->origin, ray->direction, width * aperture, leg->cone.spread * aperture};
+    return vec3f_scale(through, tracer->passing(tracer->skins, &cone, distance));
+}
+
+/* Of a light with an area: a few places of it at first, and many where these do not agree. */
+enum { FEW_PLACES = 2, MANY_PLACES = 4 };
+
+static Vec3f mean_of_places(SurfaceTracer *tracer, const Light *light, const Leg *leg, Vec3 point, double clear, double width, int n,
+                            uint64_t seed, bool *agreed) {
+    Vec3f sum = {0, 0, 0}, first = {0, 0, 0};
+    *agreed = true;
+    double shift_u = random_unit(random_mix(seed)), shift_v = random_unit(random_mix(seed + 1));
+    for (int i = 0; i < n * n; i++) {
+        double u = (i % n + shift_u) / n, v = (i / n + shift_v) / n;
+        LightRay way = light_ray_from(light, point, light_place(light, point, u, v));
+        Ray ray = {point, way.direction};
+        Vec3f one = one_way(tracer, &ray, way.distance, leg, clear, width);
+        if (i == 0) first = one;
+        else *agreed &= most_of(vec3f_sub(one, first)) < 0.01f && most_of(vec3f_sub(first, one)) < 0.01f;
+        sum = vec3f_add(sum, one);
+    }
+    return vec3f_scale(sum, 1 / (float)(n * n));
+}
+
+Vec3f surface_shadow(SurfaceTracer *tracer, const Light *light, const LightRay *way, const Leg *leg, Vec3 point, double clear,
+                     uint64_t seed) {
+    if (light->shadowless) return vec3f(1, 1, 1);
+    double width = cone_diameter(&leg->cone, vec3_length(vec3_sub(point, leg->cone.origin)));
+    if (!light_is_area(light)) {
+        Ray ray = {point, way->direction};
+        return one_way(tracer, &ray, way->distance, leg, clear, width);
+    }
+    bool agreed;
+    Vec3f mean = mean_of_places(tracer, light, leg, point, clear, width, FEW_PLACES, seed, &agreed);
+    return agreed ? mean : mean_of_places(tracer, light, leg, point, clear, width, MANY_PLACES, seed + 2, &agreed);
+}

@@ -18,6 +18,8 @@ typedef struct Item {
     const Object *filled;        /* the object around it that has an interior, in the cluster; or NULL */
     const Body *body;            /* NULL for the plain solids of intersect.h and for copies */
     const Cluster *cluster;      /* what it is a copy of; or NULL */
+    const Look *inside;          /* of its surface seen from within; or NULL */
+    bool both_sides;             /* lights shine on both */
     uint8_t hidden;              /* bit 1 << RayPurpose: rays that pass */
     Affine back;                 /* cluster → its own space */
 } Item;

@@ -78,7 +78,9 @@ typedef struct Inherited {
     const Look *look;
     const Transform *look_place;
     const Object *filled;
+    const Look *inside;
     uint8_t hidden;
+    bool both_sides;
 } Inherited;
 
 static const Look *look_of(Builder *b, const Texture *texture) {
@@ -126,7 +128,8 @@ static Cluster *new_cluster(Builder *b) {
 
 static Item new_item(const Object *object, const Transform *place, const Inherited *has) {
     const Transform back = transform_inverse(place);
-    return (Item){.object = object, .look = has->look, .look_place = has->look_place, .filled = has->filled, .hidden = has->hidden,
+    return (Item){.object = object, .look = has->look, .look_place = has->look_place, .filled = has->filled, .inside = has->inside,
+                  .hidden = has->hidden, .both_sides = has->both_sides,
                   .back = {back.linear, back.offset}};
 }
 
@@ -274,7 +277,8 @@ static void add_surface(Builder *b, Cluster *cluster, const Object *object, cons
 /* ---- the tree of objects ---- */
 
 static uint8_t hidden_from(const Object *object) {
-    return (uint8_t)((object->no_image ? 1 << RAY_SEES : 0) | (object->no_shadow ? 1 << RAY_SHADOWS : 0));
+    return (uint8_t)((object->no_image ? 1 << RAY_SEES : 0) | (object->no_shadow ? 1 << RAY_SHADOWS : 0) |
+                     (object->no_reflection ? 1 << RAY_MIRRORS : 0));
 }
 
 static void add_object(Builder *b, Cluster *cluster, const Object *object, const Transform *parent, const Inherited *outer);
@@ -310,6 +314,9 @@ static void add_object(Builder *b, Cluster *cluster, const Object *object, const
     if (transform_is_singular(&place)) return;
     if (object->texture) has.look = look_of(b, object->texture), has.look_place = NULL;
     has.hidden |= hidden_from(object);
+    has.both_sides |= object->double_illuminate;
+    if (object->rest && object->rest->interior) has.filled = object;
+    if (object->rest && object->rest->interior_texture) has.inside = look_of(b, object->rest->interior_texture);
     bool set = object_clipped_by(object).count || object_bounded_by(object).count;
     switch (object->kind) {
     case OBJECT_UNION:

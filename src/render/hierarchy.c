@@ -393,6 +393,17 @@ static void find_interior(const Found *found, SurfaceHit *out) {
     out->filled = filled ? random_mix(path_number(found, depth) ^ (uintptr_t)filled) : 0;
 }
 
+/* What all copies and sets around the surface say of it. */
+static void find_sides(const Found *found, SurfaceHit *out) {
+    const Look *inside = NULL;
+    out->both_sides = out->solid->double_illuminate;
+    for (int i = found->depth - 1; i >= 0; i--) {
+        if (!inside) inside = found->path[i]->inside;
+        out->both_sides |= found->path[i]->both_sides;
+    }
+    if (inside && out->leaving) out->look = inside;
+}
+
 static void finish_hit(const Hierarchy *h, Found *found, const Ray *ray, SurfaceHit *out) {
     const Item *item = found->path[found->depth - 1];
     if (found->cluster) triangle_normals(found);
@@ -411,6 +422,7 @@ static void finish_hit(const Hierarchy *h, Found *found, const Ray *ray, Surface
     out->uv = (TexCoord){0, 0};
     find_interior(found, out);
     find_look(h, found, out);
+    find_sides(found, out);
 }
 
 static bool meet(const Hierarchy *h, RayPurpose purpose, bool any, const Ray *ray, double t_min, double t_max, Found *found) {

@@ -24,6 +24,7 @@ typedef struct SurfaceHit {
     bool leaving;      /* the ray comes out of the solid's inside; of sheets: meets their back */
     const Object *solid; /* whose surface it is, within sets and copies */
     const struct Interior *interior; /* what fills it, its own or of a set around it; or NULL */
+    bool both_sides;   /* lights shine on both of its sides */
     uint64_t filled;   /* tells the object that has that interior from its copies */
 } SurfaceHit;
 

@@ -105,9 +105,8 @@ static Vec3f light_from(SurfaceTracer *tracer, const Meeting *m, size_t number) 
     LightRay way = light_ray(light, m->point);
     Vec3f sum = {0, 0, 0};
     if (!(most_of(way.color) > 0)) return sum;
-    bool both_sides = m->hit->solid && m->hit->solid->double_illuminate;
     for (int i = 0; i < m->layer_count; i++) {
-        Vec3f one = surface_layer_light(&m->layers[i], m->leg->cone.direction, way.direction, both_sides, scene->settings.irid_wavelength,
+        Vec3f one = surface_layer_light(&m->layers[i], m->leg->cone.direction, way.direction, m->hit->both_sides, scene->settings.irid_wavelength,
                                         random_mix(m->seed + number));
         sum = vec3f_add(sum, one);
     }
@@ -189,11 +188,6 @@ static Outcome see_part(SurfaceTracer *tracer, Meeting *m) {
     return out;
 }
 
-static const Texture *texture_met(const SurfaceHit *hit) {
-    const ObjectRest *rest = hit->solid ? hit->solid->rest : NULL;
-    return hit->leaving && rest && rest->interior_texture ? rest->interior_texture : hit->look->texture;
-}
-
 static Outcome see_surface(SurfaceTracer *tracer, const Leg *leg, const SurfaceHit *hit) {
     Vec3 point = cone_point(&leg->cone, hit->t), direction = leg->cone.direction;
     double width = cone_diameter(&leg->cone, hit->t), facing = fmax(0.05, fabs(vec3_dot(hit->normal, direction)));
@@ -203,7 +197,7 @@ static Outcome see_surface(SurfaceTracer *tracer, const Leg *leg, const SurfaceH
                           .axes = {vec3_scale(along, width / facing), vec3_scale(across, width)},
                           .surface = {.direction = direction, .uv = {hit->uv.u, hit->uv.v}}};
     TexturePart parts[MOST_PARTS];
-    size_t count = texture_parts(texture_met(hit), &place, parts, MOST_PARTS);
+    size_t count = texture_parts(hit->look->texture, &place, parts, MOST_PARTS);
     Meeting m = {.leg = leg, .hit = hit, .point = point, .width = width, .clear = clearance(tracer, point, hit->t),
                  .seed = random_mix(tracer->seed + (uint64_t)leg->level)};
     Outcome out = {{0, 0, 0}, {0, 0, 0}};

@@ -147,10 +147,7 @@ static Vec3 moved_normal(const Transform *place, Vec3 normal) {
     return place ? vec3_normalize(transform_normal(place, normal)) : normal;
 }
 
-static bool object_is_filled(const Object *object) {
-    (void)object;
-    return false;
-}
+static bool object_is_filled(const Object *object) { return object->rest && object->rest->interior; }
 
 /* What the objects around the surface add, from the inside out. */
 static void walk_trail(const Trail *trail, BodyHit *hit) {

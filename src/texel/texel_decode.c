@@ -2,6 +2,7 @@
 #include "texel/texel_content.h"
 #include "texel/texel_format.h"
 #include "texel/voxel_layer.h"
+#include "texel/voxel_trim.h"
 
 #include <stdarg.h>
 #include <stdlib.h>
@@ -62,7 +63,8 @@ static const char *section_name(uint32_t kind) {
                                         [SECTION_LOOK] = "look",
                                         [SECTION_INDEX] = "index",
                                         [SECTION_SLICES] = "block of masks",
-                                        [SECTION_CODES] = "block of voxels"};
+                                        [SECTION_CODES] = "block of voxels",
+                                        [SECTION_TRIM] = "table of factors"};
     return kind < VTS_ARRAY_COUNT(names) && names[kind] ? names[kind] : "section";
 }
 
@@ -242,6 +244,22 @@ static bool read_codes(FormatReader *r, VoxelLayer *layer, size_t number, int l)
     return voxel_level_mark_support(layer, level) || lack_memory(r);
 }
 
+/* Factors of coarse levels, if the file has any. */
+static bool read_trim(FormatReader *r, VoxelLayer *layer, size_t number) {
+    FormatSection next;
+    if (r->next >= r->header.section_count) return true;
+    memcpy(&next, r->data + sizeof(FormatHeader) + (size_t)r->next * sizeof next, sizeof next);
+    if (next.kind != SECTION_TRIM) return true;
+    const unsigned char *at = open_section(r, SECTION_TRIM, number, 0);
+    if (!at) return false;
+    if (r->section.size != sizeof layer->trim) return refuse_section(r, "has not the size that it should have");
+    memcpy(layer->trim, at, sizeof layer->trim);
+    const float *factors = layer->trim[0];
+    for (size_t i = 0; i < sizeof layer->trim / sizeof(float); i++)
+        if (!(factors[i] >= TRIM_LEAST && factors[i] <= TRIM_MOST)) return refuse_section(r, "holds what it should not");
+    return true;
+}
+
 static bool read_voxels(FormatReader *r, const FormatTexel *texel, size_t number,
                         const TexelBuildOptions *options, TexelFileLayer *out) {
     VoxelLayer *layer = out->voxels = voxel_layer_create(options);
@@ -254,7 +272,7 @@ static bool read_voxels(FormatReader *r, const FormatTexel *texel, size_t number
         if (!read_index(r, layer, number, l) || !read_slices(r, layer, number, l) ||
             !read_codes(r, layer, number, l))
             return false;
-    return true;
+    return read_trim(r, layer, number);
 }
 
 static bool read_file(FormatReader *r, MemoryBudget *memory, TexelFile *out) {

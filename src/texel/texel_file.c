@@ -4,6 +4,7 @@
 #include "image/whole_file.h"
 #include "texel/texel_format.h"
 #include "texel/voxel_layer.h"
+#include "texel/voxel_trim.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -78,12 +79,20 @@ static void write_level(Writer *w, const VoxelLevel *level, size_t layer, int nu
     end_section(w);
 }
 
+static void write_trim(Writer *w, const VoxelLayer *voxels, size_t layer) {
+    if (!voxel_layer_is_trimmed(voxels)) return;
+    begin_section(w, SECTION_TRIM, layer, 0);
+    add_bytes(w, voxels->trim, sizeof voxels->trim);
+    end_section(w);
+}
+
 static void write_sections(Writer *w, const TexelFile *file) {
     write_texel(w, file);
     for (size_t i = 0; i < file->layer_count; i++) {
         const VoxelLayer *voxels = file->layers[i].voxels;
         write_look(w, &file->layers[i], i);
         for (int l = 0; l < voxels->levels; l++) write_level(w, &voxels->level[l], i, l);
+        write_trim(w, voxels, i);
     }
 }
 

@@ -25,7 +25,8 @@ typedef enum SectionKind {
     SECTION_LOOK,
     SECTION_INDEX,
     SECTION_SLICES,
-    SECTION_CODES
+    SECTION_CODES,
+    SECTION_TRIM
 } SectionKind;
 enum { SECTIONS_PER_LEVEL = 3 };
 

@@ -1,6 +1,7 @@
 #include "texel/texel_sky.h"
 
 #include "texel/voxel_layer.h"
+#include "texel/voxel_trim.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -77,8 +78,9 @@ static float depth_of_step(const SkyBuild *b, float lod, Vec3f at, Vec3f step) {
     for (size_t i = 0; i < b->count; i++) {
         VoxelSample v;
         if (!voxel_layer_sample_lod(b->layers[i], lod, at, &v)) continue;
-        depth += b->options->opacity == OPACITY_MEAN ? opacity_depth_mean(&v, b->longest_finest, h, step)
-                                                     : opacity_depth(b->options->opacity, &v, h, step);
+        float own = b->options->opacity == OPACITY_MEAN ? opacity_depth_mean(&v, b->longest_finest, h, step)
+                                                        : opacity_depth(b->options->opacity, &v, h, step);
+        depth += b->options->opacity == OPACITY_CORRELATED ? own * voxel_layer_trim_at(b->layers[i], lod, step) : own;
     }
     return depth;
 }

@@ -1,6 +1,7 @@
 #include "texel/voxel_pyramid.h"
 
 #include "base/stopwatch.h"
+#include "texel/voxel_trim.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -245,6 +246,7 @@ VoxelLayer *voxel_layer_build(const TexelMesh *mesh, const TexelBuildOptions *op
         voxel_layer_destroy(b.layer);
         return NULL;
     }
+    voxel_layer_trim(b.layer, mesh, options->extent, options->pool);
     if (stats) fill_stats(b.layer, stopwatch_wall() - start, stats);
     return b.layer;
 }

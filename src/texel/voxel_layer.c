@@ -1,5 +1,7 @@
 #include "texel/voxel_layer.h"
 
+#include "texel/voxel_trim.h"
+
 #include <stdlib.h>
 
 void *voxel_layer_allocate(VoxelLayer *layer, size_t count, size_t size) {
@@ -58,6 +60,7 @@ VoxelLayer *voxel_layer_create(const TexelBuildOptions *options) {
     layer->filtering = options->filtering;
     layer->scattered = options->field != NULL;
     for (int i = 0; i < 3; i++) layer->cyclic[i] = options->cyclic >> i & 1;
+    voxel_layer_forget_trim(layer);
     set_sizes(layer, options);
     return layer;
 }
@@ -95,6 +98,7 @@ bool voxel_layer_is_empty(const VoxelLayer *layer) { return layer->level[layer->
 
 Hash128 voxel_layer_hash(const VoxelLayer *layer) {
     Hash128 hash = hash_begin((uint64_t)layer->levels);
+    hash_add(&hash, layer->trim, sizeof layer->trim);
     for (int i = 0; i < layer->levels; i++) {
         const VoxelLevel *l = &layer->level[i];
         hash_add(&hash, l->size, sizeof l->size);

@@ -6,6 +6,8 @@
 #include "texel/voxel_code.h"
 
 enum { BRICK_SIDE = 8, BRICK_VOXELS = 512 };
+/* Levels of up to 8 voxels, and directions each way, for which it is known how much they have to be trimmed. */
+enum { TRIM_LEVELS = 4, TRIM_NODES = 9 };
 
 /* Voxel (x, y, z) is stored if bit 8·y + x of slice[z] is set; its code is then
  * codes[first[z] + number of lower bits set in the slice]. */
@@ -56,6 +58,7 @@ struct VoxelLayer {
     bool scattered; /* all matter is random: gamma is 0 */
     TexelFiltering filtering;
     VoxelLevel level[TEXEL_MAX_LEVELS];
+    float trim[TRIM_LEVELS][TRIM_NODES * TRIM_NODES]; /* of the coarsest levels, the last first, by direction: voxel_trim.h */
     MemoryBudget *memory;
     size_t bytes; /* taken from memory */
 };

@@ -17,7 +17,8 @@ void footprint_axes(const Cone *cone, double t, Vec3 normal, Vec3 axes[2]);
 double footprint_curvature(const Hierarchy *hierarchy, RayPurpose purpose, const Cone *cone, const SurfaceHit *hit);
 
 /* The cone that leaves the hit at t in unit direction `direction` from a place beside it, `origin`. `bend`: by how much the direction turns
- * when the normal turns by 1: 2 of a mirror; of a boundary with relative index n = n1/n2, |n − cos t/cos i| about, 0 where n = 1. */
+ * when the normal turns by 1: 2 of a mirror; n cos i − cos t of a boundary with n = n1/n2 under the angles i and t, negative where the
+ * bundle is gathered. */
 Cone footprint_leave(const Cone *cone, double t, Vec3 origin, Vec3 direction, double curvature, double bend);
 
 #endif

@@ -2,6 +2,7 @@
 
 #include "base/random.h"
 #include "pattern/pattern.h"
+#include "render/footprint.h"
 
 enum { MOST_PARTS = 4, MOST_LAYERS = 12, DEEPEST_LEGS = 256, MOST_STRAIGHT = 4096 };
 /* Rays begin so far from their surface: some steps of the hierarchy's floats, and of doubles. */
@@ -31,6 +32,7 @@ typedef struct Meeting {
     SurfaceLayer layers[MOST_LAYERS];
     int layer_count;
     Vec3f through;           /* what all layers let through */
+    double curvature;        /* of the surface; NAN: not asked yet */
 } Meeting;
 
 /* What a surface makes of a leg: light, and the share with which the leg goes on straight (0: it ends). */
@@ -120,24 +122,34 @@ static Vec3f light_from(SurfaceTracer *tracer, const Meeting *m, size_t number) 
 
 /* ---- further legs ---- */
 
-static Leg leg_from(const Meeting *m, Vec3 direction, float share) {
+/* Bundles that were bent twice have lost their order: their width is as good as any. */
+enum { CURVED_LEGS = 2 };
+
+static double curvature_of(const SurfaceTracer *tracer, Meeting *m) {
+    if (m->leg->level > CURVED_LEGS) return 0;
+    if (isnan(m->curvature)) m->curvature = footprint_curvature(tracer->compiled->hierarchy, m->leg->purpose, &m->leg->cone, m->hit);
+    return m->curvature;
+}
+
+static Leg leg_from(const SurfaceTracer *tracer, Meeting *m, Vec3 direction, double bend, float share) {
     Leg leg = *m->leg;
     double side = vec3_dot(direction, m->hit->flat) > 0 ? m->clear : -m->clear;
-    leg.cone = (Cone){vec3_madd(m->point, m->hit->flat, side), direction, m->width, m->leg->cone.spread};
+    Vec3 from = vec3_madd(m->point, m->hit->flat, side);
+    leg.cone = footprint_leave(&m->leg->cone, m->hit->t, from, direction, curvature_of(tracer, m), bend);
     leg.clear = m->clear;
     leg.weight *= share;
     return leg;
 }
 
-static Vec3f mirrored_light(SurfaceTracer *tracer, const Meeting *m, Vec3 normal, float share) {
-    Leg leg = leg_from(m, surface_mirrored(m->leg->cone.direction, normal, m->hit->flat), share);
+static Vec3f mirrored_light(SurfaceTracer *tracer, Meeting *m, Vec3 normal, float share) {
+    Leg leg = leg_from(tracer, m, surface_mirrored(m->leg->cone.direction, normal, m->hit->flat), 2, share);
     leg.purpose = RAY_MIRRORS;
     return follow(tracer, &leg, NULL);
 }
 
 static float power_of(float x, double exponent) { return x > 0 ? (float)pow((double)x, exponent) : 0; }
 
-static Vec3f mirror(SurfaceTracer *tracer, const Meeting *m, bool all_of_it) {
+static Vec3f mirror(SurfaceTracer *tracer, Meeting *m, bool all_of_it) {
     Vec3f sum = {0, 0, 0};
     float bailout = (float)tracer->compiled->scene->settings.adc_bailout;
     for (int i = 0; i < m->layer_count; i++) {
@@ -160,14 +172,15 @@ static Vec3f mirror(SurfaceTracer *tracer, const Meeting *m, bool all_of_it) {
 }
 
 /* What comes bent, or all reflected, through the surface. */
-static Vec3f bent_light(SurfaceTracer *tracer, const Meeting *m, double ratio, bool *all_of_it) {
+static Vec3f bent_light(SurfaceTracer *tracer, Meeting *m, double ratio, bool *all_of_it) {
     Vec3 direction, normal = m->layers[0].normal;
     if (vec3_dot(normal, m->leg->cone.direction) > 0) normal = vec3_negate(normal);
     if (!surface_bent(m->leg->cone.direction, normal, 1 / ratio, &direction)) {
         *all_of_it = true;
         return mirrored_light(tracer, m, normal, most_of(m->through));
     }
-    Leg leg = leg_from(m, direction, most_of(m->through));
+    double bend = vec3_dot(direction, normal) - vec3_dot(m->leg->cone.direction, normal) / ratio; /* n cos i - cos t */
+    Leg leg = leg_from(tracer, m, direction, bend, most_of(m->through));
     surface_cross(leg.enclosures, &leg.enclosure_count, m->hit);
     return follow(tracer, &leg, NULL);
 }
@@ -191,14 +204,12 @@ static Outcome see_part(SurfaceTracer *tracer, Meeting *m) {
 static Outcome see_surface(SurfaceTracer *tracer, const Leg *leg, const SurfaceHit *hit) {
     Vec3 point = cone_point(&leg->cone, hit->t), direction = leg->cone.direction;
     double width = cone_diameter(&leg->cone, hit->t), facing = fmax(0.05, fabs(vec3_dot(hit->normal, direction)));
-    Vec3 across = vec3_normalize(vec3_cross(hit->normal, direction)), along = vec3_cross(hit->normal, across);
-    if (vec3_length_squared(across) == 0) vec3_frame(hit->normal, &across, &along);
     SurfacePlace place = {.point = point, .normal = hit->normal, .footprint = width / facing, .space = &hit->space,
-                          .axes = {vec3_scale(along, width / facing), vec3_scale(across, width)},
                           .surface = {.direction = direction, .uv = {hit->uv.u, hit->uv.v}}};
+    footprint_axes(&leg->cone, hit->t, hit->normal, place.axes);
     TexturePart parts[MOST_PARTS];
     size_t count = texture_parts(hit->look->texture, &place, parts, MOST_PARTS);
-    Meeting m = {.leg = leg, .hit = hit, .point = point, .width = width, .clear = clearance(tracer, point, hit->t),
+    Meeting m = {.leg = leg, .hit = hit, .point = point, .width = width, .clear = clearance(tracer, point, hit->t), .curvature = NAN,
                  .seed = random_mix(tracer->seed + (uint64_t)leg->level)};
     Outcome out = {{0, 0, 0}, {0, 0, 0}};
     for (size_t i = 0; i < count; i++) {

@@ -50,7 +50,10 @@ struct Cluster {
     ClusterTriangleList triangles; /* few ones of the owners */
     const MeshData *mesh;          /* all of a mesh instead */
     int depth;     /* clusters within each other, this one included */
-    bool filled;   /* something in it has an interior */
+    struct FilledItems {
+        uint32_t *items;
+        size_t count, capacity;
+    } filled;      /* items that have an interior or hold what has one */
 };
 
 enum { CLUSTER_DEEPEST = 32 };

@@ -100,9 +100,10 @@ static const Look *look_of(Builder *b, const Texture *texture) {
     return *slot = look;
 }
 
-/* Of a set and all in it, whose hits name their textures; and whether anything in it has an interior. */
+/* Of a set and all in it, whose hits name their textures. */
 static void learn_looks(Builder *b, const Object *object) {
     if (object->texture) look_of(b, object->texture);
+    if (object->rest && object->rest->interior_texture) look_of(b, object->rest->interior_texture);
     if (object->kind == OBJECT_TRIANGLES)
         for (size_t i = 0; i < object->as.mesh->texture_count; i++) look_of(b, object->as.mesh->textures[i]);
     if (!object_has_group(object)) return;
@@ -146,7 +147,6 @@ static void add_item(Builder *b, Cluster *cluster, const Item *item) {
     if (box3_is_empty(item_box(item))) return;
     b->set->part_count++;
     *list_push(b->arena, &cluster->items) = *item;
-    cluster->filled |= item->filled || (item->cluster && item->cluster->filled);
     if (item->cluster) cluster->depth = int_max(cluster->depth, 1 + item->cluster->depth);
 }
 
@@ -210,7 +210,6 @@ static void add_mesh(Builder *b, Cluster *cluster, const Object *object, const T
             cluster->bounds = box3_add_point(cluster->bounds, transform_point(place, mesh->vertices[mesh->triangles[i][k]]));
     }
     b->set->part_count++;
-    cluster->filled |= has->filled != NULL;
     *list_push(b->arena, &cluster->owners) = new_item(object, place, has);
 }
 
@@ -312,7 +311,7 @@ static void add_object(Builder *b, Cluster *cluster, const Object *object, const
     Transform own = object_transform(object), place = transform_then(&own, parent);
     Inherited has = *outer;
     if (transform_is_singular(&place)) return;
-    if (object->texture) has.look = look_of(b, object->texture), has.look_place = NULL;
+    if (object->texture) has.look = look_of(b, object->texture), has.look_place = NULL, has.inside = NULL;
     has.hidden |= hidden_from(object);
     has.both_sides |= object->double_illuminate;
     if (object->rest && object->rest->interior) has.filled = object;
@@ -397,6 +396,10 @@ static void finish_cluster(Builder *b, Cluster *cluster) {
         Box3 box = item_box(&cluster->items.items[i]);
         if (i < cluster->loose) cluster->bounds = box3_union(cluster->bounds, box);
         cluster->box = box3_union(cluster->box, box);
+    }
+    for (size_t i = 0; i < cluster->items.count; i++) {
+        const Item *item = &cluster->items.items[i];
+        if (item->filled || (item->cluster && item->cluster->filled.count)) *list_push(b->arena, &cluster->filled) = (uint32_t)i;
     }
     cluster->origin = box3_is_empty(cluster->bounds) ? vec3_splat(0) : vec3_lerp(cluster->bounds.min, cluster->bounds.max, 0.5);
     *list_push(b->arena, &b->set->clusters) = cluster;

@@ -1,8 +1,7 @@
 #include "render/hierarchy.h"
 
-#include "base/random.h"
-#include "render/cluster.h"
 #include "render/embree_ray.h"
+#include "render/hit.h"
 #include "shape/box_tree.h"
 #include "shape/intersect.h"
 
@@ -16,18 +15,6 @@ struct Hierarchy {
 enum { SOLIDS = 0, TRIANGLES = 1 }; /* geomID in a cluster */
 
 /* ---- what is met ---- */
-
-/* The nearest so far. What is said of places and normals holds in the innermost cluster. */
-typedef struct Found {
-    double t;
-    const Item *path[CLUSTER_DEEPEST + 2]; /* copies from the outside in, and the item at last */
-    int depth;
-    Vec3 normal, flat;
-    const Cluster *cluster; /* of triangles; NULL for solids */
-    uint32_t triangle;
-    double u, v;
-    BodyHit body;           /* of solids */
-} Found;
 
 typedef struct Query {
     struct RTCIntersectContext context; /* first: Embree hands back its address */
@@ -326,105 +313,6 @@ static bool cluster_meet(Query *query) {
     return met || rayhit.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
-/* ---- all about a hit ---- */
-
-/* Smooth normals where the triangles have them. */
-static void triangle_normals(Found *found) {
-    uint32_t triangle;
-    const Item *owner;
-    const MeshData *mesh = cluster_triangle(found->cluster, found->triangle, &triangle, &owner);
-    if (!mesh->normals) return;
-    const uint32_t *n = mesh->normal_triangles ? mesh->normal_triangles[triangle] : mesh->triangles[triangle];
-    Vec3 smooth = vec3_scale(vec3_normalize(mesh->normals[n[0]]), 1 - found->u - found->v);
-    smooth = vec3_madd(smooth, vec3_normalize(mesh->normals[n[1]]), found->u);
-    smooth = vec3_madd(smooth, vec3_normalize(mesh->normals[n[2]]), found->v);
-    if (!(vec3_length_squared(smooth) > 1e-4)) return;
-    found->normal = found->cluster->mesh ? smooth : mat3_apply_transposed(&owner->back.linear, smooth);
-}
-
-static const Texture *triangle_texture(const Found *found) {
-    uint32_t triangle;
-    const Item *owner;
-    const MeshData *mesh = cluster_triangle(found->cluster, found->triangle, &triangle, &owner);
-    return mesh->triangle_textures && mesh->texture_count ? mesh->textures[mesh->triangle_textures[triangle]] : NULL;
-}
-
-/* The innermost object with a texture gives it, and its space. */
-static void find_look(const Hierarchy *h, const Found *found, SurfaceHit *out) {
-    const Item *item = found->path[found->depth - 1];
-    const Texture *texture = found->cluster ? triangle_texture(found) : found->body.looked ? found->body.looked->texture : NULL;
-    int i = found->depth - 1;
-    out->look = NULL;
-    if (texture) {
-        const Transform place = item_place(item);
-        out->look = look_table_find(&h->set.looks, texture);
-        out->space = found->cluster || !found->body.looked ? place : transform_then(&found->body.looked_place, &place);
-        i--;
-    } else {
-        for (; i >= 0 && !out->look; i--)
-            if (found->path[i]->look) {
-                out->look = found->path[i]->look;
-                out->space = found->path[i]->look_place ? *found->path[i]->look_place : item_place(found->path[i]);
-            }
-    }
-    if (!out->look) {
-        out->look = h->set.default_look;
-        out->space = transform_identity();
-        return;
-    }
-    for (; i >= 0; i--) {
-        const Transform place = item_place(found->path[i]);
-        out->space = transform_then(&out->space, &place);
-    }
-}
-
-static uint64_t path_number(const Found *found, int depth) {
-    uint64_t number = 0;
-    for (int i = 0; i < depth; i++) number = random_mix(number ^ (uintptr_t)found->path[i]);
-    return number;
-}
-
-/* The innermost object with an interior; all of the same set have the same number. */
-static void find_interior(const Found *found, SurfaceHit *out) {
-    const Object *filled = found->cluster ? NULL : found->body.filled;
-    int depth = found->depth;
-    while (!filled && depth > 0) filled = found->path[--depth]->filled;
-    out->interior = filled ? filled->rest->interior : NULL;
-    out->filled = filled ? random_mix(path_number(found, depth) ^ (uintptr_t)filled) : 0;
-}
-
-/* What all copies and sets around the surface say of it. */
-static void find_sides(const Found *found, SurfaceHit *out) {
-    const Look *inside = NULL;
-    out->both_sides = out->solid->double_illuminate;
-    for (int i = found->depth - 1; i >= 0; i--) {
-        if (!inside) inside = found->path[i]->inside;
-        out->both_sides |= found->path[i]->both_sides;
-    }
-    if (inside && out->leaving) out->look = inside;
-}
-
-static void finish_hit(const Hierarchy *h, Found *found, const Ray *ray, SurfaceHit *out) {
-    const Item *item = found->path[found->depth - 1];
-    if (found->cluster) triangle_normals(found);
-    Vec3 normal = found->normal, flat = found->flat;
-    for (int i = found->depth - 2; i >= 0; i--) {
-        normal = mat3_apply_transposed(&found->path[i]->back.linear, normal);
-        flat = mat3_apply_transposed(&found->path[i]->back.linear, flat);
-    }
-    normal = vec3_normalize(normal), flat = vec3_normalize(flat);
-    out->t = found->t;
-    out->leaving = vec3_dot(flat, ray->direction) > 0;
-    out->flat = out->leaving ? vec3_negate(flat) : flat;
-    out->normal = vec3_dot(normal, ray->direction) > 0 ? vec3_negate(normal) : normal;
-    out->solid = found->cluster ? item->object : found->body.leaf;
-    out->object = (uint32_t)random_mix(path_number(found, found->depth) ^ (uintptr_t)out->solid);
-    out->uv = (TexCoord){0, 0};
-    find_interior(found, out);
-    find_look(h, found, out);
-    find_sides(found, out);
-}
-
 static bool meet(const Hierarchy *h, RayPurpose purpose, bool any, const Ray *ray, double t_min, double t_max, Found *found) {
     if (!vec3_is_finite(ray->origin) || !vec3_is_finite(ray->direction)) return false;
     found->t = t_max;
@@ -435,7 +323,7 @@ static bool meet(const Hierarchy *h, RayPurpose purpose, bool any, const Ray *ra
 bool hierarchy_meet(const Hierarchy *h, RayPurpose purpose, const Ray *ray, double t_min, double t_max, SurfaceHit *hit) {
     Found found;
     if (!meet(h, purpose, false, ray, t_min, t_max, &found)) return false;
-    finish_hit(h, &found, ray, hit);
+    hit_finish(&h->set, &found, ray, hit);
     return true;
 }
 
@@ -446,4 +334,9 @@ bool hierarchy_intersect(const Hierarchy *h, const Ray *ray, double t_min, doubl
 bool hierarchy_occluded(const Hierarchy *h, const Ray *ray, double t_min, double t_max) {
     Found found;
     return meet(h, RAY_SHADOWS, true, ray, t_min, t_max, &found);
+}
+
+size_t hierarchy_inside(const Hierarchy *h, Vec3 point, Filling *out, size_t most) {
+    const InsideSearch search = {.cluster = h->all, .point = point};
+    return vec3_is_finite(point) ? inside_gather(&search, out, 0, most) : 0;
 }

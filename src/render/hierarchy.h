@@ -28,7 +28,13 @@ typedef struct SurfaceHit {
     uint64_t filled;   /* tells the object that has that interior from its copies */
 } SurfaceHit;
 
-/* `tolerance`: for what has to be tessellated. NULL after a diagnostic. */
+/* An interior that a place lies in, and of which object. */
+typedef struct Filling {
+    const struct Interior *interior;
+    uint64_t filled; /* as SurfaceHit has it */
+} Filling;
+
+/* NULL after a diagnostic. */
 Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags);
 void hierarchy_destroy(Hierarchy *hierarchy);
 size_t hierarchy_object_count(const Hierarchy *hierarchy);
@@ -46,5 +52,7 @@ bool hierarchy_intersect(const Hierarchy *hierarchy, const Ray *ray, double t_mi
 bool hierarchy_meet(const Hierarchy *hierarchy, RayPurpose purpose, const Ray *ray, double t_min, double t_max, SurfaceHit *hit);
 /* Whether anything that casts shadows lies between. */
 bool hierarchy_occluded(const Hierarchy *hierarchy, const Ray *ray, double t_min, double t_max);
+/* The interiors that the point lies in: at most `most`, each once; meshes are not asked. Returns how many. */
+size_t hierarchy_inside(const Hierarchy *hierarchy, Vec3 point, Filling *out, size_t most);
 
 #endif

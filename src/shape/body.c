@@ -147,15 +147,17 @@ static Vec3 moved_normal(const Transform *place, Vec3 normal) {
     return place ? vec3_normalize(transform_normal(place, normal)) : normal;
 }
 
-static bool object_is_filled(const Object *object) { return object->rest && object->rest->interior; }
+static bool has_texture(const Object *object) {
+    return object->texture || (object->kind == OBJECT_TRIANGLES && object->as.mesh->triangle_textures);
+}
 
 /* What the objects around the surface add, from the inside out. */
 static void walk_trail(const Trail *trail, BodyHit *hit) {
     hit->looked = hit->filled = NULL;
     hit->looked_place = transform_identity();
     for (; trail; trail = trail->outer) {
-        if (!hit->looked && trail->object->texture) hit->looked = trail->object;
-        if (!hit->filled && object_is_filled(trail->object)) hit->filled = trail->object;
+        if (!hit->looked && has_texture(trail->object)) hit->looked = trail->object;
+        if (!hit->filled && trail->object->rest && trail->object->rest->interior) hit->filled = trail->object;
         if (!trail->place) continue;
         hit->normal = moved_normal(trail->place, hit->normal);
         hit->flat = moved_normal(trail->place, hit->flat);

@@ -5,6 +5,7 @@
 
 #include "base/arena.h"
 #include "scene/scene.h"
+#include "shape/soup.h"
 
 /* Where on the surface: what the kind needs to tell the normal of a crossing. */
 typedef struct SolidTag {
@@ -35,15 +36,23 @@ typedef struct SolidOps {
     bool (*inside)(const void *data, Vec3 point);
     /* The normal of the surface itself, where `normal` is interpolated; NULL: the same. */
     Vec3 (*flat)(const void *data, Vec3 point, const SolidTag *tag);
+    /* u and v of a crossing, as POV-Ray's uv_mapping has them; NULL: they are x and y of the scene. */
+    TexCoord (*uv)(const void *data, Vec3 point, const SolidTag *tag);
     /* Holds all of the surface; infinite where there is no end. */
     Box3 (*bounds)(const void *data);
     bool keeps_normal; /* `inverse` does not turn its normals, as in POV-Ray */
 } SolidOps;
 
+/* Turns from x towards z, in [0, 1). */
+static inline double solid_turn(double x, double z) {
+    double turn = atan2(z, x) / (2 * VTS_PI);
+    return turn < 0 ? turn + 1 : turn;
+}
+
 /* Never NULL; sets and what has no surface have a table without functions. */
 const SolidOps *solid_ops(const Object *object);
 
-extern const SolidOps solid_plain_ops; /* solid_plain.c: sphere box cylinder cone plane disc torus */
+extern const SolidOps solid_sphere_ops, solid_box_ops, solid_torus_ops, solid_plain_ops; /* solid_plain.c: sphere box cylinder cone plane disc torus */
 extern const SolidOps solid_mesh_ops, solid_triangle_ops;      /* solid_mesh.c: triangles of all kinds */
 extern const SolidOps solid_surface_ops;                       /* solid_surface.c: what skins lie on */
 extern const SolidOps solid_prism_ops, solid_polygon_ops;      /* solid_flat.c */

@@ -1,6 +1,7 @@
 /* Triangles of all kinds. */
 #include "shape/box_tree.h"
 #include "shape/solid.h"
+#include "shape/solid_parts.h"
 
 typedef struct MeshSolid {
     const MeshData *mesh;
@@ -64,13 +65,17 @@ static void cross(const void *data, const Ray *ray, SolidSink *sink) {
     box_tree_ray(visit.solid->tree, ray, sink->t_min, &sink->t_max, visit_triangle, &visit);
 }
 
-/* (c - a) × (b - a), POV-Ray's side, where there are no normals of its own. */
-static Vec3 normal(const void *data, Vec3 point, const SolidTag *tag) {
+/* (c - a) × (b - a), POV-Ray's side. */
+static Vec3 flat_normal(const void *data, Vec3 point, const SolidTag *tag) {
     const MeshData *mesh = ((const MeshSolid *)data)->mesh;
     (void)point;
     Vec3 a = corner(mesh, tag->part, 0);
-    Vec3 flat = vec3_normalize(
-        vec3_cross(vec3_sub(corner(mesh, tag->part, 2), a), vec3_sub(corner(mesh, tag->part, 1), a)));
+    return vec3_normalize(vec3_cross(vec3_sub(corner(mesh, tag->part, 2), a), vec3_sub(corner(mesh, tag->part, 1), a)));
+}
+
+static Vec3 normal(const void *data, Vec3 point, const SolidTag *tag) {
+    const MeshData *mesh = ((const MeshSolid *)data)->mesh;
+    Vec3 flat = flat_normal(data, point, tag);
     if (!mesh->normals) return flat;
     const uint32_t *n =
         mesh->normal_triangles ? mesh->normal_triangles[tag->part] : mesh->triangles[tag->part];
@@ -79,6 +84,19 @@ static Vec3 normal(const void *data, Vec3 point, const SolidTag *tag) {
     mean = vec3_madd(mean, vec3_normalize(mesh->normals[n[2]]), tag->v);
     mean = vec3_normalize(mean);
     return vec3_length_squared(mean) > 0 ? mean : flat;
+}
+
+TexCoord solid_mesh_uv(const MeshData *mesh, uint32_t triangle, double u, double v) {
+    if (!mesh->uvs) return (TexCoord){0, 0};
+    const uint32_t *at = mesh->uv_triangles ? mesh->uv_triangles[triangle] : mesh->triangles[triangle];
+    Vec3 p = vec3_scale(mesh->uvs[at[0]], 1 - u - v);
+    p = vec3_madd(vec3_madd(p, mesh->uvs[at[1]], u), mesh->uvs[at[2]], v);
+    return (TexCoord){p.x, p.y};
+}
+
+static TexCoord uv(const void *data, Vec3 point, const SolidTag *tag) {
+    (void)point;
+    return solid_mesh_uv(((const MeshSolid *)data)->mesh, tag->part, tag->u, tag->v);
 }
 
 typedef struct CountSink {
@@ -104,12 +122,13 @@ static bool inside(const void *data, Vec3 point) {
 static Box3 bounds(const void *data) { return ((const MeshSolid *)data)->bounds; }
 
 const SolidOps solid_mesh_ops = {
-    .prepare = prepare, .cross = cross, .normal = normal, .inside = inside, .bounds = bounds};
+    .prepare = prepare, .cross = cross, .normal = normal, .flat = flat_normal, .uv = uv, .inside = inside, .bounds = bounds};
 
 /* One triangle on its own looks to the same side, inside out or not. */
 const SolidOps solid_triangle_ops = {.prepare = prepare,
                                      .cross = cross,
                                      .normal = normal,
+                                     .flat = flat_normal,
                                      .inside = inside,
                                      .bounds = bounds,
                                      .keeps_normal = true};

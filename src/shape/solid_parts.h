@@ -2,7 +2,9 @@
 #ifndef VTS_SHAPE_SOLID_PARTS_H
 #define VTS_SHAPE_SOLID_PARTS_H
 
+#include "scene/scene.h"
 #include "shape/outline.h"
+#include "shape/soup.h"
 
 /* sor: the radius squared at a share (0 … 1) of the height of a piece, and its slope; false when there is no such piece. */
 typedef struct SorPlace {
@@ -21,6 +23,9 @@ bool solid_text_letter(const void *data, size_t index, PlanarOutline *out, doubl
 
 /* bicubic_patch, parametric: a place (u and v from 0 to 1 over all of it) and its unit normal, or zero. */
 void solid_sheet_at(const void *data, double u, double v, Vec3 *p, Vec3 *normal);
+
+/* mesh: u and v where a triangle is met, by the shares of its second and third corner; zero without uv_vectors. */
+TexCoord solid_mesh_uv(const MeshData *mesh, uint32_t triangle, double u, double v);
 
 /* height_field: heights over the unit square of x and z, row after row from z = 0 on. */
 typedef struct HeightGrid {

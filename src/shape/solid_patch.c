@@ -210,9 +210,14 @@ static Vec3 patch_normal(const void *data, Vec3 p, const SolidTag *tag) {
     return vec3_negate(normal(data, p, tag));
 }
 
+static TexCoord uv(const void *data, Vec3 p, const SolidTag *tag) {
+    (void)data, (void)p;
+    return (TexCoord){tag->u, tag->v};
+}
+
 static Box3 bounds(const void *data) { return ((const ParamSurface *)data)->bounds; }
 
 const SolidOps solid_patch_ops = {
-    .prepare = patch_prepare, .cross = cross, .normal = patch_normal, .bounds = bounds};
+    .prepare = patch_prepare, .cross = cross, .normal = patch_normal, .uv = uv, .bounds = bounds};
 const SolidOps solid_parametric_ops = {
-    .prepare = parametric_prepare, .cross = cross, .normal = normal, .bounds = bounds};
+    .prepare = parametric_prepare, .cross = cross, .normal = normal, .uv = uv, .bounds = bounds};

@@ -97,6 +97,13 @@ static Vec3 ovus_normal(const void *data, Vec3 p, const SolidTag *tag) {
     return vec3_normalize(vec3(p.x * out, p.y - o->height, p.z * out));
 }
 
+/* Seen from the middle of its height. */
+static TexCoord ovus_uv(const void *data, Vec3 p, const SolidTag *tag) {
+    const Ovus *o = data;
+    (void)tag;
+    return (TexCoord){solid_turn(p.x, p.z), 0.5 + atan2(p.y - o->top / 2, hypot(p.x, p.z)) / VTS_PI};
+}
+
 static bool ovus_inside(const void *data, Vec3 p) {
     const Ovus *o = data;
     double r2 = p.x * p.x + p.z * p.z, up = p.y - o->bottom;
@@ -117,6 +124,7 @@ static Box3 ovus_bounds(const void *data) {
 
 const SolidOps solid_ovus_ops = {.prepare = ovus_prepare,
                                  .cross = ovus_cross,
+                                 .uv = ovus_uv,
                                  .normal = ovus_normal,
                                  .inside = ovus_inside,
                                  .bounds = ovus_bounds};

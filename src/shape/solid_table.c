@@ -23,13 +23,13 @@ static const SolidOps *const rare[] = {
 
 const SolidOps *solid_ops(const Object *object) {
     switch (object->kind) {
-    case OBJECT_SPHERE:
-    case OBJECT_BOX:
+    case OBJECT_SPHERE: return &solid_sphere_ops;
+    case OBJECT_BOX: return &solid_box_ops;
+    case OBJECT_TORUS: return &solid_torus_ops;
     case OBJECT_CYLINDER:
     case OBJECT_CONE:
     case OBJECT_PLANE:
-    case OBJECT_DISC:
-    case OBJECT_TORUS: return &solid_plain_ops;
+    case OBJECT_DISC: return &solid_plain_ops;
     case OBJECT_TRIANGLES:
         return object->as.mesh->single && object->as.mesh->triangle_count == 1
                    ? &solid_triangle_ops

@@ -107,6 +107,11 @@ static Vec3 lathe_normal(const void *data, Vec3 p, const SolidTag *tag) {
     return spun_normal(tangent, p, 1);
 }
 
+static TexCoord lathe_uv(const void *data, Vec3 p, const SolidTag *tag) {
+    double pieces = (double)((const Lathe *)data)->outline.count;
+    return (TexCoord){solid_turn(p.x, p.z), (tag->part + tag->u) / pieces};
+}
+
 static bool lathe_inside(const void *data, Vec3 p) {
     return outline_odd(&((const Lathe *)data)->mirrored, (Point2){p.y, hypot(p.x, p.z)});
 }
@@ -117,6 +122,7 @@ const SolidOps solid_lathe_ops = {.prepare = lathe_prepare,
                                   .cross = lathe_cross,
                                   .normal = lathe_normal,
                                   .inside = lathe_inside,
+                                  .uv = lathe_uv,
                                   .bounds = lathe_bounds};
 
 /* ---- sor: r² is a cubic of the height between each two points ---- */
@@ -213,6 +219,20 @@ static Vec3 sor_normal(const void *data, Vec3 p, const SolidTag *tag) {
         vec3(2 * p.x, -((3 * piece->square[3] * y + 2 * piece->square[2]) * y + piece->square[1]), 2 * p.z));
 }
 
+/* On a cap v is the share of its radius, counted from the rim at the upper one. */
+static TexCoord sor_uv(const void *data, Vec3 p, const SolidTag *tag) {
+    const Sor *sor = data;
+    double turn = solid_turn(p.x, p.z);
+    if (tag->part >= PART_HIGH) {
+        const SorPiece *end = tag->part == PART_HIGH ? &sor->pieces[sor->count - 1] : &sor->pieces[0];
+        double rim = sqrt(double_max(piece_value(end, tag->part == PART_HIGH ? end->high : end->low), 0));
+        double out = rim > 0 ? double_min(hypot(p.x, p.z) / rim, 1) : 0;
+        return (TexCoord){turn, tag->part == PART_HIGH ? 1 - out : out};
+    }
+    const SorPiece *piece = &sor->pieces[tag->part];
+    return (TexCoord){turn, (tag->part + (p.y - piece->low) / (piece->high - piece->low)) / (double)sor->count};
+}
+
 static bool sor_inside(const void *data, Vec3 p) {
     const Sor *sor = data;
     for (size_t i = 0; i < sor->count; i++)
@@ -242,4 +262,5 @@ const SolidOps solid_sor_ops = {.prepare = sor_prepare,
                                 .cross = sor_cross,
                                 .normal = sor_normal,
                                 .inside = sor_inside,
+                                .uv = sor_uv,
                                 .bounds = sor_bounds};

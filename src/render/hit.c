@@ -1,0 +1,181 @@
+#include "render/hit.h"
+
+#include "base/random.h"
+#include "shape/intersect.h"
+#include "shape/solid_parts.h"
+
+/* ---- triangles ---- */
+
+typedef struct MetTriangle {
+    const MeshData *mesh;
+    const Item *owner;
+    uint32_t number;
+} MetTriangle;
+
+static MetTriangle met_triangle(const Found *found) {
+    MetTriangle met;
+    met.mesh = cluster_triangle(found->cluster, found->triangle, &met.number, &met.owner);
+    return met;
+}
+
+/* Smooth normals where the triangles have them. */
+static void smooth_normal(Found *found, const MetTriangle *met) {
+    const MeshData *mesh = met->mesh;
+    if (!mesh->normals) return;
+    const uint32_t *n = mesh->normal_triangles ? mesh->normal_triangles[met->number] : mesh->triangles[met->number];
+    Vec3 smooth = vec3_scale(vec3_normalize(mesh->normals[n[0]]), 1 - found->u - found->v);
+    smooth = vec3_madd(smooth, vec3_normalize(mesh->normals[n[1]]), found->u);
+    smooth = vec3_madd(smooth, vec3_normalize(mesh->normals[n[2]]), found->v);
+    if (!(vec3_length_squared(smooth) > 1e-4)) return;
+    found->normal = found->cluster->mesh ? smooth : mat3_apply_transposed(&met->owner->back.linear, smooth);
+}
+
+static const Texture *texture_of_triangle(const MeshData *mesh, uint32_t triangle) {
+    return mesh->triangle_textures && mesh->texture_count ? mesh->textures[mesh->triangle_textures[triangle]] : NULL;
+}
+
+/* ---- looks ---- */
+
+static const Texture *texture_in_body(const BodyHit *body, bool inside) {
+    const Object *looked = body->looked;
+    if (!looked) return NULL;
+    if (looked == body->leaf && looked->kind == OBJECT_TRIANGLES) {
+        const Texture *own = texture_of_triangle(looked->as.mesh, body->tag.part);
+        if (own) return own;
+    }
+    return inside && looked->rest && looked->rest->interior_texture ? looked->rest->interior_texture : looked->texture;
+}
+
+/* The innermost object with a texture gives it, and its space. */
+static void find_look(const ClusterSet *set, const Found *found, SurfaceHit *out) {
+    const Item *item = found->path[found->depth - 1];
+    const Texture *texture = NULL;
+    int i = found->depth - 1;
+    out->look = NULL;
+    if (found->cluster) {
+        MetTriangle met = met_triangle(found);
+        texture = texture_of_triangle(met.mesh, met.number);
+    } else {
+        texture = texture_in_body(&found->body, out->leaving);
+    }
+    if (texture) {
+        const Transform place = item_place(item);
+        out->look = look_table_find(&set->looks, texture);
+        out->space = found->cluster ? place : transform_then(&found->body.looked_place, &place);
+        i--;
+    }
+    for (; i >= 0 && !out->look; i--) {
+        const Item *at = found->path[i];
+        out->look = out->leaving && at->inside ? at->inside : at->look;
+        if (!out->look) continue;
+        out->space = at->look_place ? *at->look_place : item_place(at);
+    }
+    if (!out->look) {
+        out->look = set->default_look;
+        out->space = transform_identity();
+        return;
+    }
+    for (; i >= 0; i--) {
+        const Transform place = item_place(found->path[i]);
+        out->space = transform_then(&out->space, &place);
+    }
+}
+
+/* ---- interiors ---- */
+
+static uint64_t path_step(uint64_t path, const void *next) { return random_mix(path ^ (uintptr_t)next); }
+
+static void find_filling(const Found *found, SurfaceHit *out) {
+    uint64_t path = 0;
+    out->interior = NULL;
+    out->filled = 0;
+    for (int i = 0; i < found->depth; i++) {
+        const Object *filled = found->path[i]->filled;
+        if (filled) {
+            out->interior = filled->rest->interior;
+            out->filled = path_step(path, filled);
+        }
+        path = path_step(path, found->path[i]);
+    }
+    if (!found->cluster && found->body.filled && found->body.filled != found->path[found->depth - 1]->filled) {
+        out->interior = found->body.filled->rest->interior;
+        out->filled = path_step(path, found->body.filled);
+    }
+    out->solid = found->cluster ? found->path[found->depth - 1]->object : found->body.leaf;
+    out->object = (uint32_t)path_step(path, out->solid);
+}
+
+static bool item_holds(const Item *item, Vec3 point) {
+    if (item->body) return body_inside(item->body, point);
+    const SolidOps *ops = solid_ops(item->object);
+    return ops->inside && ops->inside(item->object, point) != item->object->inverse;
+}
+
+/* The search within a copy; the interior of the item, if it has one, is nearer than those of the copies around it. */
+static InsideSearch search_in(const InsideSearch *outer, const Item *item) {
+    InsideSearch inner = *outer;
+    if (item->filled) {
+        inner.filled = item->filled;
+        inner.number = path_step(outer->path, item->filled);
+    }
+    inner.cluster = item->cluster;
+    inner.path = path_step(outer->path, item);
+    inner.point = vec3_add(mat3_apply(&item->back.linear, outer->point), item->back.offset);
+    return inner;
+}
+
+static size_t add_filling(const InsideSearch *search, Filling *out, size_t count, size_t most) {
+    for (size_t i = 0; i < count; i++)
+        if (out[i].filled == search->number) return count;
+    if (count < most) out[count++] = (Filling){search->filled->rest->interior, search->number};
+    return count;
+}
+
+size_t inside_gather(const InsideSearch *search, Filling *out, size_t count, size_t most) {
+    const Cluster *cluster = search->cluster;
+    size_t candidates = search->filled ? cluster->items.count : cluster->filled.count;
+    for (size_t i = 0; i < candidates; i++) {
+        const Item *item = &cluster->items.items[search->filled ? i : cluster->filled.items[i]];
+        const InsideSearch inner = search_in(search, item);
+        if (item->cluster)
+            count = inside_gather(&inner, out, count, most);
+        else if (item_holds(item, inner.point))
+            count = add_filling(&inner, out, count, most);
+    }
+    return count;
+}
+
+/* ---- all about a hit ---- */
+
+static TexCoord hit_uv(const Found *found, Vec3 point) {
+    const BodyHit *body = &found->body;
+    if (found->cluster) {
+        MetTriangle met = met_triangle(found);
+        if (met.mesh->single) return (TexCoord){point.x, point.y};
+        return solid_mesh_uv(met.mesh, met.number, found->u, found->v);
+    }
+    const SolidOps *ops = solid_ops(body->leaf);
+    return ops->uv ? ops->uv(body->data, body->place, &body->tag) : (TexCoord){point.x, point.y};
+}
+
+void hit_finish(const ClusterSet *set, Found *found, const Ray *ray, SurfaceHit *out) {
+    if (found->cluster) {
+        MetTriangle met = met_triangle(found);
+        smooth_normal(found, &met);
+    }
+    Vec3 normal = found->normal, flat = found->flat;
+    for (int i = found->depth - 2; i >= 0; i--) {
+        normal = mat3_apply_transposed(&found->path[i]->back.linear, normal);
+        flat = mat3_apply_transposed(&found->path[i]->back.linear, flat);
+    }
+    normal = vec3_normalize(normal), flat = vec3_normalize(flat);
+    out->t = found->t;
+    out->leaving = vec3_dot(flat, ray->direction) > 0;
+    out->flat = out->leaving ? vec3_negate(flat) : flat;
+    out->normal = vec3_dot(normal, ray->direction) > 0 ? vec3_negate(normal) : normal;
+    out->uv = hit_uv(found, vec3_madd(ray->origin, ray->direction, found->t));
+    find_look(set, found, out);
+    find_filling(found, out);
+    out->both_sides = out->solid->double_illuminate;
+    for (int i = 0; i < found->depth; i++) out->both_sides |= found->path[i]->both_sides;
+}

@@ -99,7 +99,7 @@ static CompileStatus build_texels(const CompileOptions *options, Detail detail, 
     out->exact_bounds = box3_empty();
     out->all_exact_to = out->nearest = VTS_INFINITY;
     for (size_t i = 0; i < out->texel_count && beams; i++) {
-        if (!beam_build_texel(out->texels[i], out, diags)) return COMPILE_FAILED;
+        if (!beam_build_texel(out->texels[i], out, diags)) return interrupted(options) ? COMPILE_INTERRUPTED : COMPILE_FAILED;
         if (interrupted(options)) return COMPILE_INTERRUPTED;
     }
     for (size_t i = 0; i < out->skin_count && beams; i++) {
@@ -147,7 +147,7 @@ size_t compiled_skins_met(const CompiledScene *compiled, const Ray *ray, double 
 CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, Arena *arena, DiagList *diags, CompiledScene *out) {
     double start = stopwatch_wall();
     size_t errors = diags->error_count;
-    *out = (CompiledScene){.scene = scene, .arena = arena, .view = {.camera = scene->camera, .width = options->width, .height = options->height}};
+    *out = (CompiledScene){.scene = scene, .options = options, .arena = arena, .view = {.camera = scene->camera, .width = options->width, .height = options->height}};
     arena_init(&out->scratch, options->memory, 0);
     out->quadrature = quadrature_of(scene->settings.quadrature);
     out->filtering = filtering_of(scene->settings.filtering);
@@ -175,6 +175,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     if (options->exact && out->skin_count) out->exact = exact_skins_build(out->skins, out->skin_count, hierarchy_device(out->hierarchy));
     if (options->exact && out->skin_count && !out->exact) memory_budget_fail(options->memory);
     out->build_seconds = stopwatch_wall() - start;
+    out->options = NULL;
     return diags->error_count > errors ? COMPILE_FAILED : COMPILE_OK;
 }
 

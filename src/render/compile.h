@@ -25,6 +25,7 @@ typedef struct CompileOptions {
 
 typedef struct CompiledScene {
     const Scene *scene;
+    const CompileOptions *options; /* while it is being compiled */
     Arena *arena;
     Arena scratch;        /* of building; a field, so that it is released when building breaks off */
     View view;

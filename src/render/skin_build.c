@@ -27,8 +27,11 @@ static const double CONTENT_TOLERANCE_VOXELS = 0.2;
 
 bool texel_mesh_layer(const BuiltTexel *texel, const TexelLayer *layer, double tolerance, CompiledScene *compiled, DiagList *diags,
                       TexelMesh *mesh) {
+    const CompileOptions *options = compiled->options;
+    const TexelMeshOptions how = {tolerance, options->interrupted, options->progress};
     ShapeRefusal refusal;
-    if (!texel_layer_mesh(texel->def, layer, tolerance, &compiled->scratch, mesh, &refusal)) {
+    if (!texel_layer_mesh(texel->def, layer, &how, &compiled->scratch, mesh, &refusal)) {
+        if (options->interrupted && *options->interrupted) return false;
         diag_error(diags, refusal.span, "this cannot be part of a texel: %s", refusal.reason);
         return false;
     }

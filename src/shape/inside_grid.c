@@ -80,17 +80,20 @@ static void fill_row_by_crossings(const ExactSurface *surface, InsideGrid *grid,
     }
 }
 
-static void fill_by_crossings(const ExactSurface *surface, InsideGrid *grid, Arena *arena) {
+/* Something sets it while a grid is filled, and all goes through unasked rows then. */
+static bool given_up(const atomic_bool *interrupted) { return interrupted && *interrupted; }
+
+static void fill_by_crossings(const ExactSurface *surface, InsideGrid *grid, const atomic_bool *interrupted, Arena *arena) {
     CrossingSink sink = {.base.take = take_crossing, .arena = arena};
     for (uint32_t z = 0; z < grid->size[2]; z++)
-        for (uint32_t y = 0; y < grid->size[1]; y++) fill_row_by_crossings(surface, grid, &sink, y, z);
+        for (uint32_t y = 0; y < grid->size[1] && !given_up(interrupted); y++) fill_row_by_crossings(surface, grid, &sink, y, z);
     for (size_t i = 0; i < sink.skipped.count; i++)
         grid->missed += is_lost(grid, sink.skipped.items[i].at, (const uint32_t[]){0, 1, 1}, (const uint32_t[]){1, 1, 1});
 }
 
-static void fill_by_inside(const ExactSurface *surface, InsideGrid *grid) {
+static void fill_by_inside(const ExactSurface *surface, InsideGrid *grid, const atomic_bool *interrupted) {
     for (uint32_t z = 0; z < grid->size[2]; z++)
-        for (uint32_t y = 0; y < grid->size[1]; y++)
+        for (uint32_t y = 0; y < grid->size[1] && !given_up(interrupted); y++)
             for (uint32_t x = 0; x < grid->size[0]; x++)
                 grid->inside[corner_index(grid, x, y, z)] = solid_holds(surface, corner_at(grid, x, y, z));
 }
@@ -114,18 +117,18 @@ static void find_missed(const Solid *solid, InsideGrid *grid, const double *valu
             }
 }
 
-static void fill_by_values(const Solid *solid, InsideGrid *grid, Arena *arena) {
+static void fill_by_values(const Solid *solid, InsideGrid *grid, const atomic_bool *interrupted, Arena *arena) {
     size_t row = grid->size[0], rows = (size_t)grid->size[1] * grid->size[2];
     double *value = arena_new_array(arena, double, row * rows), *in = arena_new_array(arena, double, 3 * row);
     for (uint32_t z = 0; z < grid->size[2]; z++)
-        for (uint32_t y = 0; y < grid->size[1]; y++)
+        for (uint32_t y = 0; y < grid->size[1] && !given_up(interrupted); y++)
             solid_isosurface_row(solid, corner_at(grid, 0, y, z), vec3(grid->step.x, 0, 0), row, in,
                                  value + corner_index(grid, 0, y, z));
     for (size_t i = 0; i < row * rows; i++) grid->inside[i] = value[i] < 0;
-    find_missed(solid, grid, value);
+    if (!given_up(interrupted)) find_missed(solid, grid, value);
 }
 
-bool inside_grid_fill(const ExactSurface *surface, Box3 box, uint32_t cells, Arena *arena, InsideGrid *out) {
+bool inside_grid_fill(const ExactSurface *surface, Box3 box, uint32_t cells, const atomic_bool *interrupted, Arena *arena, InsideGrid *out) {
     Vec3 size = vec3_sub(box.max, box.min);
     double longest = double_max(size.x, double_max(size.y, size.z)), cell = longest / cells, count[3] = {size.x, size.y, size.z};
     if (!isfinite(longest) || !(longest > 0)) return false;
@@ -138,12 +141,12 @@ bool inside_grid_fill(const ExactSurface *surface, Box3 box, uint32_t cells, Are
     out->inside = arena_new_array(arena, uint8_t, (size_t)out->size[0] * out->size[1] * out->size[2]);
     const Solid *solid = surface->object->kind == OBJECT_SOLID ? surface->object->as.solid : NULL;
     if (solid && solid->kind == SOLID_ISOSURFACE)
-        fill_by_values(solid, out, arena);
+        fill_by_values(solid, out, interrupted, arena);
     else if (solid && (solid->kind == SOLID_JULIA || solid->kind == SOLID_SUPERELLIPSOID))
-        fill_by_inside(surface, out);
+        fill_by_inside(surface, out, interrupted);
     else
-        fill_by_crossings(surface, out, arena);
-    return true;
+        fill_by_crossings(surface, out, interrupted, arena);
+    return !given_up(interrupted);
 }
 
 /* ---- the surface ---- */

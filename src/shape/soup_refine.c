@@ -120,7 +120,10 @@ bool soup_refine(Arena *arena, TriangleSoup *soup, SoupMark since, const RefineR
     for (int i = 0; i < MOST_ROUNDS && active.count; i++) {
         Round round = {arena, soup, rules, edge_table(arena, 3 * active.count)};
         next.count = 0;
-        for (size_t k = 0; k < active.count; k++) refine_one(&round, active.items[k], &next);
+        for (size_t k = 0; k < active.count; k++) {
+            if (rules->interrupted && *rules->interrupted) return false;
+            refine_one(&round, active.items[k], &next);
+        }
         if (soup->triangles.count - since.triangle > rules->most_triangles) return false;
         ActiveList done = active;
         active = next;

@@ -4,6 +4,8 @@
 
 #include "shape/soup.h"
 
+#include <stdatomic.h>
+
 typedef struct RefineRules {
     /* Whether the edge is halved: must be the same for (b, a), and for other vertices at the same places. */
     bool (*split)(void *context, const TriangleSoup *soup, uint32_t a, uint32_t b);
@@ -11,6 +13,7 @@ typedef struct RefineRules {
     void (*place)(void *context, TriangleSoup *soup, uint32_t vertex, uint32_t a, uint32_t b);
     void *context;
     size_t most_triangles; /* of those after the mark */
+    const atomic_bool *interrupted; /* set by others: they count as too many; or NULL */
 } RefineRules;
 
 /* Halves edges of the triangles after the mark until no rule asks for more. False when they became too many: *soup is then

@@ -27,6 +27,11 @@ bool tessellate_refuse(const TessellateWalk *walk, const Object *object, const c
     return false;
 }
 
+bool tessellate_give_up(const TessellateWalk *walk) {
+    *walk->refusal = (ShapeRefusal){.reason = "it was interrupted"};
+    return false;
+}
+
 void tessellate_doubt(const TessellateWalk *walk, const Object *object, const char *reason) {
     ShapeRefusal *doubt = walk->options->doubt;
     if (doubt && !doubt->reason) *doubt = (ShapeRefusal){object->span, reason};
@@ -86,6 +91,7 @@ bool tessellate_shape(TessellateWalk *walk, const Object *object, double toleran
 }
 
 static bool push_tree(TessellateWalk *walk, const Object *object, const Transform *outer) {
+    if (tessellate_interrupted(walk)) return tessellate_give_up(walk);
     if (tessellate_is_set(object)) return tessellate_set(walk, object, outer);
     Transform own = object_transform(object), whole = transform_then(&own, outer);
     if (object->kind == OBJECT_UNION) {

@@ -7,8 +7,11 @@
 #ifndef VTS_SHAPE_TESSELLATE_H
 #define VTS_SHAPE_TESSELLATE_H
 
+#include "base/progress.h"
 #include "scene/scene.h"
 #include "shape/soup.h"
+
+#include <stdatomic.h>
 
 /* Why something has no triangles, or not those that were asked for. */
 typedef struct ShapeRefusal {
@@ -37,6 +40,9 @@ typedef struct TessellateOptions {
     TessellateParticles particles; /* NULL: particles are refused */
     ShapeRefusal *doubt;           /* its reason is set where something may be missing or is coarser than asked; or NULL */
     TessellateSurfaces *surfaces;  /* gets the surfaces of sets; NULL: not wanted */
+    const atomic_bool *interrupted; /* set by others: give up; or NULL */
+    const Progress *progress;      /* told how many surfaces of a set are cut; or NULL */
+    const char *stage;             /* what it is told that they are for; needed with progress */
 } TessellateOptions;
 
 enum { TESSELLATE_MOST_PARTS = 256 }; /* per quarter turn; a tolerance that asks for more is not met */
@@ -49,7 +55,8 @@ enum { TESSELLATE_MOST_PARTS = 256 }; /* per quarter turn; a tolerance that asks
  * Where surfaces of a set meet, triangles end within the tolerance of the curve; parts of the surfaces that are thinner than the
  * tolerance are kept, unless less than three times the tolerance of them is seen between two others.
  *
- * False, with *refusal filled, for what has no end, for texels and what is not modelled; *out is then incomplete. */
+ * False, with *refusal filled, for what has no end, for texels and what is not modelled; *out is then incomplete. Also when interrupted,
+ * within a tenth of a second. */
 bool tessellate(const Object *object, const Transform *transform, const TessellateOptions *options,
                 Arena *arena, TriangleSoup *out, ShapeRefusal *refusal);
 

@@ -84,10 +84,10 @@ static Box3 widened(Box3 box, uint32_t cells) {
 static bool fill_grid(const RareShape *shape, Box3 box, InsideGrid *grid) {
     Arena *arena = shape->walk->arena;
     uint32_t cells = cells_for(shape, box);
-    if (!inside_grid_fill(&shape->surface, widened(box, cells), cells, arena, grid)) return false;
+    if (!inside_grid_fill(&shape->surface, widened(box, cells), cells, shape->walk->options->interrupted, arena, grid)) return false;
     while (grid->missed && may_be_finer(shape, cells)) {
         cells *= 2;
-        if (!inside_grid_fill(&shape->surface, widened(box, cells), cells, arena, grid)) return false;
+        if (!inside_grid_fill(&shape->surface, widened(box, cells), cells, shape->walk->options->interrupted, arena, grid)) return false;
     }
     if (grid->missed) tessellate_doubt(shape->walk, shape->surface.object, "it has parts too thin for the grid that looks for them");
     return true;
@@ -101,17 +101,18 @@ bool tessellate_field(const RareShape *shape) {
     if (!set_box_is_finite(box)) return tessellate_refuse(walk, shape->surface.object, "no end of it is known");
     InsideGrid grid;
     SoupMark since = soup_mark(walk->out);
-    if (!fill_grid(shape, box, &grid)) return true; /* without extent */
+    if (!fill_grid(shape, box, &grid)) return !tessellate_interrupted(walk) || tessellate_give_up(walk); /* or without extent */
     inside_grid_surface(&grid, walk->arena, walk->out);
     Field field = {shape, double_max(grid.step.x, double_max(grid.step.y, grid.step.z)), 0};
     bool julia = shape->surface.object->as.solid->kind == SOLID_JULIA;
     field.shortest = julia ? field.cell : shape->tolerance;
     add_face_normals(walk->out, since);
-    for (size_t i = since.vertex; i < walk->out->vertices.count; i++)
+    for (size_t i = since.vertex; i < walk->out->vertices.count && !tessellate_interrupted(walk); i++)
         move_vertex(&field, &walk->out->vertices.items[i], 2 * field.cell);
-    const RefineRules rules = {split_edge, place_middle, &field, MOST_TRIANGLES};
+    const RefineRules rules = {split_edge, place_middle, &field, MOST_TRIANGLES, walk->options->interrupted};
     if (!soup_refine(walk->arena, walk->out, since, &rules))
         tessellate_doubt(walk, shape->surface.object, "its surface would need too many triangles");
+    if (tessellate_interrupted(walk)) return tessellate_give_up(walk);
     soup_mark_closed(walk->arena, walk->out, since);
     return true;
 }

@@ -13,6 +13,9 @@ typedef struct TessellateWalk {
     ShapeRefusal *refusal;
 } TessellateWalk;
 
+/* Whether somebody wants it to end; then everything ends with tessellate_give_up(). */
+static inline bool tessellate_interrupted(const TessellateWalk *walk) { return walk->options->interrupted && *walk->options->interrupted; }
+bool tessellate_give_up(const TessellateWalk *walk);
 ShapeTracer *tessellate_tracer(TessellateWalk *walk);
 /* Fills the refusal and returns false. */
 bool tessellate_refuse(const TessellateWalk *walk, const Object *object, const char *reason);

@@ -1,4 +1,5 @@
 /* Sets: the triangles of each surface, cut where it meets the others, as their exact insides tell. */
+#include "base/random.h"
 #include "shape/box_tree.h"
 #include "shape/intersect.h"
 #include "shape/set_bounds.h"
@@ -7,7 +8,7 @@
 #include "shape/soup_stitch.h"
 #include "shape/tessellate_parts.h"
 
-enum { MOST_TRIANGLES = 1000000, MOST_TRIES = 8 };
+enum { MOST_TRIANGLES = 1000000, MOST_TRIES = 8, BORDER_HALVINGS = 10 };
 
 /* Where another surface passes, edges are cut to COARSE steps; those whose ends differ to one. */
 static const double COARSE = 3, JOIN = 0.6;
@@ -16,6 +17,17 @@ typedef struct SideList {
     int8_t *items;
     size_t count, capacity;
 } SideList;
+
+/* Where borders cross the edges of the leaf being cut. Both triangles at an edge ask. */
+typedef struct BorderSlot {
+    uint64_t key; /* lower vertex << 32 | higher one; 0: free */
+    SoupVertex vertex;
+} BorderSlot;
+
+typedef struct BorderTable {
+    BorderSlot *slots;
+    size_t mask, count;
+} BorderTable;
 
 typedef struct LeafMesh {
     TriangleSoup whole; /* in the set's space */
@@ -37,6 +49,7 @@ typedef struct Cutter {
     uint32_t leaf;
     TriangleSoup *soup;
     SideList sides;   /* per vertex of soup; UNKNOWN until asked */
+    BorderTable borders;
     uint32_t *copies; /* per vertex of soup: where it is in the output, + 1; 0: nowhere yet */
 } Cutter;
 
@@ -207,7 +220,7 @@ static bool comes_before(Vec3 a, Vec3 b) {
 }
 
 /* Where the side changes on an edge, the same seen from both ends, moved onto the surface. */
-static SoupVertex border_vertex(Cutter *c, uint32_t a, uint32_t b) {
+static SoupVertex find_border(Cutter *c, uint32_t a, uint32_t b) {
     if (comes_before(c->soup->vertices.items[b].position, c->soup->vertices.items[a].position)) {
         uint32_t first = a;
         a = b;
@@ -216,7 +229,7 @@ static SoupVertex border_vertex(Cutter *c, uint32_t a, uint32_t b) {
     const SoupVertex from = c->soup->vertices.items[a], to = c->soup->vertices.items[b];
     int side = side_of(c, a);
     double lo = 0, hi = 1;
-    for (int i = 0; i < 16; i++) {
+    for (int i = 0; i < BORDER_HALVINGS; i++) {
         SoupVertex middle = soup_between(&from, &to, (lo + hi) / 2);
         if (side_at(c, &middle) == side)
             lo = (lo + hi) / 2;
@@ -226,6 +239,32 @@ static SoupVertex border_vertex(Cutter *c, uint32_t a, uint32_t b) {
     SoupVertex vertex = soup_between(&from, &to, (lo + hi) / 2);
     vertex.position = on_surface(c, vertex.position, vertex.normal);
     return vertex;
+}
+
+static BorderSlot *border_slot(const BorderTable *table, uint64_t key) {
+    size_t i = random_mix(key) & table->mask;
+    while (table->slots[i].key && table->slots[i].key != key) i = (i + 1) & table->mask;
+    return &table->slots[i];
+}
+
+static void make_room(Arena *arena, BorderTable *table) {
+    if (table->slots && 2 * table->count <= table->mask) return;
+    size_t room = table->slots ? 2 * (table->mask + 1) : 64;
+    BorderTable larger = {arena_new_array(arena, BorderSlot, room), room - 1, table->count};
+    for (size_t i = 0; table->slots && i <= table->mask; i++)
+        if (table->slots[i].key) *border_slot(&larger, table->slots[i].key) = table->slots[i];
+    *table = larger;
+}
+
+static SoupVertex border_vertex(Cutter *c, uint32_t a, uint32_t b) {
+    uint64_t key = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+    make_room(c->walk->arena, &c->borders);
+    BorderSlot *slot = border_slot(&c->borders, key);
+    if (!slot->key) {
+        *slot = (BorderSlot){key, find_border(c, a, b)};
+        c->borders.count++;
+    }
+    return slot->vertex;
 }
 
 static uint32_t put_vertex(Cutter *c, const SoupVertex *vertex, int side) {
@@ -294,10 +333,11 @@ static bool cut_leaf(Cutter *c, uint32_t leaf) {
     c->leaf = leaf;
     c->soup = &soup;
     c->sides = (SideList){0};
-    const RefineRules rules = {split_edge, NULL, c, MOST_TRIANGLES};
+    c->borders = (BorderTable){0};
+    const RefineRules rules = {split_edge, NULL, c, MOST_TRIANGLES, c->walk->options->interrupted};
     if (!soup_refine(c->walk->arena, &soup, (SoupMark){0, 0}, &rules)) return false;
     c->copies = arena_new_array(c->walk->arena, uint32_t, soup.vertices.count);
-    for (size_t t = 0; t < soup.triangles.count; t++) cut_triangle(c, soup.triangles.items[t].vertex);
+    for (size_t t = 0; t < soup.triangles.count && !tessellate_interrupted(c->walk); t++) cut_triangle(c, soup.triangles.items[t].vertex);
     return true;
 }
 
@@ -306,7 +346,7 @@ static bool cut_leaf(Cutter *c, uint32_t leaf) {
 static bool mesh_all(Cutter *c) {
     c->meshes = arena_new_array(c->walk->arena, LeafMesh, c->tree.leaf_count);
     for (uint32_t i = 0; i < c->tree.leaf_count; i++)
-        if (!mesh_leaf(c, i)) return false;
+        if (tessellate_interrupted(c->walk) || !mesh_leaf(c, i)) return false;
     gather_boxes(c);
     return true;
 }
@@ -353,11 +393,14 @@ bool tessellate_set(TessellateWalk *walk, const Object *object, const Transform 
     if (!(c.step > 0)) return true;
     SoupMark since = soup_mark(walk->out);
     name_surfaces(&c);
-    if (!mesh_all(&c)) return false;
+    if (!mesh_all(&c)) return tessellate_interrupted(walk) ? tessellate_give_up(walk) : false;
     for (int i = 0; i < MOST_TRIES; i++, c.step *= 4) {
         bool done = true;
-        for (uint32_t leaf = 0; leaf < c.tree.leaf_count && done; leaf++)
+        for (uint32_t leaf = 0; leaf < c.tree.leaf_count && done; leaf++) {
+            progress_update(walk->options->progress, walk->options->stage, leaf, c.tree.leaf_count);
             done = cut_leaf(&c, leaf) && walk->out->triangles.count - since.triangle <= MOST_TRIANGLES;
+        }
+        if (tessellate_interrupted(walk)) return tessellate_give_up(walk);
         if (done) break;
         if (i == 0) tessellate_doubt(walk, object, "its cuts would need too many triangles: they are coarser than asked");
         walk->out->vertices.count = since.vertex;

@@ -27,7 +27,7 @@ Transform texel_space(const TexelDef *def) {
     return transform_then(&move, &scale);
 }
 
-bool texel_layer_mesh(const TexelDef *def, const TexelLayer *layer, double tolerance, Arena *arena, TexelMesh *out,
+bool texel_layer_mesh(const TexelDef *def, const TexelLayer *layer, const TexelMeshOptions *how, Arena *arena, TexelMesh *out,
                       ShapeRefusal *refusal) {
     if (layer->density) {
         *refusal = (ShapeRefusal){0};
@@ -37,7 +37,8 @@ bool texel_layer_mesh(const TexelDef *def, const TexelLayer *layer, double toler
     TriangleSoup soup = {0};
     Transform space = texel_space(def);
     ShapeRefusal doubt = {0};
-    TessellateOptions options = {.tolerance = tolerance, .particles = particles_tessellate, .doubt = &doubt};
+    TessellateOptions options = {.tolerance = how->tolerance, .particles = particles_tessellate, .doubt = &doubt,
+                                 .interrupted = how->interrupted, .progress = how->progress, .stage = def->name ? def->name : "texel"};
     for (size_t i = 0; i < layer->content_count; i++)
         if (!tessellate(layer->contents[i], &space, &options, arena, &soup, refusal)) return false;
     *refusal = doubt;

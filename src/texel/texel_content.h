@@ -12,10 +12,15 @@ Vec3f texel_extent_of(Box3 bounds);
 /* Scene space (as the layers' contents are written) → texel space. */
 Transform texel_space(const TexelDef *def);
 
-/* The contents of one layer as triangles in texel space, in `arena`; `tolerance` is the largest distance from the true
- * surface in texel space. False, with *refusal filled, for contents that have no finite boundary or are not modelled. True with a reason in
- * *refusal (else NULL) where something is coarser than that. */
-bool texel_layer_mesh(const TexelDef *def, const TexelLayer *layer, double tolerance, Arena *arena, TexelMesh *out,
+typedef struct TexelMeshOptions {
+    double tolerance;               /* the largest distance from the true surface, in texel space */
+    const atomic_bool *interrupted; /* or NULL */
+    const Progress *progress;       /* or NULL */
+} TexelMeshOptions;
+
+/* The contents of one layer as triangles in texel space, in `arena`. False, with *refusal filled, for contents that have no finite boundary or
+ * are not modelled, and when interrupted. True with a reason in *refusal (else NULL) where something is coarser than the tolerance. */
+bool texel_layer_mesh(const TexelDef *def, const TexelLayer *layer, const TexelMeshOptions *how, Arena *arena, TexelMesh *out,
                       ShapeRefusal *refusal);
 
 #endif

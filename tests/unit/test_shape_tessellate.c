@@ -458,6 +458,43 @@ static void what_has_no_triangles_is_refused_with_its_place(void **state) {
     }
 }
 
+/* ---- interruption ---- */
+
+typedef struct Impatience {
+    atomic_bool given_up;
+    size_t told, most;
+} Impatience;
+
+static void give_up_after(void *context, const char *stage, size_t done, size_t total) {
+    Impatience *i = context;
+    assert_string_equal(stage, "set");
+    assert_true(done < total);
+    if (i->told++ == i->most) i->given_up = true;
+}
+
+static void sets_tell_how_far_they_are_and_may_be_interrupted(void **state) {
+    const ObjectKind kind = OBJECT_SPHERE;
+    Object parts[6];
+    const Object *items[6];
+    for (int i = 0; i < 6; i++) {
+        parts[i] = (Object){.kind = kind, .as.sphere = {{0.3 * i, 0, 0}, 0.5}};
+        items[i] = &parts[i];
+    }
+    ObjectGroup group = {.items = items, .count = 6};
+    const Object set = {.kind = OBJECT_MERGE, .as.group = &group};
+    for (size_t most = 0; most < 7; most += 3) {
+        Impatience impatience = {false, 0, most};
+        const Progress progress = {give_up_after, &impatience};
+        const TessellateOptions options = {.tolerance = 0.01, .interrupted = &impatience.given_up, .progress = &progress, .stage = "set"};
+        TriangleSoup soup = {0};
+        ShapeRefusal refusal = {0};
+        bool done = tessellate(&set, NULL, &options, test_arena(state), &soup, &refusal);
+        assert_int_equal(done, most >= 6);
+        assert_int_equal(refusal.reason != NULL, !done);
+        assert_int_equal(impatience.told, most >= 6 ? 6 : most + 1);
+    }
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 int main(void) {
@@ -476,6 +513,7 @@ int main(void) {
         TEST(meshes_that_make_no_sense_are_refused),
         TEST(random_trees_have_their_volume_and_are_closed),
         TEST(what_has_no_triangles_is_refused_with_its_place),
+        TEST(sets_tell_how_far_they_are_and_may_be_interrupted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,7 +28,8 @@ def decode(code):
 
 
 def read_ppm(path):
-    """PPM whose numbers are linear light: POV-Ray's +FP16 with File_Gamma=1.0."""
+    """PPM of the sRGB curve: POV-Ray's +FP16 with File_Gamma=srgb. (With another curve its old scenes, which know no gamma, would be
+    taken for something else.)"""
     data = open(path, 'rb').read()
     head = re.match(rb'P6\s+(?:#[^\n]*\n\s*)*(\d+)\s+(?:#[^\n]*\n\s*)*(\d+)\s+(?:#[^\n]*\n\s*)*(\d+)\s', data)
     if not head:
@@ -37,7 +38,7 @@ def read_ppm(path):
     values = array.array('H' if most > 255 else 'B', data[head.end():])
     if most > 255 and sys.byteorder == 'little':
         values.byteswap()
-    return Picture(width, height, [value / most for value in values])
+    return Picture(width, height, [decode(value / most) for value in values])
 
 
 def read_pfm(path):

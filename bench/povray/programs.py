@@ -44,10 +44,10 @@ def fetched(scratch, suffix, out):
 
 
 def povray(scene, out, size, options=(), quality=('+A0.1', '+AM1', '+R2'), threads=1, timeout=60, stdlib=False):
-    """The picture as PPM of 16 bits, linear light, in `out`. With `stdlib` vts's own include files go before POV-Ray's."""
+    """The picture as PPM of 16 bits, sRGB, in `out`. With `stdlib` vts's own include files go before POV-Ray's."""
     with tempfile.TemporaryDirectory() as scratch:
         done = run(['povray', '+I' + os.path.abspath(scene), '+L' + os.path.dirname(os.path.abspath(scene)), '+O%s/picture.ppm' % scratch,
-                    '+FP16', '-D', '-V', '-P', '+W%d' % size[0], '+H%d' % size[1], '+WT%d' % threads, 'File_Gamma=1.0', *quality, *options],
+                    '+FP16', '-D', '-V', '-P', '+W%d' % size[0], '+H%d' % size[1], '+WT%d' % threads, 'File_Gamma=srgb', *quality, *options],
                    STDLIB if stdlib else scratch, timeout)
         if not fetched(scratch, '.ppm', os.path.abspath(out)) and done.status == 0:
             done.status = 1

@@ -13,7 +13,6 @@ import pictures
 import programs
 
 LONGEST = 160       # pixels of the longer side
-PATIENCE = 60       # seconds for one picture
 LOOKS_RIGHT = 0.05  # RMSE of the blurred pictures
 SHEET = 12          # scenes on a sheet
 
@@ -26,6 +25,8 @@ def arguments():
     parser.add_argument('--include', default='/usr/share/povray-3.7/include')
     parser.add_argument('--only', default='', help='scenes whose name contains this')
     parser.add_argument('--povray-only', action='store_true', help='draw what is missing of POV-Ray\'s pictures, and end')
+    parser.add_argument('--patience', type=int, default=60, help='seconds for one picture; default 60')
+    parser.add_argument('--part', default='0/1', help='K/N: of all scenes those whose number gives K divided by N, and no table')
     parser.add_argument('--redo', action='store_true', help='draw with vts again, even where the work folder has a picture')
     parser.add_argument('-o', '--output', default=os.path.join(programs.TOP, 'doc', 'povray-samples.md'))
     return parser.parse_args()
@@ -86,10 +87,10 @@ class Sample:
         with open(self.notes, 'w') as out:
             json.dump(self.facts, out)
 
-    def draw_theirs(self):
+    def draw_theirs(self, patience):
         if 'povray' in self.facts:
             return
-        done = programs.povray(self.scene, self.theirs, self.size, self.film, timeout=PATIENCE)
+        done = programs.povray(self.scene, self.theirs, self.size, self.film, timeout=patience)
         self.keep(povray=done.status, povray_s=done.seconds, povray_said=done.said[-600:] if done.status else '')
 
     def draw_ours(self, options):
@@ -97,11 +98,11 @@ class Sample:
             return
         if os.path.exists(self.ours):
             os.remove(self.ours)
-        done = programs.vts(self.scene, self.ours, self.size, self.film + ['-I', options.include], options.vts, timeout=PATIENCE)
+        done = programs.vts(self.scene, self.ours, self.size, self.film + ['-I', options.include, '--memory-limit', '4G'], options.vts, timeout=options.patience)
         words = list(dict.fromkeys(re.findall(r"warning: '([^']+)' (?:is not modelled|is drawn as|of [^:]* is not modelled)", done.said)))
         error = re.search(r'error: (.*)', done.said)
         self.keep(vts=done.status, vts_s=done.seconds, words=words, said=done.said[-3000:],
-                  error='longer than %d s' % PATIENCE if done.status is None else error.group(1) if error else '')
+                  error='longer than %d s' % options.patience if done.status is None else error.group(1) if error else '')
         self.compare()
 
     def pictures(self):
@@ -125,7 +126,7 @@ class Sample:
         figures = '%.4f | %.4f' % (f['rmse'], f['blurred']) if f.get('rmse') is not None else '– | –'
         left_out = ' '.join('`%s`' % word for word in f['words']) if f['vts'] == 0 else f['error'].replace('|', '\\|')
         if f['povray'] != 0:
-            left_out += ' (no picture of POV-Ray: %s)' % ('longer than %d s' % PATIENCE if f['povray'] is None else 'it gives an error')
+            left_out += ' (no picture of POV-Ray: %s)' % ('it takes too long' if f['povray'] is None else 'it gives an error')
         return '| %s | %s | %s | %s | %s | %.1f | %.1f |' % (self.name, drawn, figures, 'yes' if self.right() else 'no', left_out,
                                                             f['povray_s'], f['vts_s'])
 
@@ -164,11 +165,12 @@ def main():
     os.makedirs(options.work, exist_ok=True)
     samples = [Sample(scene, options) for scene in scenes_in(options.scenes)]
     samples = [s for s in samples if options.only in s.name]
-    for sample in samples:
-        sample.draw_theirs()
+    part, parts = (int(number) for number in options.part.split('/'))
+    for sample in sorted(samples, key=lambda s: s.facts.get('povray_s', 0))[part::parts]:
+        sample.draw_theirs(options.patience)
         if not options.povray_only:
             sample.draw_ours(options)
-    if options.povray_only:
+    if options.povray_only or parts > 1:
         return
     write_sheets(samples, options.work)
     write_table(samples, options.output)

@@ -27,6 +27,7 @@
 #ifndef VTS_EVAL_BLOCK_H
 #define VTS_EVAL_BLOCK_H
 
+#include "base/gamma.h"
 #include "base/diag.h"
 #include "eval/value.h"
 
@@ -85,6 +86,8 @@ typedef struct BuildContext {
     const Texture *default_texture;
     int noise_generator; /* of global_settings: 1, 2, 3; 0: not given */
     bool old_noise;      /* #version is below 3.5: generator 1 unless one is given */
+    double assumed_gamma; /* of global_settings, or GAMMA_SRGB; 0: not given */
+    bool old_gamma;      /* #version is below 3.7: colours are what screens are sent unless assumed_gamma is given */
     int wave_count;      /* number_of_waves of global_settings; 0: not given */
     bool names_missing;  /* an include was not found: what it declares is missing, without a word */
     void *eval;          /* for the evaluator itself */
@@ -99,6 +102,11 @@ const EvalBlock *block_keep(Arena *arena, const EvalBlock *block);
 /* The noise generator of functions and patterns that name none. */
 static inline int build_noise_generator(const BuildContext *context) {
     return context->noise_generator ? context->noise_generator : context->old_noise ? 1 : 2;
+}
+
+/* What the numbers of colours mean: light to the power of 1 through this, or GAMMA_SRGB. */
+static inline double build_assumed_gamma(const BuildContext *context) {
+    return context->assumed_gamma != 0 ? context->assumed_gamma : context->old_gamma ? GAMMA_SRGB : 1;
 }
 
 /* Makes the value of a block; false after a diagnostic (out is then VALUE_ERROR). */

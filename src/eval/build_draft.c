@@ -348,6 +348,7 @@ const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context, double
                      .default_texture = draft->first_default,
                      .settings = draft->settings,
                      .clock = clock};
+    scene->settings.assumed_gamma = build_assumed_gamma(context);
     if (draft->fog) scene->fog = *draft->fog;
     return scene;
 }

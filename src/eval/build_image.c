@@ -127,7 +127,7 @@ static void rehash(ImageMap *image) {
     double numbers[] = {image->map_type,   image->interpolate,   image->once,
                         image->use_index,  image->premultiplied, image->straight,
                         image->filter_all, image->transmit_all,  image->gamma,
-                        image->use_alpha};
+                        image->use_alpha,  image->assumed_gamma};
     hash_add(h, numbers, sizeof numbers);
     hash_add(h, image->palette_filter, 3 * image->palette_count * sizeof(double));
 }
@@ -160,7 +160,9 @@ const ImageMap *image_read(Reader *parent, const Word *word) {
     if (!reader_end_nested(parent, &reader)) return NULL;
     draft.image.palette_filter = draft.palette.items;
     draft.image.palette_count = draft.palette.count / 3;
-    if (draft.image.gamma == 0) draft.image.gamma = usual_gamma(&draft.image, word->text);
+    bool told = draft.image.gamma != 0;
+    if (!told) draft.image.gamma = usual_gamma(&draft.image, word->text);
+    draft.image.assumed_gamma = !told && draft.image.gamma == 1 ? 1 : build_assumed_gamma(parent->context);
     rehash(&draft.image);
     if (draft.image.path && !picture_file_load(parent->context, &draft.image, draft.file)) {
         parent->failed = true;

@@ -54,16 +54,14 @@ static void read_samples(Reader *reader, const Word *word, void *target) {
                      samples);
 }
 
-/* POV-Ray's `assumed_gamma srgb` is near enough to 2.2 to be named as such. */
 static void read_gamma(Reader *reader, const Word *word, void *target) {
     SettingsDraft *draft = target;
     Word next;
     if (word->count == 0 && reader_take_word(reader, "srgb", &next))
-        draft->settings.assumed_gamma = 2.2;
-    else if (word_arguments(reader, word, 1, 1))
-        word_float(reader, word, 0, &draft->settings.assumed_gamma);
-    if (!reader->failed && !(draft->settings.assumed_gamma > 0))
+        draft->settings.assumed_gamma = GAMMA_SRGB;
+    else if (word_arguments(reader, word, 1, 1) && word_float(reader, word, 0, &draft->settings.assumed_gamma) && !(draft->settings.assumed_gamma > 0))
         reader_error(reader, word->whole, "'assumed_gamma' must be greater than 0");
+    reader->context->assumed_gamma = draft->settings.assumed_gamma;
 }
 
 static void read_charset(Reader *reader, const Word *word, void *target) {

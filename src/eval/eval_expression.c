@@ -162,9 +162,6 @@ Slot *eval_element(Eval *ev, const Node *target, Array **array, bool *failed) {
     return slot;
 }
 
-/* IEC 61966-2-1: the display's encoding to linear light. */
-static double srgb_to_linear(double c) { return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4); }
-
 static int component_index(int keyword) {
     switch (keyword) {
     case KW_red: return 0;
@@ -187,7 +184,8 @@ static void check_color_size(Eval *ev, const ColorPart *part, const Value *v) {
                      keyword_text((Keyword)keyword), size, v->size);
 }
 
-static void color_from(int keyword, const Value *v, double out[5]) {
+/* `gamma`: what the scene's numbers mean. */
+static void color_from(int keyword, const Value *v, double gamma, double out[5]) {
     for (int i = 0; i < 5; i++) out[i] = value_component(v, i);
     if (keyword == KW_rgb || keyword == KW_srgb) {
         if (v->kind == VALUE_FLOAT)
@@ -201,7 +199,7 @@ static void color_from(int keyword, const Value *v, double out[5]) {
         out[3] = 0;
     }
     if (keyword == KW_srgb || keyword == KW_srgbf || keyword == KW_srgbt || keyword == KW_srgbft)
-        for (int i = 0; i < 3; i++) out[i] = srgb_to_linear(out[i]);
+        for (int i = 0; i < 3; i++) out[i] = gamma_from_light(gamma_to_light(out[i], GAMMA_SRGB), gamma);
 }
 
 Value eval_color(Eval *ev, const Node *node) {
@@ -214,7 +212,7 @@ Value eval_color(Eval *ev, const Node *node) {
             if (!value_is_numeric(&v))
                 ok = value_to_vector(ev, &v, part->value->span, c, 5);
             else
-                color_from(part->component, &v, c);
+                color_from(part->component, &v, build_assumed_gamma(&ev->build), c);
             check_color_size(ev, part, &v);
         } else {
             ok = value_to_float(ev, &v, part->value->span, &c[component_index(part->component)]) && ok;

@@ -468,6 +468,7 @@ static void run_version(Eval *ev, const Node *node) {
     } else {
         ev->version = version;
         ev->build.old_noise = version < 3.5;
+        ev->build.old_gamma = version < 3.7;
     }
     if (node->op == 0) diag_warning(ev->diags, node->span, "#version wants a ';' after its number");
 }

@@ -1,5 +1,6 @@
 #include "pattern/picture_map.h"
 
+#include "base/gamma.h"
 #include "image/picture.h"
 
 enum { MAP_PLANAR = 0, MAP_SPHERICAL = 1, MAP_CYLINDRICAL = 2, MAP_TOROIDAL = 5, MAP_ANGULAR = 7 };
@@ -93,7 +94,8 @@ Color picture_map_color(const ImageMap *image, const Spot *spot) {
     PictureColor c;
     if (!look_up(image, spot, &c)) return (Color){1, 1, 1, 0, 1};
     double transmit = image->picture->has_alpha ? 1 - c.alpha : 0;
-    return (Color){c.red, c.green, c.blue, image->filter_all, transmit + image->transmit_all};
+    double gamma = image->assumed_gamma;
+    return (Color){gamma_from_light(c.red, gamma), gamma_from_light(c.green, gamma), gamma_from_light(c.blue, gamma), image->filter_all, transmit + image->transmit_all};
 }
 
 double picture_map_value(const ImageMap *image, const Spot *spot) {

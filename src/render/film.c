@@ -1,5 +1,6 @@
 #include "render/film.h"
 
+#include "base/gamma.h"
 #include "render/preview.h"
 
 #include <math.h>
@@ -16,9 +17,15 @@ typedef struct Film {
     AovSum *aovs; /* of the tiles that the workers see */
     int tiles_x, tiles_y;
     float gain;
+    double gamma; /* of what is seen */
     atomic_size_t done;
     pthread_mutex_t progress_lock;
 } Film;
+
+/* Light. */
+static float exposed(const Film *film, float seen) {
+    return (film->gamma == 1 ? seen : (float)gamma_to_light((double)seen, film->gamma)) * film->gain;
+}
 
 static void expose_tile(void *context, size_t index, int worker) {
     Film *film = context;
@@ -38,9 +45,9 @@ static void expose_tile(void *context, size_t index, int worker) {
             int i = (y - y0) * (x1 - x0) + x - x0;
             Radiance r = seen[i];
             float *sample = image_pixel(film->image, x - options->region[0], y - options->region[1]);
-            sample[0] = r.color.x * film->gain;
-            sample[1] = r.color.y * film->gain;
-            sample[2] = r.color.z * film->gain;
+            sample[0] = exposed(film, r.color.x);
+            sample[1] = exposed(film, r.color.y);
+            sample[2] = exposed(film, r.color.z);
             if (options->alpha) sample[3] = r.alpha;
             if (aovs) aov_write(options->aovs, &aovs[i], r.alpha, sample + (options->alpha ? 4 : 3));
         }
@@ -61,10 +68,10 @@ static bool init_image(const RenderOptions *options, MemoryBudget *memory, Image
     return image_init(out, width, height, count, names, memory, error);
 }
 
-bool film_expose(const RenderOptions *options, const char *stage, FilmTile *tile, void *context, MemoryBudget *memory, Image *out,
+bool film_expose(const RenderOptions *options, double gamma, const char *stage, FilmTile *tile, void *context, MemoryBudget *memory, Image *out,
                  StrBuf *error) {
     if (!init_image(options, memory, out, error)) return false;
-    Film film = {.options = options, .stage = stage, .tile = tile, .context = context, .image = out, .gain = (float)exp2(options->exposure),
+    Film film = {.options = options, .stage = stage, .tile = tile, .context = context, .image = out, .gain = (float)exp2(options->exposure), .gamma = gamma,
                  .tiles_x = (options->region[2] - 1) / FILM_TILE - options->region[0] / FILM_TILE + 1,
                  .tiles_y = (options->region[3] - 1) / FILM_TILE - options->region[1] / FILM_TILE + 1};
     if (options->aovs) film.aovs = calloc((size_t)pool_threads(options->pool) * FILM_TILE * FILM_TILE, sizeof *film.aovs);

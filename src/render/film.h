@@ -35,9 +35,10 @@ enum { FILM_TILE = 32 };
  * wanted; comes as zeros). Called by worker `worker` of the pool; must not depend on it. */
 typedef void FilmTile(void *context, int worker, int x0, int y0, int x1, int y1, Radiance *out, AovSum *aovs);
 
-/* Exposes the region (R G B, or R G B A with alpha, then the further channels; `out` is initialised here). False when cancelled or out of memory (text
+/* Exposes the region (R G B, or R G B A with alpha, then the further channels; `out` is initialised here). What pixels see are numbers of
+ * this gamma (base/gamma.h). False when cancelled or out of memory (text
  * in `error`, which may be NULL); `out` then holds nothing. */
-bool film_expose(const RenderOptions *options, const char *stage, FilmTile *tile, void *context, MemoryBudget *memory, Image *out,
+bool film_expose(const RenderOptions *options, double gamma, const char *stage, FilmTile *tile, void *context, MemoryBudget *memory, Image *out,
                  StrBuf *error);
 
 #endif

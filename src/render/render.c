@@ -83,7 +83,7 @@ bool render_picture(const CompiledScene *compiled, const RenderOptions *options,
     int workers = pool_threads(options->pool);
     Frame frame = {.compiled = compiled, .options = options};
     make_workers(&frame, workers);
-    bool done = film_expose(options, "render", see_tile, &frame, memory, out, error);
+    bool done = film_expose(options, compiled->scene->settings.assumed_gamma, "render", see_tile, &frame, memory, out, error);
     *stats = (RenderStats){.error_estimate = -1};
     count_workers(&frame, workers, stats);
     arena_reset_to(compiled->arena, mark);

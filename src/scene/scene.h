@@ -112,6 +112,7 @@ typedef struct ImageMap {
     bool use_index;               /* an index into the palette counts, not its colour */
     bool premultiplied, straight; /* alpha, if the text says so */
     double gamma;                 /* of the file; 0: the format's own; -1: sRGB */
+    double assumed_gamma;         /* what light becomes in the scene's numbers (base/gamma.h) */
     double filter_all, transmit_all;
     double bump_size;             /* of a bump_map; 0: not given */
     const struct Picture *picture; /* image/picture.h; NULL: not drawn */
@@ -577,7 +578,7 @@ typedef struct Fog {
 typedef struct GlobalSettings {
     double max_error;      /* 0: not given */
     Color ambient_light;   /* 1 */
-    double assumed_gamma;  /* 1 */
+    double assumed_gamma;  /* 1: colours are light; else light to the power of 1 through it, or GAMMA_SRGB */
     int max_trace_level;   /* 5 */
     double adc_bailout;    /* 1/255: what would add less is not traced */
     Vec3 irid_wavelength;  /* of red, green and blue; 0.70, 0.52, 0.48 */

@@ -82,6 +82,12 @@ static void read_bump_map(Reader *reader, const Word *word, void *target) {
         draft->normal.amount = draft->pattern.pigment.image->bump_size;
 }
 
+/* Its kind is left to find_form(). */
+static void read_facets(Reader *reader, const Word *word, void *target) {
+    (void)target;
+    word_arguments(reader, word, 0, 0);
+}
+
 /* Everything that follows is the normal in the plane of u and v. */
 static void read_uv(Reader *reader, const Word *word, void *target) {
     double on = 1;
@@ -225,6 +231,9 @@ static const WordRule rules[] = {
     {"bump_size", WORD_FLOAT, FIELD(amount), NULL, false},
     {"accuracy", WORD_FLOAT, FIELD(accuracy), NULL, false},
     {"no_bump_scale", WORD_FLAG, FIELD(unscaled), NULL, false},
+    {"facets", WORD_CUSTOM, 0, read_facets, false},
+    {"coords", WORD_FLOAT, FIELD(facet_coords), NULL, false},
+    {"size", WORD_FLOAT, FIELD(facet_size), NULL, false},
     {"bump_map", WORD_CUSTOM, 0, read_bump_map, false},
     {"normal_map", WORD_CUSTOM, 0, read_normal_map, false},
     {"slope_map", WORD_CUSTOM, 0, read_slope_map, false},
@@ -236,7 +245,7 @@ static NormalDraft *begin(Reader *reader) {
     draft->pattern.pigment = pigment_default();
     draft->pattern.is_normal = true;
     if (reader->context->wave_count) draft->pattern.pigment.wave_count = reader->context->wave_count;
-    draft->normal = (Normal){.span = reader->block->span, .amount = 0.5, .accuracy = 0.02};
+    draft->normal = (Normal){.span = reader->block->span, .amount = 0.5, .accuracy = 0.02, .facet_size = 0.1};
     return draft;
 }
 

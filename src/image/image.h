@@ -44,6 +44,7 @@ typedef struct Image {
     ImageAttribute *attributes;
     size_t attribute_count, attribute_capacity;
     ImageSample stored_as; /* what the file it was loaded from holds; IMAGE_SAMPLE_FLOAT for others */
+    bool stored_linear;    /* its integers are light, not sRGB codes */
     Arena texts;           /* names and attributes */
     MemoryBudget *budget;  /* that the pixels were taken from; may be NULL */
 } Image;

@@ -71,6 +71,7 @@ static bool read_opened(Image *image, const OiioShim *shim, OiioReader *reader, 
         return fail(error, path, why);
     }
     image->stored_as = header->sample;
+    image->stored_linear = header->linear;
     for (size_t i = 0; i < header->attribute_count; i++) {
         const ImageAttribute *attribute = &header->attributes[i];
         if (attribute->text)

@@ -61,7 +61,7 @@ void picture_make(const Image *image, Arena *arena, Picture *out) {
     }
 }
 
-/* image_load() took integers for sRGB. */
+/* image_load() took integers for sRGB, unless the file says otherwise. */
 static void change_gamma(Image *image, double gamma) {
     int alpha = image_channel(image, "A");
     size_t count = (size_t)image->width * (size_t)image->height;
@@ -69,7 +69,10 @@ static void change_gamma(Image *image, double gamma) {
         float *pixel = image->pixels + i * (size_t)image->channels;
         double a = alpha >= 0 ? (double)pixel[alpha] : 1;
         for (int c = 0; c < image->channels; c++)
-            if (c != alpha && a > 0) pixel[c] = (float)(a * pow(srgb_encode((double)pixel[c] / a), gamma));
+            if (c != alpha && a > 0) {
+                double light = (double)pixel[c] / a;
+                pixel[c] = (float)(a * pow(image->stored_linear ? light : srgb_encode(light), gamma));
+            }
     }
 }
 

@@ -30,9 +30,8 @@ static Vec3 normal_out_of_pattern(const Normal *normal, const BumpPlace *place, 
     return settled(normal, n);
 }
 
-static Spot spot_at(const Pigment *pattern, const BumpPlace *place, Vec3 p) {
+static Spot spot_at(const Pigment *pattern, const BumpPlace *place) {
     Spot spot = *place->spot;
-    spot.p = p;
     for (int k = 0; k < 2; k++)
         if (place->outer[k]) spot = spot_back(&spot, place->outer[k]);
     return spot_in_pattern(pattern, &spot, pattern_traits(pattern->kind).warps_itself);
@@ -40,7 +39,7 @@ static Spot spot_at(const Pigment *pattern, const BumpPlace *place, Vec3 p) {
 
 /* ---- heights ---- */
 
-/* Cubics between the entries, which give height and slope; as POV-Ray, slopes count per unit of the pattern's value. */
+/* Cubics between the entries, which give height and slope; as POV-Ray has it, slopes count per interval. */
 static double slope_height(const Normal *normal, double value) {
     const SlopeEntry *e = normal->slopes;
     size_t last = normal->slope_count - 1, k = 0;
@@ -48,7 +47,7 @@ static double slope_height(const Normal *normal, double value) {
     if (value >= e[last].position) return e[last].height;
     while (value >= e[k + 1].position) k++;
     double width = e[k + 1].position - e[k].position, t = (value - e[k].position) / width;
-    double rise = e[k + 1].height - e[k].height, s0 = e[k].slope * width, s1 = e[k + 1].slope * width;
+    double rise = e[k + 1].height - e[k].height, s0 = e[k].slope, s1 = e[k + 1].slope;
     return e[k].height + t * (s0 + t * (3 * rise - 2 * s0 - s1 + t * (s0 + s1 - 2 * rise)));
 }
 
@@ -69,12 +68,11 @@ static void add_height(void *target, size_t entry, double share) {
     h->sum += share * height_of(h->normal, value);
 }
 
-/* The mean height over the spot. */
-static double height_at(const Normal *normal, const BumpPlace *place, Vec3 p) {
-    Spot spot = spot_at(normal->pattern, place, p);
-    if (spot_is_point(&spot)) return height_of(normal, pattern_number(normal->pattern, &spot));
+/* The mean height over a spot of pattern space. */
+static double height_at(const Normal *normal, const Spot *spot) {
+    if (spot_is_point(spot)) return height_of(normal, pattern_number(normal->pattern, spot));
     HeightSum sum = {normal, 0};
-    pattern_blend(normal->pattern, &spot, add_height, &sum);
+    pattern_blend(normal->pattern, spot, add_height, &sum);
     return sum.sum;
 }
 
@@ -84,10 +82,11 @@ static Vec3 gradient_bump(const Normal *normal, const BumpPlace *place, Vec3 n) 
                                     {-0.471404521, -0.333333333, 0.816496581},
                                     {-0.471404521, -0.333333333, -0.816496581},
                                     {0, 1, 0}};
-    double amount = -5 * normal->amount; /* POV-Ray's */
+    double amount = -0.1 * normal->amount / normal->accuracy; /* POV-Ray's */
+    Spot middle = spot_at(normal->pattern, place), corner = middle;
     for (int k = 0; k < 4; k++) {
-        Vec3 p = vec3_madd(place->spot->p, corners[k], normal->accuracy);
-        n = vec3_madd(n, corners[k], amount * height_at(normal, place, p));
+        corner.p = vec3_madd(middle.p, corners[k], normal->accuracy);
+        n = vec3_madd(n, corners[k], amount * height_at(normal, &corner));
     }
     return n;
 }
@@ -108,7 +107,7 @@ static void add_normal(void *target, size_t entry, double share) {
 }
 
 static Vec3 blended(const Normal *normal, const BumpPlace *place, Vec3 n) {
-    NormalSum sum = {.normal = normal, .spot = spot_at(normal->pattern, place, place->spot->p), .n = n};
+    NormalSum sum = {.normal = normal, .spot = spot_at(normal->pattern, place), .n = n};
     pattern_blend(normal->pattern, &sum.spot, add_normal, &sum);
     return vec3_length_squared(sum.sum) > 0 ? sum.sum : n;
 }
@@ -120,8 +119,9 @@ Vec3 bump_normal(const Normal *normal, const BumpPlace *place, Vec3 n) {
     } else if (normal->form == NORMAL_MAP) {
         inside = blended(normal, place, inside);
     } else {
-        Spot spot = spot_at(normal->pattern, place, place->spot->p);
-        inside = vec3_madd(inside, bump_field(normal, &spot, inside), normal->amount);
+        Spot spot = spot_at(normal->pattern, place);
+        bool sized = normal->form != NORMAL_FACETS && normal->form != NORMAL_PICTURE;
+        inside = vec3_madd(inside, bump_field(normal, &spot, inside), sized ? normal->amount : 1);
     }
     Vec3 out = normal_out_of_pattern(normal, place, inside);
     return vec3_is_finite(out) && vec3_length_squared(out) > 0 ? out : n;

@@ -16,7 +16,8 @@ typedef struct BumpPlace {
  * those of the smoothed pattern, so that they fade instead of aliasing. */
 Vec3 bump_normal(const Normal *normal, const BumpPlace *place, Vec3 n);
 
-/* bump_field.c: what the forms with fields of their own add to the normal, amount 1, in pattern space; `n`, the normal, is unit. */
+/* bump_field.c: what the forms with fields of their own add to the normal `n` of pattern space; to be multiplied by the amount, but of
+ * facets and pictures. */
 Vec3 bump_field(const Normal *normal, const Spot *spot, Vec3 n);
 
 #endif

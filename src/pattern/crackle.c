@@ -53,3 +53,5 @@ double crackle_number(const Pigment *pigment, Vec3 p) {
         if (form[k] != 0) value += form[k] * length_of(nearest.sums[k] + offset, c->metric);
     return isnan(value) ? 0 : double_clamp(value, 0, 1); /* with metric 0 all distances are infinite */
 }
+
+Vec3 crackle_point(Vec3 p, double metric) { return find_nearest(p, metric).point; }

@@ -9,6 +9,8 @@
 double fractal_number(const Pigment *pigment, Vec3 p);
 /* crackle.c */
 double crackle_number(const Pigment *pigment, Vec3 p);
+/* The nearest of its points. */
+Vec3 crackle_point(Vec3 p, double metric);
 /* water.c: ripples and waves, from 0 to 1; `wave` weighs long waves more. */
 double water_number(const Pigment *pigment, Vec3 p, bool waves);
 /* What they add to a normal; waves shorter than the spot fade. */

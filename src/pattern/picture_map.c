@@ -111,3 +111,20 @@ size_t picture_map_index(const ImageMap *image, const Spot *spot) {
     if (!look_up(image, &middle, &c)) return 0;
     return (size_t)(255 * double_clamp(c.red, 0, 1));
 }
+
+bool picture_map_heights(const ImageMap *image, const Spot *spot, double out[3]) {
+    static const int steps[3][2] = {{0, 0}, {-1, -1}, {1, -1}};
+    Place place = place_of(image, spot->p);
+    if (place.outside || !image->picture || !isfinite(place.u) || !isfinite(place.v)) return false;
+    const PictureLevel *level = &image->picture->levels[0];
+    PictureSpot at = {.u = place.u, .v = place.v};
+    if (!spot_is_point(spot)) footprint(image, spot, at.axes);
+    for (int k = 0; k < 3; k++) {
+        PictureSpot beside = at;
+        beside.u += (double)steps[k][0] / level->width;
+        beside.v += (double)steps[k][1] / level->height;
+        PictureColor c = picture_color(image->picture, &beside, (PictureFilter)image->interpolate, false);
+        out[k] = 0.297 * c.red + 0.589 * c.green + 0.114 * c.blue;
+    }
+    return true;
+}

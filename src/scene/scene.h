@@ -224,6 +224,8 @@ struct Normal {
     double amount;                 /* bump_size; 0.5 */
     double accuracy;               /* how far from each other values are compared; 0.02 */
     bool unscaled;                 /* no_bump_scale */
+    double facet_coords;           /* of facets: how far they are turned; 0: they are those of a sphere, `facet_size` */
+    double facet_size;
     const Normal *const *normals;  /* of NORMAL_MAP, one for each entry of the pattern */
     size_t normal_count;
     const SlopeEntry *slopes;      /* slope_map, sorted; NULL */

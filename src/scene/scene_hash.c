@@ -174,6 +174,7 @@ void normal_rehash(Normal *n) {
     hash_add_u64(&h, n->form);
     hash_add_hash(&h, n->pattern->hash);
     hash_add_vec3(&h, vec3(n->amount, n->accuracy, n->unscaled));
+    hash_add_vec3(&h, vec3(n->facet_coords, n->facet_size, 0));
     hash_add_u64(&h, n->normal_count);
     for (size_t i = 0; i < n->normal_count; i++) hash_add_hash(&h, n->normals[i]->hash);
     for (size_t i = 0; i < n->slope_count; i++)

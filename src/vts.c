@@ -10,6 +10,7 @@
 
 #include <errno.h>
 #include <setjmp.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -27,6 +28,7 @@ static void memory_exhausted(void *context) {
 
 static void pass_progress(void *context, const char *stage, size_t done, size_t total) {
     VtsSession *session = context;
+    snprintf(session->stage, sizeof session->stage, "%s", stage);
     if (session->options.on_progress) session->options.on_progress(session->options.context, stage, done, total);
 }
 
@@ -249,6 +251,7 @@ VtsStatus session_evaluate(VtsSession *session, const char *path, EvalMode mode)
                            .print_tokens = mode.print_tokens, .print_ast = mode.print_ast};
     VtsStatus status = apply_limits(session, &options.limits);
     if (status != VTS_OK) return status;
+    snprintf(session->stage, sizeof session->stage, "reading");
     EvalStatus result = eval_file(path, &options, &session->sources, &session->diags, &session->names, &session->parse,
                                   &session->scene_arena, &session->scene);
     session_print_diagnostics(session);
@@ -265,6 +268,7 @@ VtsStatus session_evaluate(VtsSession *session, const char *path, EvalMode mode)
 VtsStatus session_compile(VtsSession *session, bool exact, int texel_resolution) {
     VtsStatus status = apply_settings(session);
     if (status != VTS_OK) return status;
+    snprintf(session->stage, sizeof session->stage, "objects");
     CompileOptions options = {.pool = session->pool, .memory = &session->memory, .texels = session->texels, .progress = &session->progress,
                               .width = session->options.width, .height = session->options.height,
                               .texel_resolution = texel_resolution,
@@ -327,6 +331,7 @@ VtsStatus session_draw(VtsSession *session, bool exact, RenderStats *stats) {
     RenderOptions options = {.pool = session->pool, .progress = &session->progress, .interrupted = &session->interrupted,
                              .samples = exact ? o->reference_samples : session->scene->settings.samples,
                              .seed = o->seed, .exposure = o->exposure, .alpha = o->alpha};
+    snprintf(session->stage, sizeof session->stage, "picture");
     if (o->aovs) options.aovs = &session->aovs;
     memcpy(options.region, o->region, sizeof options.region);
     if (options.region[2] == 0) options.region[2] = o->width, options.region[3] = o->height;
@@ -443,8 +448,10 @@ static VtsStatus perform(VtsSession *session, const Call *call) {
 static void report_memory(VtsSession *session) {
     StrBuf text = {0};
     strbuf_adds(&text, "vts: error: ");
-    if (session->memory.limit) strbuf_addf(&text, "the memory limit of %zu bytes was reached (--memory-limit)\n", session->memory.limit);
-    else strbuf_adds(&text, "out of memory\n");
+    if (session->memory.limit) strbuf_addf(&text, "the memory limit of %zu bytes was reached (--memory-limit)", session->memory.limit);
+    else strbuf_adds(&text, "out of memory");
+    if (session->stage[0]) strbuf_addf(&text, ", at the stage '%s'", session->stage);
+    strbuf_adds(&text, "\n");
     strbuf_adds(&session->printed, text.data);
     if (session->options.on_diagnostic) session->options.on_diagnostic(session->options.context, text.data, true);
     strbuf_free(&text);

@@ -15,6 +15,7 @@ struct VtsSession {
     MemoryBudget memory;
     jmp_buf out_of_memory; /* valid while `guarded` */
     Pool *pool;
+    char stage[64]; /* of the work that is being done */
     AovPlan aovs;
     struct Preview *preview;
     const char *scene_name; /* of the picture that is being drawn */

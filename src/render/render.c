@@ -51,7 +51,7 @@ static void make_workers(Frame *frame, int workers) {
         return;
     }
     SamplePlan plan = {.fixed = compiled->skin_count ? 0 : options->samples, .most = options->samples > 0 ? options->samples : compiled->most_samples,
-                       .max_error = compiled->max_error, .gain = (float)exp2(options->exposure), .seed = options->seed, .interrupted = options->interrupted};
+                       .max_error = compiled->max_error, .seed = options->seed, .interrupted = options->interrupted};
     frame->samplers = arena_new_array(arena, Sampler *, (size_t)workers);
     for (int i = 0; i < workers; i++) frame->samplers[i] = sampler_create(compiled, &plan, arena);
 }

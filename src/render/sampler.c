@@ -14,7 +14,7 @@ static const double EDGE_GAIN = 0.4;
 /* The squared error of a mean from the squared difference of its halves: 1/4 if they were random, less where they are parts of a net. */
 static const double HALVES_TO_ERROR = 0.2;
 /* Whoever stops where errors seem to be small stops more often where they only seem so: what was found true of the sum of squares. */
-static const double CAUTION = 1.6;
+static const double CAUTION = 2.4;
 /* Samples at edges share the light of the middles around, of two at least, that see as smooth a part of the same surface and agree. */
 static const double SAME_NORMAL = 0.98, NEAREST = 0.05;
 /* What is known of a law by itself counts as much as so many pixels. */
@@ -110,9 +110,8 @@ static bool view_sample(const View *view, const Draw *draw, double x, double y, 
     return view_ray(view, x, y, u, v, width, cone);
 }
 
-static Vec3f shown(const Sampler *sp, Vec3f color) {
-    float gain = sp->plan.gain;
-    return vec3f(float_clamp(color.x * gain, 0, 1), float_clamp(color.y * gain, 0, 1), float_clamp(color.z * gain, 0, 1));
+static Vec3f shown(Vec3f color) {
+    return vec3f(float_clamp(color.x, 0, 1), float_clamp(color.y, 0, 1), float_clamp(color.z, 0, 1));
 }
 
 /* What a pixel beside the tile sees is not wanted. */
@@ -131,9 +130,9 @@ typedef struct Shared {
     int count;
 } Shared;
 
-static void share_middle(Shared *shared, const Sampler *sp, const Cell *cell, double dx, double dy) {
+static void share_middle(Shared *shared, const Cell *cell, double dx, double dy) {
     float weight = (float)(1 / (dx * dx + dy * dy + NEAREST));
-    Vec3f light = shown(sp, cell->middle.color);
+    Vec3f light = shown(cell->middle.color);
     if (shared->count++ == 0) shared->least = shared->most = light;
     shared->least = vec3f(float_min(shared->least.x, light.x), float_min(shared->least.y, light.y), float_min(shared->least.z, light.z));
     shared->most = vec3f(float_max(shared->most.x, light.x), float_max(shared->most.y, light.y), float_max(shared->most.z, light.z));
@@ -152,7 +151,7 @@ static bool share_light(const Sampler *sp, const Cell *cell, double x, double y,
         for (int column = -1; column <= 1; column++) {
             const Cell *other = cell + row * EDGE + column;
             if (other->object != object || (hit && (double)vec3f_dot(other->normal, normal) < SAME_NORMAL)) continue;
-            share_middle(&shared, sp, other, x - 0.5 - column, y - 0.5 - row);
+            share_middle(&shared, other, x - 0.5 - column, y - 0.5 - row);
         }
     Vec3f range = vec3f_sub(shared.most, shared.least);
     if (shared.count < 2 || (double)float_max(range.x, float_max(range.y, range.z)) > sp->plan.max_error) return false;
@@ -177,7 +176,7 @@ static void add_sample(Sampler *sp, Cell *cell, int px, int py, double x, double
     Radiance seen = {{0, 0, 0}, 0};
     if (cell->count > 0 && ray && share_light(sp, cell, x, y, found ? &hit : NULL, &seen)) tracer->counters.camera_rays++;
     else if (ray) seen = trace_cone(tracer, &cone, found ? &hit : NULL, &reaching);
-    Vec3f light = shown(sp, seen.color);
+    Vec3f light = shown(seen.color);
     if (aovs) {
         AovSample surface = found ? aov_of_surface(&cone, &hit, reaching) : (AovSample){.share = 0};
         AovSample voxels = matter_sum_end(&matter, &cone);
@@ -225,6 +224,7 @@ static void see_more(Sampler *sp, int index, int count) {
         double x, y;
         draw.index = (uint32_t)(sp->plan.fixed ? k : k - 1);
         draw_pair(&draw, DRAW_PIXEL, &x, &y);
+        if (sp->plan.fixed == 1) x = y = 0.5;
         if (k == half) cell->late = vec3f(0, 0, 0), cell->late_count = 0;
         add_sample(sp, cell, px, py, x, y, width);
     }
@@ -284,14 +284,22 @@ static double halves_error(const Cell *cell) {
     return HALVES_TO_ERROR * (double)mean_square(vec3f_sub(a, b));
 }
 
+/* How much of a second difference, squared, counts: where light changes alike on both sides it is that of something smooth, of which the
+ * middle has but a small error. */
+static float step_like(Vec3f before, Vec3f after) {
+    static const float SMOOTH = 0.05f;
+    float most = float_max(vec3f_dot(before, before), vec3f_dot(after, after));
+    return most > 0 ? float_clamp(1.4f - 2 * vec3f_dot(before, after) / most, SMOOTH, 1) : 0;
+}
+
 /* The largest second difference of the middle's light with those on both sides, as a squared error. */
 static float contrast_of(const Sampler *sp, int index) {
     static const int across[] = {1, EDGE, EDGE + 1, EDGE - 1};
-    Vec3f here = vec3f_scale(sp->cells[index].first, 2);
+    Vec3f here = sp->cells[index].first;
     float most = 0;
     for (int k = 0; k < 4; k++) {
-        Vec3f around = vec3f_add(mean_shown(&sp->cells[index + across[k]]), mean_shown(&sp->cells[index - across[k]]));
-        most = float_max(most, mean_square(vec3f_sub(around, here)));
+        Vec3f after = vec3f_sub(mean_shown(&sp->cells[index + across[k]]), here), before = vec3f_sub(here, mean_shown(&sp->cells[index - across[k]]));
+        most = float_max(most, mean_square(vec3f_sub(after, before)) * step_like(before, after));
     }
     return most * (float)(STEP_TO_ERROR * STEP_TO_ERROR / 4);
 }

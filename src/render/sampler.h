@@ -7,8 +7,7 @@
 typedef struct SamplePlan {
     int fixed;        /* samples of every pixel; 0: by the error */
     int most;         /* of a pixel, otherwise */
-    double max_error; /* that is accepted: RMSE over a tile, of light clamped to [0, 1] after exposure */
-    float gain;       /* of the exposure */
+    double max_error; /* that is accepted: RMSE over a tile, of light clamped to [0, 1] */
     uint64_t seed;
     const atomic_bool *interrupted; /* may be NULL */
 } SamplePlan;

@@ -87,6 +87,7 @@ static void parallel_light_on_a_plane(void **state) {
 /* Point light with POV-Ray's fade, 2 / (1 + (d / f)^p); each pixel at its middle. */
 static void point_light_fades(void **state) {
     VtsOptions o = options_of_size(24, 24);
+    o.samples = 1;
     Picture p = bench_render(*state, &o, LOOK_DOWN(9, 12)
         "light_source { <1, 2, -0.5> rgb 1 fade_distance 3 fade_power 2 }\n"
         "plane { y, 0 pigment { rgb 1 } finish { ambient 0 diffuse 1 } }\n");
@@ -101,6 +102,7 @@ static void point_light_fades(void **state) {
 
 static void spotlights_have_cones(void **state) {
     VtsOptions o = options_of_size(48, 48);
+    o.samples = 1;
     Picture p = bench_render(*state, &o, LOOK_DOWN(9, 12)
         "light_source { <0, 4, 0> rgb 1 spotlight point_at 0 radius 20 falloff 40 tightness 0 }\n"
         "plane { y, 0 pigment { rgb 1 } finish { ambient 0 diffuse 1 } }\n");
@@ -120,6 +122,7 @@ static void spotlights_have_cones(void **state) {
 
 static void fog_takes_exponentially(void **state) {
     VtsOptions o = options_of_size(16, 16);
+    o.max_error = 0.25 / 255;
     Picture p = bench_render(*state, &o,
         "camera { location <0,2,0> direction z right x up y }\n"
         "background { rgb <0, 1, 0> }\n"

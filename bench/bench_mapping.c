@@ -137,10 +137,11 @@ static void places(bool triangle, uint64_t boxes) {
         double start = stopwatch_cpu();
         PlaceCounts c = measure_places(triangle, kinds[i][0], kinds[i][1], boxes, 1 + i);
         printf("%s, spread %.1f, height %.1f: %llu boxes, %.1f %% folded, %.2f %% of points in several places; missed %llu, and on folds (|det J| "
-               "< 1e-4) %llu; Newton's method alone: %.2f steps, %.2f %% fail, %.2f %% wrong, %llu of either in unfolded boxes; %.1f s\n",
+               "< 1e-4) %llu; Newton's method alone: %.2f steps, %.2f %% fail, %.2f %% wrong, %llu of either in unfolded boxes, %llu with what helps it; %.1f s\n",
                triangle ? "prisms" : "hexahedra", kinds[i][0], kinds[i][1], (unsigned long long)c.boxes, percent(c.folded, c.boxes),
                percent(c.several, c.boxes), (unsigned long long)c.missed, (unsigned long long)c.missed_on_folds, c.newton_steps,
-               percent(c.newton_fails, c.boxes), percent(c.newton_wrong, c.boxes), (unsigned long long)c.wrong_unfolded, stopwatch_cpu() - start);
+               percent(c.newton_fails, c.boxes), percent(c.newton_wrong, c.boxes), (unsigned long long)c.wrong_unfolded,
+               (unsigned long long)c.lost_unfolded, stopwatch_cpu() - start);
     }
 }
 

@@ -173,13 +173,28 @@ Box3 skin_cell_bounds(const SkinCell *cell) {
     return box;
 }
 
+/* Newton's method may end on a fold of the mapping beyond the cell: det J has the other sign there. */
+static bool is_beyond_fold(const SkinCell *cell, const SkinPoint *p) {
+    Mat3 j;
+    skin_cell_position(cell, p->a, p->b, p->w, &j);
+    double det = mat3_determinant(&j);
+    return cell->side == CELL_UPRIGHT ? det < 0 : cell->side == CELL_MIRRORED && det > 0;
+}
+
 bool skin_cell_holds(const SkinCell *cell, Vec3 world, double tolerance, SkinPoint *p) {
     double beyond;
     p->a = p->b = cell->triangle ? 1.0 / 3 : 0.5;
     p->w = 0.5;
-    if (!skin_cell_invert(cell, world, tolerance, p)) return false;
-    worst_edge(cell, p, &beyond);
-    return beyond <= 1e-7 && p->w >= -1e-7 && p->w <= 1 + 1e-7;
+    bool found = skin_cell_invert(cell, world, tolerance, p);
+    if (found) {
+        worst_edge(cell, p, &beyond);
+        if (beyond <= 1e-7 && p->w >= -1e-7 && p->w <= 1 + 1e-7) return true;
+    }
+    if (cell->side == CELL_FOLDED || cell->side == CELL_FLAT || (found && !is_beyond_fold(cell, p))) return false;
+    SkinPoint place[MOST_PREIMAGES];
+    if (!skin_cell_preimages(cell, world, tolerance, place)) return false;
+    p->a = place[0].a, p->b = place[0].b, p->w = place[0].w;
+    return true;
 }
 
 /* Embree's hierarchy over the cells, each a user primitive. */

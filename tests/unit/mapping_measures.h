@@ -50,6 +50,7 @@ typedef struct PlaceCounts {
     uint64_t missed, missed_on_folds;
     uint64_t newton_fails, newton_wrong; /* Newton's method alone, from the middle of the box */
     uint64_t wrong_unfolded;             /* the same, of boxes that do not fold; failures too */
+    uint64_t lost_unfolded;              /* boxes that do not fold in which skin_cell_holds() does not find it */
     double newton_steps;                 /* mean */
 } PlaceCounts;
 
@@ -88,6 +89,9 @@ static inline void measure_place(const SkinCell *cell, const SkinPoint *known, P
     counts->newton_fails += fails;
     counts->newton_wrong += wrong;
     counts->wrong_unfolded += cell->side != CELL_FOLDED && (fails || wrong);
+    SkinPoint held;
+    if (cell->side != CELL_FOLDED && !on_fold)
+        counts->lost_unfolded += !skin_cell_holds(cell, world, 1e-12, &held) || !measure_near(&held, known);
     counts->newton_steps += steps;
 }
 

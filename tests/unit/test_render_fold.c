@@ -126,6 +126,7 @@ static void newton_alone_goes_astray(void **state) {
     assert_true(mild.folded == 0 && mild.newton_steps < 4 && mild.wrong_unfolded == 0 && mild.several == 0);
     assert_true(wild.newton_wrong > wild.boxes / 20);
     assert_true(mild.missed == 0 && wild.missed == 0 && cubes.missed == 0);
+    assert_true(mild.lost_unfolded == 0 && wild.lost_unfolded == 0 && cubes.lost_unfolded == 0);
 }
 
 /* Chords miss whole voxels, quadratics a fraction of one. */

@@ -28,13 +28,15 @@ static double highlight(const SurfaceLayer *layer, Vec3 view, Vec3 to_light) {
     return sum;
 }
 
-/* Waves that a thin layer gives back from its top and from its bottom meet in step or against it. */
+static float in_step(double amount, double way, double wavelength) {
+    return wavelength > 0 ? (float)(1 + amount * cos(2 * VTS_PI * way / wavelength)) : 1;
+}
+
+/* Waves that a thin layer gives back from its top and from its bottom meet in step or against it: a factor of the light. */
 static Vec3f thin_layer(const SurfaceLayer *layer, Vec3 view, double cosine, Vec3 wavelengths) {
     const Finish *f = layer->finish;
-    double phase = 4 * VTS_PI * f->irid_thickness * (cosine - vec3_dot(view, layer->normal)), amount = f->irid * cosine;
-    Vec3 w = wavelengths;
-    return vec3f((float)(amount * (1 - w.x * cos(phase / w.x))), (float)(amount * (1 - w.y * cos(phase / w.y))),
-                 (float)(amount * (1 - w.z * cos(phase / w.z))));
+    double way = f->irid_thickness * (cosine - vec3_dot(view, layer->normal));
+    return vec3f(in_step(f->irid, way, wavelengths.x), in_step(f->irid, way, wavelengths.y), in_step(f->irid, way, wavelengths.z));
 }
 
 Vec3f surface_layer_light(const SurfaceLayer *layer, Vec3 view, Vec3 to_light, bool both_sides, Vec3 wavelengths, uint64_t seed) {
@@ -52,6 +54,6 @@ Vec3f surface_layer_light(const SurfaceLayer *layer, Vec3 view, Vec3 to_light, b
         double bright = highlight(layer, view, to_light);
         if (bright > 0) sum = vec3f_madd(sum, highlight_color(f, layer->color, cosine), (float)bright);
     }
-    if (!back && f->irid > 0) sum = vec3f_add(sum, thin_layer(layer, view, cosine, wavelengths));
+    if (!back && f->irid > 0) sum = vec3f_mul(sum, thin_layer(layer, view, cosine, wavelengths));
     return vec3f_mul(sum, layer->above);
 }

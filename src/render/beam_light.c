@@ -28,10 +28,22 @@ static uint32_t add_points(BeamTracer *tr, const Sight *sight, const LightRay *r
     return count;
 }
 
-static bool hidden_by_surfaces(BeamTracer *tr, const Sight *sight, Vec3 to_light, double distance, uint32_t point) {
-    Ray shadow = {vec3_add(tr->beam.origin, vec3_from_f(tr->points[point])), to_light};
+/* What comes past explicit surfaces to a point of a sight. */
+static Vec3f past_surfaces(BeamTracer *tr, const Sight *sight, const Light *light, const LightRay *way, uint32_t point) {
+    Ray shadow = {vec3_add(tr->beam.origin, vec3_from_f(tr->points[point])), way->direction};
+    double clear = (double)vec3f_length(sight->bias);
+    if (tr->compiled->clear_shadows) {
+        SurfaceTracer surfaces = {.compiled = tr->compiled, .counters = &tr->counters, .seed = tr->seed};
+        const Leg leg = surface_leg(&tr->cones[sight->pixel]);
+        return surface_shadow(&surfaces, light, way, &leg, shadow.origin, clear, random_mix(tr->seed + point));
+    }
     tr->counters.shadow_rays++;
-    return hierarchy_occluded(tr->compiled->hierarchy, &shadow, (double)vec3f_length(sight->bias), distance);
+    bool hidden = hierarchy_occluded(tr->compiled->hierarchy, &shadow, clear, way->distance);
+    return hidden ? vec3f(0, 0, 0) : vec3f(1, 1, 1);
+}
+
+static bool hidden_by_surfaces(BeamTracer *tr, const Sight *sight, const Light *light, const LightRay *way, uint32_t point) {
+    return !(luminance(past_surfaces(tr, sight, light, way, point)) > 0);
 }
 
 enum { SOME_HIDDEN = 1, SOME_LIT = 2 };
@@ -40,10 +52,12 @@ enum { SOME_HIDDEN = 1, SOME_LIT = 2 };
 static void hide_by_surfaces(BeamTracer *tr, const Light *light) {
     memset(tr->shade, 0, sizeof tr->shade);
     for (uint32_t k = 0; k < tr->sight_count; k++) {
-        const Sight *sight = &tr->sights[k];
+        Sight *sight = &tr->sights[k];
         if (!sight->asked) continue;
         LightRay ray = light_ray(light, sight->point);
-        bool hidden = hidden_by_surfaces(tr, sight, ray.direction, ray.distance, sight->begin);
+        Vec3f past = past_surfaces(tr, sight, light, &ray, sight->begin);
+        bool hidden = !(luminance(past) > 0);
+        if (!hidden) sight->tone = vec3f_mul(sight->tone, past);
         memset(tr->hidden + sight->begin, hidden, (size_t)sight->count);
         tr->shade[sight->pixel] |= hidden ? SOME_HIDDEN : SOME_LIT;
     }
@@ -59,7 +73,7 @@ static void hide_by_surfaces(BeamTracer *tr, const Light *light) {
         if (around != (SOME_HIDDEN | SOME_LIT)) continue;
         LightRay ray = light_ray(light, sight->point);
         for (uint32_t i = 1; i < (uint32_t)sight->count; i++)
-            tr->hidden[sight->begin + i] = hidden_by_surfaces(tr, sight, ray.direction, ray.distance, sight->begin + i);
+            tr->hidden[sight->begin + i] = hidden_by_surfaces(tr, sight, light, &ray, sight->begin + i);
     }
 }
 
@@ -163,5 +177,32 @@ void beam_add_ambient(BeamTracer *tr) {
         if (under_sky(tr, s)) shares_seen(tr, s, &seen, &odd_seen);
         s->light = vec3f_mul(vec3f_madd(s->look->emission, s->look->ambient, seen), s->color);
         s->odd_light = vec3f_mul(vec3f_madd(s->look->emission, s->look->ambient, odd_seen), s->color);
+    }
+}
+
+void beam_add_beyond(BeamTracer *tr) {
+    if (!tr->compiled->secondary) return;
+    for (uint32_t k = 0; k < tr->sight_count; k++) {
+        Sight *sight = &tr->sights[k];
+        if (!sight->surface || sight->look->plain) continue;
+        Vec3f sum = {0, 0, 0}, odd = {0, 0, 0};
+        uint32_t first = tr->beam.samples.first[sight->pixel];
+        for (int i = sight->first; i != BEAM_NOTHING; i = tr->next[i]) {
+            BeamLine line = beam_sample_line(tr, (uint32_t)i);
+            Cone cone = tr->cones[sight->pixel];
+            cone.origin = line.origin;
+            cone.direction = vec3_scale(line.direction, 1 / line.length);
+            SurfaceHit hit;
+            if (!hierarchy_intersect(tr->compiled->hierarchy, &(Ray){cone.origin, cone.direction}, 1e-9, VTS_INFINITY, &hit)) continue;
+            tr->volumes.seed = random_hash((uint64_t)(tr->x0 + sight->pixel % tr->columns), (uint64_t)(tr->y0 + sight->pixel / tr->columns),
+                                           3 + (uint64_t)(tr->before + i), tr->seed);
+            SurfaceTracer surfaces = tracer_of_surfaces(&tr->volumes);
+            Leg leg = surface_leg(&cone);
+            Vec3f one = surface_beyond(&surfaces, &leg, &hit);
+            sum = vec3f_add(sum, one);
+            if (((uint32_t)i - first) & 1) odd = vec3f_add(odd, one);
+        }
+        sight->light = vec3f_madd(sight->light, sum, 1 / (float)sight->count);
+        if (sight->odd) sight->odd_light = vec3f_madd(sight->odd_light, odd, 1 / (float)sight->odd);
     }
 }

@@ -53,14 +53,15 @@ static void see_facet(const BeamFacet *f, Vec3 point, double width, Sight *sight
 
 static void see_explicit(const SeenSurface *seen, Vec3 point, double width, double t, Sight *sight) {
     const SurfaceHit *hit = &seen->hit;
-    Vec3 local = transform_point_back(&hit->space, point), local_normal = vec3_normalize(mat3_apply_transposed(&hit->space.linear, hit->normal));
-    double shrink = cbrt(fabs(mat3_determinant(&hit->space.inverse_linear))), facing = fmax(0.05, vec3_dot(hit->normal, vec3_from_f(sight->view)));
+    Vec3 normal = hit->normal, direction = vec3_negate(vec3_from_f(sight->view));
+    const Cone cone = {vec3_madd(point, direction, -hit->t), direction, width, 0};
+    sight->color = hit->look->color;
+    if (!hit->look->uniform || !hit->look->opaque || hit->look->texture->normal) surface_glance(&cone, hit, &sight->color, &normal);
     sight->look = hit->look;
     sight->surface = hit;
-    sight->normal = vec3f_from(hit->normal);
+    sight->normal = vec3f_from(normal);
     sight->flat = vec3f_from(hit->flat);
     sight->bias = vec3f_from(vec3_scale(hit->flat, 1e-5 * t + 0.01 * width));
-    sight->color = hit->look->uniform ? hit->look->color : look_color(hit->look, local, local_normal, width / facing * shrink);
 }
 
 /* Two explicit hits of one pixel that may share their shading. */

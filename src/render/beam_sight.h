@@ -116,6 +116,8 @@ Cone beam_sight_cone(const BeamTracer *tracer, const Sight *sight, double *t);
 
 /* Ambient and emitted light of all sights: sets their `light`. */
 void beam_add_ambient(BeamTracer *tracer);
+/* Adds what explicit surfaces mirror and let through. */
+void beam_add_beyond(BeamTracer *tracer);
 /* Adds what a light sends by way of them. */
 void beam_add_light(BeamTracer *tracer, const Light *light);
 

@@ -46,7 +46,7 @@ BeamTracer *beam_tracer_create(const CompiledScene *compiled, const BeamPlan *pl
     tr->compiled = compiled;
     tr->plan = *plan;
     tr->seed = seed;
-    if (!isinf(compiled->all_exact_to)) tracer_init(&tr->volumes, compiled, arena);
+    if (!isinf(compiled->all_exact_to) || compiled->secondary) tracer_init(&tr->volumes, compiled, arena);
     samples_init(&tr->beam.samples, all, arena);
     draft_init(tr, all, arena);
     tr->bounded = hierarchy_bounds(compiled->hierarchy, &tr->explicit_bounds);
@@ -223,6 +223,7 @@ static double see_pass(BeamTracer *tr, Radiance *out) {
     beam_gather_sights(tr);
     beam_add_ambient(tr);
     for (size_t l = 0; l < scene->light_count; l++) beam_add_light(tr, &scene->lights[l]);
+    beam_add_beyond(tr);
     return take_pixels(tr, out);
 }
 

@@ -109,7 +109,7 @@ static CompileStatus build_texels(const CompileOptions *options, Detail detail, 
         if (out->skins[i].boxes) out->nearest = fmin(out->nearest, 1e-6 * out->skins[i].tile_size);
         if (out->skins[i].boxes) out->exact_bounds = box3_union(out->exact_bounds, out->skins[i].bounds);
     }
-    if (!voxels) return COMPILE_OK;
+    if (!voxels && !out->secondary) return COMPILE_OK; /* mirrors show voxels */
     for (size_t i = 0; i < out->skin_count && !options->exact; i++) skin_ask_voxels(&out->skins[i], options, out);
     for (size_t i = 0; i < out->texel_count; i++) {
         if (!texel_build(out->texels[i], options, out, diags)) return interrupted(options) ? COMPILE_INTERRUPTED : COMPILE_FAILED;
@@ -159,6 +159,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     out->hierarchy = hierarchy_build(scene, arena, diags);
     if (!out->hierarchy) return COMPILE_FAILED;
     out->clear_shadows = hierarchy_is_clear(out->hierarchy);
+    out->secondary = !hierarchy_is_plain(out->hierarchy);
     SkinList skins = {0};
     for (size_t i = 0; i < scene->skin_count; i++) *list_push(arena, &skins) = scene->skins[i];
     Transform identity = transform_identity();

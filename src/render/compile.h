@@ -40,6 +40,7 @@ typedef struct CompiledScene {
     Quadrature quadrature;
     TexelFiltering filtering;
     double shadow_aperture;
+    bool secondary;       /* some explicit objects mirror or let light through: lines of sight go on from them */
     bool clear_shadows;   /* some explicit objects let light through */
     double max_error;     /* the RMSE that is accepted */
     int most_samples;     /* a pixel, to keep it */

@@ -10,6 +10,7 @@ struct Hierarchy {
     ClusterSet set;
     const Cluster *all;
     bool clear; /* something lets light through */
+    bool plain; /* no line of sight goes on from anything */
 };
 
 enum { SOLIDS = 0, TRIANGLES = 1 }; /* geomID in a cluster */
@@ -233,7 +234,12 @@ Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags) {
     clusters_build(scene, arena, diags, &h->set);
     h->all = h->set.clusters.items[h->set.clusters.count - 1];
     h->clear = !h->set.default_look->opaque;
-    for (size_t i = 0; i < h->set.looks.slot_count; i++) h->clear |= h->set.looks.slots[i] && !h->set.looks.slots[i]->opaque;
+    h->plain = h->set.default_look->plain;
+    for (size_t i = 0; i < h->set.looks.slot_count; i++) {
+        const Look *look = h->set.looks.slots[i];
+        h->clear |= look && !look->opaque;
+        h->plain &= !look || look->plain;
+    }
     /* From here on nothing is taken from the arena: if memory ran out, the device would be lost. */
     h->device = rtcNewDevice("threads=1,set_affinity=0");
     if (!h->device) {
@@ -267,6 +273,7 @@ bool hierarchy_bounds(const Hierarchy *h, Box3 *box) {
 }
 
 Vec3 hierarchy_origin(const Hierarchy *h) { return h->all->origin; }
+bool hierarchy_is_plain(const Hierarchy *h) { return h->plain; }
 bool hierarchy_is_clear(const Hierarchy *h) { return h->clear; }
 void *hierarchy_device(const Hierarchy *h) { return h->device; }
 

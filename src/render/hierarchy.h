@@ -42,6 +42,8 @@ size_t hierarchy_object_count(const Hierarchy *hierarchy);
 Vec3 hierarchy_origin(const Hierarchy *hierarchy);
 /* Whether something lets light through, so that shadows have colours. */
 bool hierarchy_is_clear(const Hierarchy *hierarchy);
+/* Whether nothing mirrors or lets light through. */
+bool hierarchy_is_plain(const Hierarchy *hierarchy);
 void *hierarchy_device(const Hierarchy *hierarchy);
 
 /* A box around everything that is drawn, empty if nothing is; false when there is something endless. */

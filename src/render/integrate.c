@@ -229,16 +229,25 @@ static float record_visibility(Tracer *tr, const Light *light, const Cone *cone,
     LightRay ray = light_ray(light, point);
     tr->counters.shadow_rays++;
     Ray explicit_ray = {point, ray.direction};
-    if (hierarchy_occluded(scene->hierarchy, &explicit_ray, r->tolerance, ray.distance)) return 0;
+    float clear = 1;
+    if (!scene->clear_shadows) {
+        if (hierarchy_occluded(scene->hierarchy, &explicit_ray, r->tolerance, ray.distance)) return 0;
+    } else { /* of what is clear on the way the mean of the colours */
+        SurfaceTracer surfaces = {.compiled = scene, .counters = &tr->counters, .seed = tr->seed};
+        const Leg leg = surface_leg(cone);
+        Vec3f passed = surface_shadow(&surfaces, light, &ray, &leg, point, r->tolerance, tr->seed);
+        clear = (passed.x + passed.y + passed.z) / 3;
+        if (!(clear > 0)) return 0;
+    }
     double aperture = scene->shadow_aperture;
     Cone shadow = {point, ray.direction, cone_diameter(cone, r->t) * aperture, cone->spread * aperture};
     SkinPoint place = r->point;
     bool seam = false;
     SkinSide side = skin_locate(&scene->skins[r->skin], point, r->tolerance, &place, &seam);
-    if (side == SKIN_LOST || side == SKIN_BORDER) return skin_light_through(&tr->light, &shadow, ray.distance, -1);
+    if (side == SKIN_LOST || side == SKIN_BORDER) return clear * skin_light_through(&tr->light, &shadow, ray.distance, -1);
     place.w = double_clamp(place.w, 0, 1);
     float visible = skin_light_on_matter(&tr->light, &shadow, ray.distance, r->skin, &place, r->tolerance);
-    return visible > 0 ? visible * skin_light_through(&tr->light, &shadow, ray.distance, (int)r->skin) : 0;
+    return visible > 0 ? clear * visible * skin_light_through(&tr->light, &shadow, ray.distance, (int)r->skin) : 0;
 }
 
 /* Light of one source over the records with shadows. Visibility is found at a few records, at equal shares of the light

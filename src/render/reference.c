@@ -2,6 +2,7 @@
 
 #include "base/random.h"
 #include "render/exact_skin.h"
+#include "render/surface.h"
 
 typedef struct Reference {
     const CompiledScene *compiled;
@@ -36,10 +37,10 @@ static Vec3 facet_point(const Sample *s, double t) { return vec3_madd(s->ray.ori
 /* ---- what is met ---- */
 
 static Facet surface_facet(const Sample *s, const SurfaceHit *hit) {
-    Vec3 local = transform_point_back(&hit->space, facet_point(s, hit->t));
-    Vec3 local_normal = vec3_normalize(mat3_apply_transposed(&hit->space.linear, hit->normal));
-    return (Facet){.t = hit->t, .normal = hit->normal, .flat = hit->flat, .bias = 1e-5 * hit->t + 0.01 * (s->width + s->spread * hit->t),
-                   .look = hit->look, .color = look_color(hit->look, local, local_normal, 0), .object = hit->object + 1, .uv = hit->uv};
+    const Cone cone = {s->ray.origin, s->ray.direction, s->width, s->spread};
+    Facet facet = {.t = hit->t, .normal = hit->normal, .flat = hit->flat, .look = hit->look, .object = hit->object + 1, .uv = hit->uv};
+    surface_glance(&cone, hit, &facet.color, &facet.normal);
+    return facet;
 }
 
 static Facet skin_facet(const Sample *s, const SkinHit *hit) {
@@ -49,15 +50,15 @@ static Facet skin_facet(const Sample *s, const SkinHit *hit) {
     return (Facet){.t = hit->t, .normal = normal, .flat = normal, .bias = hit->clearance, .up = hit->up, .look = hit->look, .color = color};
 }
 
-static bool nearest_facet(const Sample *s, Facet *facet) {
-    SurfaceHit surface;
+/* `surface` gets the explicit one, if facet->object says that it is one. */
+static bool nearest_facet(const Sample *s, Facet *facet, SurfaceHit *surface) {
     SkinHit matter;
-    bool found = hierarchy_intersect(s->compiled->hierarchy, &s->ray, 1e-9, VTS_INFINITY, &surface);
-    if (exact_skins_intersect(s->compiled->exact, &s->ray, 0, found ? surface.t : VTS_INFINITY, s->counters, &matter)) {
+    bool found = hierarchy_intersect(s->compiled->hierarchy, &s->ray, 1e-9, VTS_INFINITY, surface);
+    if (exact_skins_intersect(s->compiled->exact, &s->ray, 0, found ? surface->t : VTS_INFINITY, s->counters, &matter)) {
         *facet = skin_facet(s, &matter);
         return true;
     }
-    if (found) *facet = surface_facet(s, &surface);
+    if (found) *facet = surface_facet(s, surface);
     return found;
 }
 
@@ -80,12 +81,28 @@ static bool sky_lit(const Sample *s, const Facet *facet) {
     return !exact_skins_occluded(s->compiled->exact, &ray, 0, VTS_INFINITY, s->counters);
 }
 
-static bool lit(const Sample *s, const Light *light, const LightRay *to_light, const Facet *facet) {
-    if (light->shadowless) return true;
-    Ray shadow = leaving(s, facet, to_light->direction);
-    s->counters->shadow_rays++;
-    if (hierarchy_occluded(s->compiled->hierarchy, &shadow, facet->bias, to_light->distance)) return false;
-    return !exact_skins_occluded(s->compiled->exact, &shadow, 0, to_light->distance, s->counters);
+static Vec3f exact_matter(void *sample, const Cone *cone, double t_max, float *transmittance);
+
+static float exact_passing(void *sample, const Cone *cone, double t_max) {
+    const Sample *s = sample;
+    const Ray ray = {cone->origin, cone->direction};
+    return exact_skins_occluded(s->compiled->exact, &ray, 0, t_max, s->counters) ? 0 : 1;
+}
+
+static SurfaceTracer tracer_of(Sample *s) {
+    SurfaceTracer tracer = {.compiled = s->compiled, .counters = s->counters, .seed = random_mix(s->random + 7), .skins = s};
+    if (s->compiled->skin_count) tracer.matter = exact_matter, tracer.passing = exact_passing;
+    return tracer;
+}
+
+/* The share of its light that comes to a facet. */
+static Vec3f lit(const Sample *s, const Light *light, const LightRay *to_light, const Facet *facet) {
+    Sample own = *s;
+    SurfaceTracer tracer = tracer_of(&own);
+    const Cone cone = {s->ray.origin, s->ray.direction, s->width, s->spread};
+    const Leg leg = surface_leg(&cone);
+    const Ray from = leaving(s, facet, to_light->direction);
+    return surface_shadow(&tracer, light, to_light, &leg, from.origin, facet->bias, random_mix(s->random + 3));
 }
 
 static Vec3f shade(const Sample *s, const Facet *facet) {
@@ -98,7 +115,8 @@ static Vec3f shade(const Sample *s, const Facet *facet) {
         LightRay ray = light_ray(&scene->lights[l], point);
         NdfShade amount = sheet_shade(vec3f_from(facet->normal), view, vec3f_from(ray.direction), &facet->look->sheet);
         if (amount.diffuse <= 0 && amount.highlight <= 0) continue;
-        if (lit(s, &scene->lights[l], &ray, facet)) sum = vec3f_add(sum, vec3f_mul(shade_tone(&amount, facet->look, facet->color), ray.color));
+        Vec3f tone = vec3f_mul(shade_tone(&amount, facet->look, facet->color), ray.color);
+        sum = vec3f_add(sum, vec3f_mul(tone, lit(s, &scene->lights[l], &ray, facet)));
     }
     return sum;
 }
@@ -109,15 +127,40 @@ static void tell(const Sample *s, const Facet *facet) {
     aov_add(s->aovs, &seen, 1);
 }
 
-static Radiance trace_sample(const Sample *s) {
+/* Matter of skins alone, as mirrors and glass show it. */
+static Vec3f exact_matter(void *sample, const Cone *cone, double t_max, float *transmittance) {
+    Sample s = *(const Sample *)sample;
+    SkinHit matter;
+    s.ray = (Ray){cone->origin, cone->direction};
+    s.width = cone->width, s.spread = cone->spread;
+    s.random = random_mix(s.random + 11);
+    *transmittance = 1;
+    if (!exact_skins_intersect(s.compiled->exact, &s.ray, 0, t_max, s.counters, &matter)) return vec3f(0, 0, 0);
+    *transmittance = 0;
+    const Facet facet = skin_facet(&s, &matter);
+    Air air = air_between(s.compiled->scene, &s.ray, facet.t);
+    return air_over(&air, shade(&s, &facet), 1);
+}
+
+static Radiance trace_sample(Sample *s) {
     const Scene *scene = s->compiled->scene;
     Facet facet = {.t = 0};
+    SurfaceHit surface;
+    Vec3f light;
     s->counters->camera_rays++;
-    bool met = nearest_facet(s, &facet);
+    bool met = nearest_facet(s, &facet, &surface);
     if (s->aovs) s->aovs->samples++;
     if (s->aovs && met) tell(s, &facet);
+    if (met && facet.object) {
+        SurfaceTracer tracer = tracer_of(s);
+        const Cone cone = {s->ray.origin, s->ray.direction, s->width, s->spread};
+        const Leg leg = surface_leg(&cone);
+        light = surface_radiance(&tracer, &leg, &surface);
+    } else {
+        light = met ? shade(s, &facet) : sky_radiance(scene, s->ray.direction, 0);
+    }
     Air air = air_between(scene, &s->ray, met ? facet.t : VTS_INFINITY);
-    return (Radiance){air_over(&air, met ? shade(s, &facet) : sky_radiance(scene, s->ray.direction, 0), 1), met};
+    return (Radiance){air_over(&air, light, 1), met};
 }
 
 /* ---- samples ---- */

@@ -14,7 +14,7 @@ static const double SAME_INDEX = 1e-6;
 /* Light that would make less than this in the eye is taken as unshadowed. */
 static const float SHADOW_WORTH = 1.0f / 2048;
 
-static Vec3f follow(SurfaceTracer *tracer, Leg *leg, const SurfaceHit *first);
+static Vec3f follow(SurfaceTracer *tracer, Leg *leg, const SurfaceHit *first, bool lit_already);
 
 static float most_of(Vec3f c) { return float_max(c.x, float_max(c.y, c.z)); }
 static float grey_of(Vec3f c) { return 0.297f * c.x + 0.589f * c.y + 0.114f * c.z; }
@@ -29,6 +29,7 @@ typedef struct Meeting {
     double width, clear;     /* of the cone there; how near to it nothing is met */
     uint64_t seed;
     const TexturePart *part; /* of its texture, that is being looked at */
+    bool lit_already;        /* its own light and that of lights is taken care of elsewhere */
     SurfaceLayer layers[MOST_LAYERS];
     int layer_count;
     Vec3f through;           /* what all layers let through */
@@ -144,7 +145,7 @@ static Leg leg_from(const SurfaceTracer *tracer, Meeting *m, Vec3 direction, dou
 static Vec3f mirrored_light(SurfaceTracer *tracer, Meeting *m, Vec3 normal, float share) {
     Leg leg = leg_from(tracer, m, surface_mirrored(m->leg->cone.direction, normal, m->hit->flat), 2, share);
     leg.purpose = RAY_MIRRORS;
-    return follow(tracer, &leg, NULL);
+    return follow(tracer, &leg, NULL, false);
 }
 
 static float power_of(float x, double exponent) { return x > 0 ? (float)pow((double)x, exponent) : 0; }
@@ -182,7 +183,7 @@ static Vec3f bent_light(SurfaceTracer *tracer, Meeting *m, double ratio, bool *a
     double bend = vec3_dot(direction, normal) - vec3_dot(m->leg->cone.direction, normal) / ratio; /* n cos i - cos t */
     Leg leg = leg_from(tracer, m, direction, bend, most_of(m->through));
     surface_cross(leg.enclosures, &leg.enclosure_count, m->hit);
-    return follow(tracer, &leg, NULL);
+    return follow(tracer, &leg, NULL, false);
 }
 
 static Outcome see_part(SurfaceTracer *tracer, Meeting *m) {
@@ -190,8 +191,8 @@ static Outcome see_part(SurfaceTracer *tracer, Meeting *m) {
     Outcome out = {{0, 0, 0}, {0, 0, 0}};
     bool all_of_it = false;
     read_layers(m, (float)scene->settings.adc_bailout);
-    out.light = own_light(tracer, m);
-    for (size_t l = 0; l < scene->light_count; l++) out.light = vec3f_add(out.light, light_from(tracer, m, l));
+    if (!m->lit_already) out.light = own_light(tracer, m);
+    for (size_t l = 0; l < scene->light_count && !m->lit_already; l++) out.light = vec3f_add(out.light, light_from(tracer, m, l));
     if (m->through.x != 0 || m->through.y != 0 || m->through.z != 0) {
         double ratio = index_ratio(m->leg, m->hit);
         if (fabs(ratio - 1) < SAME_INDEX) out.straight = m->through;
@@ -201,15 +202,21 @@ static Outcome see_part(SurfaceTracer *tracer, Meeting *m) {
     return out;
 }
 
-static Outcome see_surface(SurfaceTracer *tracer, const Leg *leg, const SurfaceHit *hit) {
-    Vec3 point = cone_point(&leg->cone, hit->t), direction = leg->cone.direction;
-    double width = cone_diameter(&leg->cone, hit->t), facing = fmax(0.05, fabs(vec3_dot(hit->normal, direction)));
-    SurfacePlace place = {.point = point, .normal = hit->normal, .footprint = width / facing, .space = &hit->space,
-                          .surface = {.direction = direction, .uv = {hit->uv.u, hit->uv.v}}};
+static SurfacePlace place_of(const Leg *leg, const SurfaceHit *hit) {
+    double facing = fmax(0.05, fabs(vec3_dot(hit->normal, leg->cone.direction)));
+    SurfacePlace place = {.point = cone_point(&leg->cone, hit->t), .normal = hit->normal, .space = &hit->space,
+                          .footprint = cone_diameter(&leg->cone, hit->t) / facing,
+                          .surface = {.direction = leg->cone.direction, .uv = {hit->uv.u, hit->uv.v}}};
     footprint_axes(&leg->cone, hit->t, hit->normal, place.axes);
+    return place;
+}
+
+static Outcome see_surface(SurfaceTracer *tracer, const Leg *leg, const SurfaceHit *hit, bool lit_already) {
+    SurfacePlace place = place_of(leg, hit);
     TexturePart parts[MOST_PARTS];
     size_t count = texture_parts(hit->look->texture, &place, parts, MOST_PARTS);
-    Meeting m = {.leg = leg, .hit = hit, .point = point, .width = width, .clear = clearance(tracer, point, hit->t), .curvature = NAN,
+    Meeting m = {.leg = leg, .hit = hit, .point = place.point, .width = cone_diameter(&leg->cone, hit->t), .lit_already = lit_already,
+                 .clear = clearance(tracer, place.point, hit->t), .curvature = NAN,
                  .seed = random_mix(tracer->seed + (uint64_t)leg->level)};
     Outcome out = {{0, 0, 0}, {0, 0, 0}};
     for (size_t i = 0; i < count; i++) {
@@ -219,6 +226,25 @@ static Outcome see_surface(SurfaceTracer *tracer, const Leg *leg, const SurfaceH
         out.straight = vec3f_madd(out.straight, one.straight, (float)parts[i].weight);
     }
     return out;
+}
+
+void surface_glance(const Cone *cone, const SurfaceHit *hit, Vec3f *color, Vec3 *normal) {
+    Leg leg = surface_leg(cone);
+    SurfacePlace place = place_of(&leg, hit);
+    TexturePart parts[MOST_PARTS];
+    size_t count = texture_parts(hit->look->texture, &place, parts, MOST_PARTS);
+    Meeting m = {.leg = &leg, .hit = hit};
+    double heaviest = 0;
+    *color = vec3f(0, 0, 0);
+    for (size_t i = 0; i < count; i++) {
+        m.part = &parts[i];
+        read_layers(&m, 0);
+        for (int k = 0; k < m.layer_count; k++)
+            *color = vec3f_madd(*color, vec3f_mul(m.layers[k].color, m.layers[k].above), m.layers[k].opaque * (float)parts[i].weight);
+        if (!(parts[i].weight > heaviest)) continue;
+        heaviest = parts[i].weight;
+        *normal = m.layers[0].normal;
+    }
 }
 
 /* ---- legs ---- */
@@ -238,8 +264,9 @@ static bool gather_before(SurfaceTracer *tracer, const Leg *leg, double t, Vec3f
     return true;
 }
 
-/* Light along the leg and on straight through what is clear. `first` was met already, and what is before it taken care of. */
-static Vec3f follow(SurfaceTracer *tracer, Leg *leg, const SurfaceHit *first) {
+/* Light along the leg and on straight through what is clear. `first` was met already, and what is before it taken care of; and its light,
+ * with lit_already. */
+static Vec3f follow(SurfaceTracer *tracer, Leg *leg, const SurfaceHit *first, bool lit_already) {
     const CompiledScene *compiled = tracer->compiled;
     const GlobalSettings *settings = &compiled->scene->settings;
     Vec3f sum = {0, 0, 0}, through = {1, 1, 1};
@@ -248,7 +275,6 @@ static Vec3f follow(SurfaceTracer *tracer, Leg *leg, const SurfaceHit *first) {
         SurfaceHit hit;
         if (first) {
             hit = *first;
-            first = NULL;
         } else {
             if (leg->level >= deepest || leg->weight < (float)settings->adc_bailout) return sum;
             const Ray ray = {leg->cone.origin, leg->cone.direction};
@@ -258,7 +284,8 @@ static Vec3f follow(SurfaceTracer *tracer, Leg *leg, const SurfaceHit *first) {
             if (!gather_before(tracer, leg, found ? hit.t : VTS_INFINITY, &sum, &through)) return sum;
             if (!found) return vec3f_add(sum, vec3f_mul(through, sky_radiance(compiled->scene, ray.direction, leg->cone.spread)));
         }
-        Outcome seen = see_surface(tracer, leg, &hit);
+        Outcome seen = see_surface(tracer, leg, &hit, first && lit_already);
+        first = NULL;
         sum = vec3f_add(sum, vec3f_mul(through, seen.light));
         if (seen.straight.x == 0 && seen.straight.y == 0 && seen.straight.z == 0) return sum;
         through = vec3f_mul(through, seen.straight);
@@ -274,5 +301,11 @@ static Vec3f follow(SurfaceTracer *tracer, Leg *leg, const SurfaceHit *first) {
 Vec3f surface_radiance(SurfaceTracer *tracer, const Leg *first, const SurfaceHit *hit) {
     Leg leg = *first;
     leg.level = 1;
-    return follow(tracer, &leg, hit);
+    return follow(tracer, &leg, hit, false);
+}
+
+Vec3f surface_beyond(SurfaceTracer *tracer, const Leg *first, const SurfaceHit *hit) {
+    Leg leg = *first;
+    leg.level = 1;
+    return follow(tracer, &leg, hit, true);
 }

@@ -44,6 +44,12 @@ Leg surface_leg(const Cone *cone);
  * and matter before it. */
 Vec3f surface_radiance(SurfaceTracer *tracer, const Leg *leg, const SurfaceHit *hit);
 
+/* Of it what the surface mirrors and lets through alone. */
+Vec3f surface_beyond(SurfaceTracer *tracer, const Leg *leg, const SurfaceHit *hit);
+
+/* The colour with which the surface that the cone has met gives back diffuse light, all layers together, and its topmost normal. */
+void surface_glance(const Cone *cone, const SurfaceHit *hit, Vec3f *color, Vec3 *normal);
+
 /* ---- surface_light.c: what a finish does with light ---- */
 
 /* A layer of a texture where a ray has met it. */

@@ -117,16 +117,6 @@ static void read_focal_point(Reader *reader, const Word *word, void *target) {
         word_arguments(reader, word, 1, 1) && word_vector(reader, word, 0, &draft->focal_point);
 }
 
-/* bokeh { pigment }: over <0, 0> … <1, 1>. */
-static void read_bokeh(Reader *reader, const Word *word, void *target) {
-    if (!grammar_word(reader, word) || !word->body) return;
-    for (size_t i = 0; i < word->body->count; i++) {
-        const BlockItem *item = &word->body->items[i];
-        if (item->kind == ITEM_VALUE && item->value.kind == VALUE_PIGMENT)
-            ((CameraDraft *)target)->camera.bokeh = item->value.as.pigment;
-    }
-}
-
 #define FIELD(name) offsetof(CameraDraft, name)
 #define INERT(word)                                                                                          \
     { word, WORD_INERT, FIELD(camera.inert), NULL, false }
@@ -152,7 +142,7 @@ static const WordRule rules[] = {
     KIND("cylinder"),
     KIND("mesh_camera"),
     {"aperture", WORD_FLOAT, FIELD(camera.aperture), NULL, false},
-    {"bokeh", WORD_CUSTOM, 0, read_bokeh, false},
+    INERT("bokeh"),
     INERT("user_defined"),
     {"focal_point", WORD_CUSTOM, 0, read_focal_point, false},
     {"blur_samples", WORD_CUSTOM, 0, read_blur_samples, false},
@@ -233,26 +223,19 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
     return true;
 }
 
+static bool is_flat(const Camera *c) { return c->kind == CAMERA_PERSPECTIVE || c->kind == CAMERA_ORTHOGRAPHIC; }
+
 /* POV-Ray's limit: a flat picture cannot see behind itself. */
 static bool check_angle(Reader *reader, CameraDraft *draft) {
-    bool flat = draft->camera.kind == CAMERA_PERSPECTIVE || draft->camera.kind == CAMERA_ORTHOGRAPHIC;
-    if (!flat || draft->angle < 180) return true;
+    if (!is_flat(&draft->camera) || draft->angle < 180) return true;
     reader_error(reader, at_close(reader, draft->angle_span),
                  "the angle of this camera must be less than 180 degrees, found %g", draft->angle);
     return false;
 }
 
-/* What the kinds that are not flat see across without an `angle`. */
-static double default_angle(const Camera *c) {
-    switch (c->kind) {
-    case CAMERA_SPHERICAL: return 360;
-    default: return 2 * atan2(vec3_length(c->right) / 2, vec3_length(c->direction)) / VTS_RADIANS;
-    }
-}
-
 static void apply_wide_angle(CameraDraft *draft) {
     Camera *c = &draft->camera;
-    c->angle = draft->angle > 0 ? draft->angle : default_angle(c);
+    c->angle = draft->angle > 0 ? draft->angle : c->kind == CAMERA_SPHERICAL ? 360 : 90;
     c->angle_v = draft->angle_v > 0 ? draft->angle_v : c->angle / 2;
 }
 
@@ -281,11 +264,11 @@ bool build_camera(BuildContext *context, const EvalBlock *block, Value *out) {
     reader.value_target = &draft;
     if (!reader_run(&reader) || !check_angle(&reader, &draft)) return false;
     if (!copy) apply_wide_angle(&draft);
-    if (draft.angle > 0 && draft.angle < 180) apply_angle(&draft);
+    if (draft.angle > 0 && is_flat(&draft.camera)) apply_angle(&draft);
     if (draft.has_look_at && !apply_look_at(&reader, &draft)) return false;
     if (!copy) apply_orthographic(&draft);
-    if (draft.has_focal_point)
-        draft.camera.focal_distance = vec3_length(vec3_sub(draft.focal_point, draft.camera.location));
+    Vec3 to_focus = draft.has_focal_point ? vec3_sub(draft.focal_point, draft.camera.location) : draft.camera.direction;
+    if (!copy) draft.camera.focal_distance = vec3_length(to_focus);
     place(&draft.camera, &draft.transform);
     check_frame(&reader, &draft.camera);
     return store(context, block, draft.camera, out);

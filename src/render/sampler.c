@@ -189,7 +189,7 @@ static void add_sample(Sampler *sp, Cell *cell, int px, int py, double x, double
         cell->middle = seen;
         cell->object = found ? hit.object + 1 : 0;
         cell->normal = found ? vec3f_from(hit.normal) : vec3f(0, 0, 0);
-        cell->refinable = reaching >= ALL_EXPLICIT || (reaching >= EDGE_WORTH && surfaces_vary(sp->compiled, px + x, py + y, found, &hit));
+        cell->refinable = view_has_lens(&sp->compiled->view) || reaching >= ALL_EXPLICIT || (reaching >= EDGE_WORTH && surfaces_vary(sp->compiled, px + x, py + y, found, &hit));
     }
     cell->count++;
     cell->sum.color = vec3f_add(cell->sum.color, seen.color);

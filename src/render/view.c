@@ -28,22 +28,19 @@ static Vec3 around_axis(const Frame *f, double x, double y, double away) {
     return combine(f, x * s, y * s, cos(away));
 }
 
-/* Of a picture that is a disc: (s, t) and the length from its middle, 1 at its border. */
-static double disc_place(const Frame *f, double s, double t, double *x, double *y) {
-    *x = 2 * s * f->width, *y = 2 * t * f->height;
-    return hypot(*x, *y);
-}
-
 static bool fisheye_line(const Camera *c, const Frame *f, double s, double t, Vec3 *direction) {
-    double x, y, r = disc_place(f, s, t, &x, &y);
+    double x = 2 * s * f->width, y = 2 * t * f->height, r = hypot(x, y);
     *direction = around_axis(f, x, y, r * c->angle * VTS_RADIANS / 2);
     return r <= 1;
 }
 
+/* The film is wider than the dome's picture, which keeps its top, or is as wide; nothing lies more than 45 degrees below the axis. */
 static bool omnimax_line(const Frame *f, double s, double t, Vec3 *direction) {
-    double x, y, r = disc_place(f, s, t, &x, &y), r2 = r * r;
+    const double tall = 1 / 1.283458;
+    double aspect = f->height / f->width, scale_y = fmax(aspect, tall), scale_x = scale_y / aspect;
+    double x = 2 * s * scale_x, y = 2 * t * scale_y + fmax(0, 1 - scale_y), r2 = x * x + y * y, r = sqrt(r2);
     *direction = around_axis(f, x, y, r * (1.411269 + r2 * (-0.09439 + r2 * 0.25674)));
-    return r <= 1;
+    return r <= 1 && vec3_dot(*direction, f->up) >= -vec3_dot(*direction, f->forward);
 }
 
 static Vec3 wide_direction(const Camera *c, const Frame *f, double s, double t) {
@@ -51,14 +48,16 @@ static Vec3 wide_direction(const Camera *c, const Frame *f, double s, double t) 
     return combine(f, sin(a), sin(b), cos(a) * cos(b));
 }
 
-static Vec3 panoramic_direction(const Frame *f, double s, double t) {
+/* The axes count with their lengths. */
+static Vec3 panoramic_direction(const Camera *c, double s, double t) {
     double a = s * VTS_PI, b = double_clamp(t * VTS_PI, -VTS_PI / 2 + 1e-9, VTS_PI / 2 - 1e-9);
-    return vec3_normalize(combine(f, sin(a), tan(b), cos(a)));
+    return vec3_madd(vec3_madd(vec3_scale(c->right, sin(a)), c->up, tan(b)), c->direction, cos(a));
 }
 
+/* The axis, turned about `right`, and then about `up`. */
 static Vec3 spherical_direction(const Camera *c, const Frame *f, double s, double t) {
-    double a = s * c->angle * VTS_RADIANS, b = t * c->angle_v * VTS_RADIANS;
-    return combine(f, sin(a) * cos(b), sin(b), cos(a) * cos(b));
+    Transform pitch = transform_axis_rotate(f->right, -t * c->angle_v), turn = transform_axis_rotate(f->up, s * c->angle);
+    return transform_vector(&turn, transform_vector(&pitch, f->forward));
 }
 
 /* Along one axis of the picture an angle, along the other a length: of the direction (1, 2), or of the origin (3, 4). */
@@ -81,7 +80,7 @@ static bool line_at(const Camera *c, double s, double t, Line *out) {
     case CAMERA_FISHEYE: return fisheye_line(c, &f, s, t, &out->direction);
     case CAMERA_OMNIMAX: return omnimax_line(&f, s, t, &out->direction);
     case CAMERA_ULTRA_WIDE: out->direction = wide_direction(c, &f, s, t); return true;
-    case CAMERA_PANORAMIC: out->direction = panoramic_direction(&f, s, t); return true;
+    case CAMERA_PANORAMIC: out->direction = panoramic_direction(c, s, t); return true;
     case CAMERA_SPHERICAL: out->direction = spherical_direction(c, &f, s, t); return true;
     case CAMERA_CYLINDER_1:
     case CAMERA_CYLINDER_2:
@@ -136,20 +135,25 @@ static void disc_of_square(double u, double v, double *x, double *y) {
     *x = r * cos(angle), *y = r * sin(angle);
 }
 
+/* Where the line of sight is in focus: flat pictures on a plane, others on a sphere. */
+static double focus_of(const Camera *c, const Cone *cone) {
+    if (c->kind != CAMERA_PERSPECTIVE) return c->focal_distance;
+    return c->focal_distance / fmax(1e-6, fabs(vec3_dot(vec3_normalize(c->direction), cone->direction)));
+}
+
+/* POV-Ray's lens is a disc across the line of sight; its radius is a quarter of `aperture`. */
 bool view_ray(const View *view, double x, double y, double u, double v, double width_px, Cone *out) {
     *out = view_cone(view, x, y, width_px);
     if (vec3_length_squared(out->direction) == 0) return false;
     if (!view_has_lens(view)) return true;
-    double a, b;
+    double a, b, focus = focus_of(&view->camera, out), radius = view->camera.aperture / 4;
     disc_of_square(u, v, &a, &b);
-    Vec3 across = vec3_normalize(vec3_cross(view->camera.up, out->direction)), up = vec3_cross(out->direction, across);
-    Vec3 focus = cone_point(out, view->camera.focal_distance);
-    double width = cone_diameter(out, view->camera.focal_distance), radius = view->camera.aperture / 2;
-    out->origin = vec3_madd(vec3_madd(out->origin, across, a * radius), up, b * radius);
-    Vec3 to = vec3_sub(focus, out->origin);
-    double distance = vec3_length(to);
-    out->direction = vec3_scale(to, 1 / distance);
-    out->spread = (width - out->width) / distance;
+    Vec3 s, t, in_focus = cone_point(out, focus);
+    vec3_frame(out->direction, &s, &t);
+    out->origin = vec3_madd(vec3_madd(out->origin, s, a * radius), t, b * radius);
+    Vec3 to = vec3_sub(in_focus, out->origin);
+    out->direction = vec3_normalize(to);
+    out->spread *= focus / vec3_length(to);
     return true;
 }
 

@@ -20,7 +20,7 @@ Cone view_cone(const View *view, double x, double y, double width_px);
 bool view_ray(const View *view, double x, double y, double u, double v, double width_px, Cone *out);
 
 /* Whether there is a lens: u and v matter. */
-static inline bool view_has_lens(const View *view) { return view->camera.aperture > 0; }
+static inline bool view_has_lens(const View *view) { return view->camera.aperture > 0 && view->camera.focal_distance > 0; }
 /* Whether the picture is a plane seen from a point or along one direction. */
 static inline bool view_is_flat(const View *view) {
     return view->camera.kind == CAMERA_PERSPECTIVE || view->camera.kind == CAMERA_ORTHOGRAPHIC;

@@ -536,11 +536,10 @@ typedef struct Camera {
     CameraKind kind;
     Vec3 location, direction, right, up;
     double angle, angle_v;        /* degrees, of the kinds that are not flat: across, and of CAMERA_SPHERICAL upwards */
-    double aperture;              /* of the lens, its diameter; 0: a point */
-    double focal_distance;
+    double aperture;              /* of the lens: four times its radius; 0: a point */
+    double focal_distance;        /* 0: none */
     int least_blur_samples, most_blur_samples; /* 0: not given */
     double confidence, variance;  /* when blur is smooth enough; 0: not given */
-    const Pigment *bokeh;         /* how bright the lens is over <0, 0> … <1, 1>; NULL: everywhere */
     const InertNote *inert;
 } Camera;
 

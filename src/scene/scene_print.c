@@ -448,11 +448,18 @@ static void print_skin(Printer *p, const Skin *skin) {
 /* ---- the scene ---- */
 
 static void print_camera(Printer *p, const Camera *c) {
-    begin_line(p, c->kind == CAMERA_ORTHOGRAPHIC ? "camera orthographic" : "camera");
+    static const char *const names[] = {"",           " orthographic", " fisheye",    " ultra_wide_angle",
+                                        " omnimax",   " panoramic",    " spherical",  " cylinder 1",
+                                        " cylinder 2", " cylinder 3",  " cylinder 4"};
+    begin_line(p, "camera");
+    strbuf_adds(p->out, names[c->kind]);
     add_vector(p, "location", c->location);
     add_vector(p, "direction", c->direction);
     add_vector(p, "right", c->right);
     add_vector(p, "up", c->up);
+    if (c->kind > CAMERA_ORTHOGRAPHIC) add_number(p, "angle", c->angle);
+    if (c->kind == CAMERA_SPHERICAL) add_number(p, "angle_v", c->angle_v);
+    if (c->aperture > 0) strbuf_addf(p->out, " aperture %g focus %g", c->aperture, c->focal_distance);
     end_line(p);
 }
 

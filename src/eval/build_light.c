@@ -1,5 +1,7 @@
 #include "eval/build_parts.h"
 
+#include <string.h>
+
 typedef struct LightDraft {
     Light light;
     bool parallel;
@@ -10,8 +12,69 @@ static void read_parallel(Reader *reader, const Word *word, void *target) {
     if (word_arguments(reader, word, 0, 0)) ((LightDraft *)target)->parallel = true;
 }
 
-static void read_spotlight(Reader *reader, const Word *word, void *target) {
-    if (word_arguments(reader, word, 0, 0)) ((LightDraft *)target)->light.kind = LIGHT_SPOT;
+/* The word sets what the rim is without others. */
+static void read_kind(Reader *reader, const Word *word, void *target) {
+    Light *light = &((LightDraft *)target)->light;
+    bool spot = strcmp(word->text, "spotlight") == 0;
+    if (!word_arguments(reader, word, 0, 0)) return;
+    light->kind = spot ? LIGHT_SPOT : LIGHT_CYLINDER;
+    light->radius = spot ? 30 : 0.75;
+    light->falloff = spot ? 45 : 1;
+    light->tightness = 0;
+}
+
+enum { MOST_AREA_LIGHTS = 10000 }; /* along one side */
+
+static void read_area(Reader *reader, const Word *word, void *target) {
+    Light *light = &((LightDraft *)target)->light;
+    double size_u = 1, size_v = 1;
+    grammar_word(reader, word);
+    if (word->count < 4 || !word_vector(reader, word, 0, &light->axis_u) ||
+        !word_vector(reader, word, 1, &light->axis_v) || !word_float(reader, word, 2, &size_u) ||
+        !word_float(reader, word, 3, &size_v))
+        return;
+    light->size_u = double_to_int(size_u, 1, MOST_AREA_LIGHTS);
+    light->size_v = double_to_int(size_v, 1, MOST_AREA_LIGHTS);
+}
+
+static const Object *placed_like(const BuildContext *context, const Object *object, const Transform *t) {
+    if (!object) return NULL;
+    Transform own = object_transform(object), all = transform_then(&own, t);
+    Object copy = object_copy(object);
+    return object_keep(context->arena, &copy, &all);
+}
+
+typedef struct LikeDraft {
+    const Object *object;
+    Transform transform;
+} LikeDraft;
+
+static bool on_like_value(Reader *reader, const Argument *value, void *target) {
+    LikeDraft *draft = target;
+    if (take_transform(value, &draft->transform)) return true;
+    draft->object = object_from_value(reader->context, value);
+    return draft->object != NULL;
+}
+
+/* looks_like { O … }, projected_through { O … }: about the origin, which is to be the light's place. */
+static const Object *read_like(Reader *reader, const Word *word) {
+    LikeDraft draft = {.transform = transform_identity()};
+    if (!grammar_word(reader, word) || !word->body) return NULL;
+    Reader body = reader_nested(reader, word->body);
+    reader_add_table(&body, transform_rules, transform_rule_count, &draft.transform);
+    body.on_value = on_like_value;
+    body.value_target = &draft;
+    reader_run(&body);
+    reader_end_nested(reader, &body);
+    return placed_like(reader->context, draft.object, &draft.transform);
+}
+
+static void read_looks_like(Reader *reader, const Word *word, void *target) {
+    ((LightDraft *)target)->light.looks_like = read_like(reader, word);
+}
+
+static void read_projected(Reader *reader, const Word *word, void *target) {
+    ((LightDraft *)target)->light.projected_through = read_like(reader, word);
 }
 
 #define FIELD(name) offsetof(LightDraft, light.name)
@@ -21,7 +84,8 @@ static void read_spotlight(Reader *reader, const Word *word, void *target) {
     { word, WORD_IGNORED, 0, NULL, false }
 static const WordRule rules[] = {
     {"parallel", WORD_CUSTOM, 0, read_parallel, false},
-    {"spotlight", WORD_CUSTOM, 0, read_spotlight, false},
+    {"spotlight", WORD_CUSTOM, 0, read_kind, false},
+    {"cylinder", WORD_CUSTOM, 0, read_kind, false},
     {"point_at", WORD_VECTOR, FIELD(point_at), NULL, false},
     {"radius", WORD_FLOAT, FIELD(radius), NULL, false},
     {"falloff", WORD_FLOAT, FIELD(falloff), NULL, false},
@@ -29,17 +93,16 @@ static const WordRule rules[] = {
     {"shadowless", WORD_MARK, FIELD(shadowless), NULL, false},
     {"fade_distance", WORD_FLOAT, FIELD(fade_distance), NULL, false},
     {"fade_power", WORD_FLOAT, FIELD(fade_power), NULL, false},
-    INERT("area_light"),
-    INERT("looks_like"),
-    INERT("projected_through"),
-    INERT("cylinder"),
+    {"area_light", WORD_CUSTOM, 0, read_area, false},
+    {"jitter", WORD_FLAG, FIELD(jitter), NULL, false},
+    {"circular", WORD_FLAG, FIELD(circular), NULL, false},
+    {"orient", WORD_FLAG, FIELD(orient), NULL, false},
+    {"area_illumination", WORD_FLAG, FIELD(area_illumination), NULL, false},
+    {"looks_like", WORD_CUSTOM, 0, read_looks_like, false},
+    {"projected_through", WORD_CUSTOM, 0, read_projected, false},
     INERT("goniometric"),
     INERT("ies"),
-    IGNORED("adaptive"),
-    IGNORED("jitter"),
-    IGNORED("circular"),
-    IGNORED("orient"),
-    IGNORED("area_illumination"),
+    IGNORED("adaptive"), /* shadows are sampled by the error that remains */
     IGNORED("media_interaction"),
     IGNORED("media_attenuation"),
     IGNORED("groups"),
@@ -71,16 +134,25 @@ const Light *light_placed(const BuildContext *context, const Light *light, const
     Light *placed = arena_copy(context->arena, light, sizeof *light);
     placed->location = transform_point(t, light->location);
     placed->point_at = transform_point(t, light->point_at);
+    placed->axis_u = transform_vector(t, light->axis_u);
+    placed->axis_v = transform_vector(t, light->axis_v);
+    placed->looks_like = placed_like(context, light->looks_like, t);
+    placed->projected_through = placed_like(context, light->projected_through, t);
     placed->to_light = vec3_normalize(vec3_sub(placed->location, placed->point_at));
     return placed;
 }
 
-static bool finish(Reader *reader, LightDraft *draft, Value *out) {
+/* `copy`: of a declared light, whose looks_like stands where it belongs. */
+static bool finish(Reader *reader, LightDraft *draft, bool copy, Value *out) {
     Light *light = &draft->light;
     if (draft->parallel && light->kind == LIGHT_POINT) light->kind = LIGHT_PARALLEL;
+    light->parallel = light->parallel || draft->parallel;
     if (light->kind != LIGHT_POINT && vec3_length_squared(vec3_sub(light->location, light->point_at)) == 0)
         diag_warning(reader->context->diags, reader->block->word_span,
                      "this light has no direction, for it stands where it points at: it lights nothing");
+    Transform shift = transform_translate(light->location);
+    if (!copy) light->looks_like = placed_like(reader->context, light->looks_like, &shift);
+    if (!copy) light->projected_through = placed_like(reader->context, light->projected_through, &shift);
     *out = (Value){.kind = VALUE_LIGHT, .as.light = light_placed(reader->context, light, &draft->transform)};
     return true;
 }
@@ -91,7 +163,8 @@ bool build_light(BuildContext *context, const EvalBlock *block, Value *out) {
         .transform = transform_identity()};
     Reader reader = reader_begin(context, block);
     Argument declared;
-    if (reader_take_value(&reader, VALUE_LIGHT, &declared))
+    bool copy = reader_take_value(&reader, VALUE_LIGHT, &declared);
+    if (copy)
         draft.light = *declared.value.as.light;
     else if (!read_place(&reader, &draft.light))
         return false;
@@ -100,5 +173,5 @@ bool build_light(BuildContext *context, const EvalBlock *block, Value *out) {
     reader_add_table(&reader, transform_rules, transform_rule_count, &draft.transform);
     reader.on_value = on_value;
     reader.value_target = &draft;
-    return reader_run(&reader) && finish(&reader, &draft, out);
+    return reader_run(&reader) && finish(&reader, &draft, copy, out);
 }

@@ -149,7 +149,7 @@ static void cast(ShadowScratch *scratch, const CompiledScene *compiled, const Be
 static bool may_be_hidden(const CompiledScene *compiled, const Light *light, const ShadowPoints *in, uint32_t i) {
     if (in->hidden[i]) return false;
     Vec3 from = vec3_add(in->origin, vec3_from_f(in->points[i]));
-    bool parallel = light->kind == LIGHT_PARALLEL;
+    bool parallel = light_is_parallel(light);
     Ray ray = {from, parallel ? light->to_light : vec3_sub(light->location, from)};
     double near = 0, far = parallel ? VTS_INFINITY : 1;
     return box_tree_clip(&compiled->exact_bounds, &ray, &near, &far);
@@ -200,6 +200,6 @@ static void cast_central(ShadowScratch *scratch, const CompiledScene *compiled, 
 }
 
 void beam_shadow(ShadowScratch *scratch, const CompiledScene *compiled, const Light *light, const ShadowPoints *in) {
-    if (light->kind == LIGHT_PARALLEL) cast_parallel(scratch, compiled, light, in);
+    if (light_is_parallel(light)) cast_parallel(scratch, compiled, light, in);
     else cast_central(scratch, compiled, light, in);
 }

@@ -2,51 +2,91 @@
 
 #include "pattern/pattern.h"
 
-static double spot_factor(const Light *light, Vec3 to_light) {
-    Vec3 axis = vec3_normalize(vec3_sub(light->point_at, light->location));
-    double cosine = -vec3_dot(axis, to_light);
-    double inner = cos(light->radius * VTS_RADIANS), outer = cos(light->falloff * VTS_RADIANS);
-    if (cosine <= outer) return 0;
-    double edge = 1;
-    if (cosine < inner) { /* POV-Ray's cubic between falloff and radius */
-        double x = (cosine - outer) / (inner - outer);
-        edge = x * x * (3 - 2 * x);
-    }
-    return edge * (light->tightness > 0 ? pow(cosine, light->tightness) : 1);
+/* Smooth from 0 at `low` to 1 at `high`: POV-Ray's cubic at the rims of lights. */
+static double rim(double low, double high, double x) {
+    if (x <= low) return 0;
+    if (x >= high) return 1;
+    double f = (x - low) / (high - low);
+    return f * f * (3 - 2 * f);
 }
 
-LightRay light_ray(const Light *light, Vec3 point) {
-    LightRay ray = {.color = vec3f_from_color(light->color)};
-    if (light->kind == LIGHT_PARALLEL) {
-        ray.direction = light->to_light;
-        ray.distance = VTS_INFINITY;
-        return ray;
-    }
-    Vec3 to = vec3_sub(light->location, point);
-    ray.distance = vec3_length(to);
-    ray.direction = ray.distance > 0 ? vec3_scale(to, 1 / ray.distance) : vec3(0, 1, 0);
-    double factor = 1;
-    if (light->fade_power > 0 && light->fade_distance > 0)
-        factor = 2 / (1 + pow(ray.distance / light->fade_distance, light->fade_power));
+/* By the cosine to the axis, raised to `tightness`; between falloff and radius the light ends. */
+static double spot_factor(const Light *light, Vec3 to_light) {
+    double cosine = vec3_dot(light->to_light, to_light);
+    if (!(cosine > 0)) return 0;
+    double factor = light->tightness != 0 ? pow(cosine, light->tightness) : 1;
+    if (light->radius > 0) factor *= rim(cos(light->falloff * VTS_RADIANS), cos(light->radius * VTS_RADIANS), cosine);
+    return factor;
+}
+
+/* By the distance from the axis. */
+static double cylinder_factor(const Light *light, Vec3 to) {
+    double along = vec3_dot(light->to_light, to);
+    if (!(along > 0)) return 0;
+    double away = vec3_length(vec3_madd(to, light->to_light, -along)), rest = 1 - away / light->falloff;
+    if (!(rest > 0)) return 0;
+    double factor = light->tightness != 0 ? pow(rest, light->tightness) : 1;
+    if (light->radius > 0 && away > light->radius) factor *= rim(0, 1 - light->radius / light->falloff, rest);
+    return factor;
+}
+
+static double fading(const Light *light, double distance) {
+    if (!(light->fade_power > 0) || !(light->fade_distance > 0)) return 1;
+    return 2 / (1 + pow(distance / light->fade_distance, light->fade_power));
+}
+
+LightRay light_ray(const Light *light, Vec3 point) { return light_ray_from(light, point, light->location); }
+
+LightRay light_ray_from(const Light *light, Vec3 point, Vec3 place) {
+    Vec3 to = vec3_sub(place, point);
+    double length = vec3_length(to), factor = 1;
+    LightRay ray = {.direction = length > 0 ? vec3_scale(to, 1 / length) : vec3(0, 1, 0), .distance = length};
+    if (light_is_parallel(light)) ray = (LightRay){.direction = light->to_light, .distance = VTS_INFINITY};
+    else factor = fading(light, length);
     if (light->kind == LIGHT_SPOT) factor *= spot_factor(light, ray.direction);
-    ray.color = vec3f_scale(ray.color, (float)factor);
+    if (light->kind == LIGHT_CYLINDER) factor *= cylinder_factor(light, to);
+    ray.color = vec3f_scale(vec3f_from_color(light->color), (float)factor);
     return ray;
 }
 
-bool light_is_area(const Light *light) { return light->size_u * light->size_v > 1; }
+/* ---- lights with an area ---- */
 
-Vec3 light_place(const Light *light, Vec3 point, double u, double v) {
-    (void)point;
-    if (!light_is_area(light)) return light->location;
-    return vec3_madd(vec3_madd(light->location, light->axis_u, u - 0.5), light->axis_v, v - 0.5);
+bool light_is_area(const Light *light) { return light->size_u > 1 || light->size_v > 1; }
+
+/* POV-Ray halves its rows of lights until two are left, which count alike: so do the numbers of [0, 1) here. Jitter makes each light as
+ * wide as the way to the next. */
+static double row_place(double u, int size, bool jitter) {
+    int low = 0, high = size - 1;
+    if (high < 1) return 0;
+    while (high - low > 1) {
+        int middle = (low + high) / 2;
+        bool first = u < 0.5;
+        u = first ? 2 * u : 2 * u - 1;
+        if (first) high = middle;
+        else low = middle;
+    }
+    bool first = u < 0.5;
+    u = first ? 2 * u : 2 * u - 1;
+    return ((first ? low : high) + (jitter ? u - 0.5 : 0)) / (size - 1) - 0.5;
 }
 
-LightRay light_ray_from(const Light *light, Vec3 point, Vec3 place) {
-    Light there = *light;
-    Vec3 moved = vec3_sub(place, light->location);
-    there.location = place;
-    there.point_at = vec3_add(light->point_at, moved);
-    return light_ray(&there, point);
+/* Squares about the middle become circles. */
+static void round_off(double *a, double *b) {
+    double r = hypot(*a, *b), scale = r > 0 ? fmax(fabs(*a), fabs(*b)) / r : 0;
+    *a *= scale, *b *= scale;
+}
+
+Vec3 light_place(const Light *light, Vec3 point, double u, double v) {
+    if (!light_is_area(light)) return light->location;
+    double a = row_place(u, light->size_u, light->jitter), b = row_place(v, light->size_v, light->jitter);
+    Vec3 across = light->axis_u, along = light->axis_v;
+    if (light->circular) round_off(&a, &b);
+    if (light->orient) {
+        Vec3 to = vec3_normalize(vec3_sub(point, light->location)), turned = vec3_normalize(vec3_cross(to, across));
+        along = vec3_scale(turned, vec3_length(along));
+        across = vec3_scale(vec3_cross(turned, to), vec3_length(across));
+    }
+    return vec3_madd(vec3_madd(light->location, across, a), along, b);
 }
 
 bool light_shines_on(const Light *light, const LightGroup *group) {

@@ -555,7 +555,8 @@ struct Light {
     Span span;
     LightKind kind;
     Vec3 location;
-    Vec3 to_light;        /* LIGHT_PARALLEL: unit vector towards the light */
+    Vec3 to_light;        /* unit vector from point_at towards the light */
+    bool parallel;        /* of spots and cylinders: its rays are; see light_is_parallel() */
     Color color;
     bool shadowless;
     double fade_distance, fade_power; /* 0: no fading */
@@ -568,6 +569,8 @@ struct Light {
     const LightGroup *group; /* shines on nothing else; NULL: on all */
     const InertNote *inert;
 };
+
+static inline bool light_is_parallel(const Light *light) { return light->kind == LIGHT_PARALLEL || light->parallel; }
 
 typedef struct Fog {
     Span span;

@@ -464,20 +464,32 @@ static void print_camera(Printer *p, const Camera *c) {
 }
 
 static void print_light(Printer *p, const Light *light) {
-    static const char *const names[] = {"light", "light parallel", "light spot"};
+    static const char *const names[] = {"light", "light parallel", "light spot", "light cylinder"};
     begin_line(p, names[light->kind]);
     if (light->kind == LIGHT_PARALLEL)
         add_vector(p, "towards", light->to_light);
     else
         add_vector(p, "location", light->location);
     add_color(p, "color", light->color);
-    if (light->kind == LIGHT_SPOT) {
+    if (light->kind == LIGHT_SPOT || light->kind == LIGHT_CYLINDER) {
         add_vector(p, "point_at", light->point_at);
         strbuf_addf(p->out, " radius %g falloff %g tightness %g", light->radius, light->falloff,
                     light->tightness);
     }
     if (light->fade_power != 0) strbuf_addf(p->out, " fade %g ^ %g", light->fade_distance, light->fade_power);
+    if (light->size_u) {
+        add_vector(p, "area", light->axis_u);
+        add_vector(p, "by", light->axis_v);
+        strbuf_addf(p->out, " %d %d", light->size_u, light->size_v);
+        add_flag(p, "jitter", light->jitter);
+        add_flag(p, "circular", light->circular);
+        add_flag(p, "orient", light->orient);
+        add_flag(p, "area_illumination", light->area_illumination);
+    }
+    add_flag(p, "parallel", light->parallel && light->kind != LIGHT_PARALLEL);
     add_flag(p, "shadowless", light->shadowless);
+    add_flag(p, "grouped", light->group != NULL);
+    add_flag(p, "projected", light->projected_through != NULL);
     add_inert(p, light->inert);
     end_line(p);
 }

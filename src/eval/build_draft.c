@@ -27,6 +27,7 @@ struct SceneDraft {
     } warned;             /* words named in a warning */
     const void **visited; /* nodes walked already: a set of pointers */
     size_t visited_count, visited_slots;
+    uint32_t light_groups;
     const Texture *first_default;
     const Camera *camera;
     const Fog *fog;
@@ -164,20 +165,21 @@ static void walk_object(SceneDraft *draft, BuildContext *context, const Object *
 
 /* ---- adding ---- */
 
-static void add_light(SceneDraft *draft, BuildContext *context, const Light *light) {
-    warn_inert(draft, context, light->inert);
-    *list_push(context->arena, &draft->lights) = *light;
+static void add_object(SceneDraft *draft, BuildContext *context, const Object *object);
+
+/* The object that a light looks like stands where it is, and keeps none of its light. */
+static void add_looks(SceneDraft *draft, BuildContext *context, const Light *light) {
+    if (!light->looks_like) return;
+    Object shape = object_copy(light->looks_like);
+    shape.no_shadow = true;
+    add_object(draft, context, object_keep(context->arena, &shape, NULL));
 }
 
-/* Lights in unions shine where the transforms of the unions around them put them. */
-static void add_lights_of(SceneDraft *draft, BuildContext *context, const Object *object,
-                          const Transform *outer) {
-    if (!object_has_group(object) || object->as.group->plain) return;
-    Transform own = object_transform(object), t = transform_then(&own, outer);
-    for (size_t i = 0; i < object->as.group->light_count; i++)
-        add_light(draft, context, light_placed(context, object->as.group->lights[i], &t));
-    for (size_t i = 0; i < object->as.group->count; i++)
-        add_lights_of(draft, context, object->as.group->items[i], &t);
+static void add_light(void *target, BuildContext *context, const Light *light) {
+    SceneDraft *draft = target;
+    warn_inert(draft, context, light->inert);
+    *list_push(context->arena, &draft->lights) = *light;
+    add_looks(draft, context, light);
 }
 
 static bool surface_is_modelled(const Surface *surface) {
@@ -197,9 +199,10 @@ static bool object_is_modelled(const Object *object) {
 
 /* An object without a texture takes the default of the moment when it enters the scene. */
 static void add_object(SceneDraft *draft, BuildContext *context, const Object *object) {
-    Transform identity = transform_identity();
+    LightFinder finder = {context, add_light, draft, draft->light_groups};
     walk_object(draft, context, object);
-    add_lights_of(draft, context, object, &identity);
+    object = lights_find(&finder, object);
+    draft->light_groups = finder.group_count;
     if (!object_is_modelled(object)) return;
     if (!object->texture && context->default_texture != draft->first_default) {
         Object colored = object_copy(object);

@@ -244,6 +244,7 @@ typedef struct CsgDraft {
     ObjectDraft common;
     ChildList children;
     LightList lights;
+    bool global_lights;
 } CsgDraft;
 
 static bool on_csg_value(Reader *reader, const Argument *value, void *target) {
@@ -286,7 +287,8 @@ static Span after_objects(const Reader *reader) {
 bool build_csg(BuildContext *context, const EvalBlock *block, Value *out) {
     CsgDraft draft = {.common = object_begin(block, csg_kind(block->word->text))};
     Reader reader = reader_begin(context, block);
-    static const WordRule group_rules[] = {IGNORED("global_lights")};
+    static const WordRule group_rules[] = {
+        {"global_lights", WORD_FLAG, offsetof(CsgDraft, global_lights), NULL, false}};
     bool group = strcmp(block->word->text, "light_group") == 0;
     if (group) reader_add_table(&reader, group_rules, VTS_ARRAY_COUNT(group_rules), &draft);
     reader.on_value = on_csg_value;
@@ -301,7 +303,9 @@ bool build_csg(BuildContext *context, const EvalBlock *block, Value *out) {
     *made = (ObjectGroup){.items = draft.children.items,
                           .count = draft.children.count,
                           .lights = draft.lights.items,
-                          .light_count = draft.lights.count};
+                          .light_count = draft.lights.count,
+                          .light_group = group,
+                          .global_lights = draft.global_lights};
     object_group_settle(made);
     draft.common.object.as.group = made;
     return object_make(&reader, &draft.common, out);

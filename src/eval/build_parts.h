@@ -113,6 +113,15 @@ BlockBuilder build_quadric, build_polynomial, build_superellipsoid, build_ovus, 
 BlockBuilder build_camera;                                                              /* build_camera.c */
 BlockBuilder build_light;                                                               /* build_light.c */
 const Light *light_placed(const BuildContext *context, const Light *light, const Transform *t);
+/* build_light_group.c: gives all lights in an object to `take`, in the scene's space. Returns the object, changed where light groups keep
+ * lights apart. */
+typedef struct LightFinder {
+    BuildContext *context;
+    void (*take)(void *target, BuildContext *context, const Light *light);
+    void *target;
+    uint32_t group_count; /* so far */
+} LightFinder;
+const Object *lights_find(LightFinder *finder, const Object *object);
 BlockBuilder build_sky_sphere, build_fog; /* build_sky.c */
 bool background_read(BuildContext *context, const EvalBlock *block, Color *out);
 bool settings_read(BuildContext *context, const EvalBlock *block,

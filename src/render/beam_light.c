@@ -8,6 +8,7 @@ static float luminance(Vec3f c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f
 
 /* What the light would send to the eye if nothing were in its way. */
 static Vec3f tone_of(const Sight *sight, const Light *light, LightRay *ray) {
+    if (!light_shines_on(light, sight->look->texture->group)) return vec3f(0, 0, 0);
     *ray = light_ray(light, sight->point);
     NdfShade shade = sheet_shade(sight->normal, sight->view, vec3f_from(ray->direction), &sight->look->sheet);
     if (shade.diffuse <= 0 && shade.highlight <= 0) return vec3f(0, 0, 0);

@@ -123,7 +123,10 @@ static void close_group(Tracer *tr, const Cone *cone, Group *group, int nearest,
     const Scene *scene = tr->compiled->scene;
     double t = group->t / (double)group->weight;
     Vec3 point = cone_point(cone, t);
-    for (size_t l = 0; l < scene->light_count; l++) tr->light_rays[l] = light_ray(&scene->lights[l], point);
+    for (size_t l = 0; l < scene->light_count; l++) {
+        tr->light_rays[l] = light_ray(&scene->lights[l], point);
+        if (!light_shines_on(&scene->lights[l], NULL)) tr->light_rays[l].color = vec3f(0, 0, 0);
+    }
     *record = (ShadeRecord){.weight = group->weight, .t = t, .tolerance = 0.02 * group->voxel_world / (double)group->weight,
                             .skin = (uint32_t)nearest, .point = skin_march_guess(&tr->marches[nearest], t)};
     record->ambient = shade_group(tr, cone, group, tr->light_rays, direct);
@@ -240,7 +243,7 @@ static float record_visibility(Tracer *tr, const Light *light, const Cone *cone,
         if (!(clear > 0)) return 0;
     }
     double aperture = scene->shadow_aperture;
-    Cone shadow = {point, ray.direction, cone_diameter(cone, r->t) * aperture, cone->spread * aperture};
+    Cone shadow = {point, ray.direction, cone_diameter(cone, r->t) * aperture, cone->spread * aperture + light_spread(light, &ray)};
     SkinPoint place = r->point;
     bool seam = false;
     SkinSide side = skin_locate(&scene->skins[r->skin], point, r->tolerance, &place, &seam);

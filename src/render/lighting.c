@@ -51,6 +51,12 @@ LightRay light_ray_from(const Light *light, Vec3 point, Vec3 place) {
 
 /* ---- lights with an area ---- */
 
+double light_spread(const Light *light, const LightRay *ray) {
+    if (!light_is_area(light) || !(ray->distance > 0)) return 0;
+    double area = vec3_length(vec3_cross(light->axis_u, light->axis_v)) * (light->circular ? VTS_PI / 4 : 1);
+    return sqrt(area) / ray->distance;
+}
+
 bool light_is_area(const Light *light) { return light->size_u > 1 || light->size_v > 1; }
 
 /* POV-Ray halves its rows of lights until two are left, which count alike: so do the numbers of [0, 1) here. Jitter makes each light as

@@ -21,6 +21,8 @@ bool light_is_area(const Light *light);
 Vec3 light_place(const Light *light, Vec3 point, double u, double v);
 /* What comes from that place: direction and distance are those of a shadow ray. */
 LightRay light_ray_from(const Light *light, Vec3 point, Vec3 place);
+/* How much wider a cone towards the light grows per unit of length so that it ends as large as the light's area. */
+double light_spread(const Light *light, const LightRay *ray);
 /* Whether the light shines on what belongs to this group (NULL: none). */
 bool light_shines_on(const Light *light, const LightGroup *group);
 

@@ -112,6 +112,7 @@ static Vec3f shade(const Sample *s, const Facet *facet) {
     Vec3f sum = vec3f_mul(facet->look->emission, facet->color);
     if (sky_lit(s, facet)) sum = vec3f_add(sum, vec3f_mul(facet->look->ambient, facet->color));
     for (size_t l = 0; l < scene->light_count; l++) {
+        if (!light_shines_on(&scene->lights[l], facet->look->texture->group)) continue;
         LightRay ray = light_ray(&scene->lights[l], point);
         NdfShade amount = sheet_shade(vec3f_from(facet->normal), view, vec3f_from(ray.direction), &facet->look->sheet);
         if (amount.diffuse <= 0 && amount.highlight <= 0) continue;

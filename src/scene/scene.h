@@ -244,6 +244,7 @@ typedef struct TextureMap {
     double work;  /* as a pigment's */
 } TextureMap;
 
+struct LightGroup;
 struct Texture {
     Span span;
     Hash128 hash;
@@ -254,6 +255,7 @@ struct Texture {
     const InertNote *inert;
     const Normal *normal;   /* or NULL */
     const TextureMap *map;  /* NULL: plain */
+    const struct LightGroup *group; /* whose lights alone shine on it; NULL: all lights that belong to none */
 };
 
 /* ---- objects ---- */
@@ -337,6 +339,7 @@ typedef struct ObjectGroup {
     const Light *const *lights;
     size_t light_count;
     const Plant *plant; /* of the union that an L-system is; else NULL */
+    bool light_group, global_lights; /* light_group { … } */
     /* Kept by scene_hash.c once they were asked for. */
     Hash128 shape_hash, hash;
     bool hashed;
@@ -548,6 +551,7 @@ typedef enum LightKind { LIGHT_POINT, LIGHT_PARALLEL, LIGHT_SPOT, LIGHT_CYLINDER
 /* light_group { … }: its lights shine on what stands in it alone, and others on that only with `global_lights`. */
 typedef struct LightGroup {
     const struct LightGroup *outer; /* the group around it, or NULL */
+    uint32_t number;                /* in the scene, from 1 */
     bool global_lights;
 } LightGroup;
 

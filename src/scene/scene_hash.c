@@ -161,6 +161,7 @@ void texture_rehash(Texture *t) {
     hash_add_hash(&h, t->finish->hash);
     hash_add_transform(&h, &t->transform);
     add_texture(&h, t->under);
+    if (t->group) hash_add_u64(&h, t->group->number);
     if (t->normal) hash_add_hash(&h, t->normal->hash);
     if (t->map) {
         hash_add_hash(&h, t->map->pattern->hash);
@@ -239,7 +240,7 @@ enum { DEEPEST_UNHASHED = 64 };
 
 void object_group_settle(ObjectGroup *group) {
     group->unhashed_depth = 1;
-    group->plain = group->light_count == 0;
+    group->plain = group->light_count == 0 && !group->light_group;
     for (size_t i = 0; i < group->count; i++) {
         const Object *object = group->items[i];
         if (object->kind == OBJECT_TEXEL) group->plain = false;

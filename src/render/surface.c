@@ -105,8 +105,9 @@ static Vec3f own_light(const SurfaceTracer *tracer, const Meeting *m) {
 static Vec3f light_from(SurfaceTracer *tracer, const Meeting *m, size_t number) {
     const Scene *scene = tracer->compiled->scene;
     const Light *light = &scene->lights[number];
-    LightRay way = light_ray(light, m->point);
     Vec3f sum = {0, 0, 0};
+    if (!light_shines_on(light, m->hit->look->texture->group)) return sum;
+    LightRay way = light_ray(light, m->point);
     if (!(most_of(way.color) > 0)) return sum;
     for (int i = 0; i < m->layer_count; i++) {
         Vec3f one = surface_layer_light(&m->layers[i], m->leg->cone.direction, way.direction, m->hit->both_sides, scene->settings.irid_wavelength,

@@ -11,6 +11,7 @@ typedef struct Stage {
     double density[5];
 } Stage;
 
+enum { FEW_STAGES = 64 };
 typedef struct StageList {
     Stage *items;
     size_t count, capacity;
@@ -127,10 +128,12 @@ static void cross(const void *data, const Ray *ray, SolidSink *sink) {
     Vec3 o = vec3_madd(ray->origin, d, shift);
     Arena scratch;
     arena_init(&scratch, NULL, 8192);
-    StageList list = {0};
+    Stage few[FEW_STAGES]; /* the arena is asked for more only if they do not do */
+    double few_places[2 * FEW_STAGES];
+    StageList list = {few, 0, FEW_STAGES};
     for (size_t i = 0; i < s->as.blob.count; i++)
         add_part(&scratch, &list, &s->as.blob.parts[i], o, d, reach);
-    double *places = arena_new_array(&scratch, double, 2 * list.count);
+    double *places = list.count <= FEW_STAGES ? few_places : arena_new_array(&scratch, double, 2 * list.count);
     for (size_t i = 0; i < list.count; i++)
         places[2 * i] = list.items[i].begin, places[2 * i + 1] = list.items[i].end;
     solve(&list, s->as.blob.threshold, places, 2 * list.count, shift, length, sink);

@@ -73,6 +73,7 @@ typedef struct Stretch {
     uint32_t piece_in, piece_out;
 } Stretch;
 
+enum { FEW_STRETCHES = 32 };
 typedef struct StretchList {
     Stretch *items;
     size_t count, capacity;
@@ -152,7 +153,8 @@ static void cross(const void *data, const Ray *ray, SolidSink *sink) {
     Arena scratch;
     arena_init(&scratch, NULL, 8192);
     sweep.arena = &scratch;
-    StretchList list = {0};
+    Stretch few[FEW_STRETCHES]; /* the arena is asked for more only if they do not do */
+    StretchList list = {few, 0, FEW_STRETCHES};
     double length = vec3_length(ray->direction);
     Vec3 d = vec3_scale(ray->direction, 1 / length),
          middle = vec3_lerp(sweep.bounds.min, sweep.bounds.max, 0.5);

@@ -407,9 +407,19 @@ static void finish_cluster(Builder *b, Cluster *cluster) {
 
 static Box3 group_box(Builder *b, const ObjectGroup *group);
 
+/* Copies share it: each vertex is looked at once. */
+static Box3 mesh_box(Builder *b, const Object *object) {
+    Slot *slot = slot_of(b->arena, &b->meshes, object->as.mesh);
+    if (!slot->sized) slot->box = shape_bounds(object);
+    slot->sized = true;
+    return slot->box;
+}
+
 /* Of everything finite, in the parent's space. */
 static Box3 finite_box(Builder *b, const Object *object) {
-    Box3 own = object_has_group(object) ? group_box(b, object->as.group) : shape_bounds(object);
+    Box3 own = object_has_group(object)               ? group_box(b, object->as.group)
+               : object->kind == OBJECT_TRIANGLES ? mesh_box(b, object)
+                                                  : shape_bounds(object);
     Transform place = object_transform(object);
     return is_finite_box(own) ? box3_transform(&place, own) : box3_empty();
 }

@@ -100,7 +100,7 @@ static void stand_alone(VtsSession *session, const TexelDef *def) {
     scene->lights = default_lights(arena);
     scene->light_count = 2;
     scene->skin_count = scene->sky_layer_count = 0;
-    scene->has_fog = false;
+    scene->fog_count = 0;
     scene->background = (Color){0.62, 0.68, 0.75, 0, 0};
     scene->camera = oblique_camera(def->bounds, (double)session->options.width / session->options.height);
     session->scene = scene;

@@ -30,7 +30,10 @@ struct SceneDraft {
     uint32_t light_groups;
     const Texture *first_default;
     const Camera *camera;
-    const Fog *fog;
+    struct {
+        Fog *items;
+        size_t count, capacity;
+    } fogs;
     Color background;
     GlobalSettings settings;
 };
@@ -291,7 +294,7 @@ bool scene_draft_add(SceneDraft *draft, BuildContext *context, const Value *valu
     case VALUE_FOG:
         if (value->as.fog->distance <= 0) return true;
         warn_inert(draft, context, value->as.fog->inert);
-        draft->fog = value->as.fog;
+        *list_push(context->arena, &draft->fogs) = *value->as.fog;
         return true;
     case VALUE_BLOCK: return add_block(draft, context, value->as.block, span);
     default: return refuse(context, value, span);
@@ -347,11 +350,11 @@ const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context, double
                      .sky_layers = draft->sky.items,
                      .sky_layer_count = draft->sky.count,
                      .background = draft->background,
-                     .has_fog = draft->fog != NULL,
+                     .fogs = draft->fogs.items,
+                     .fog_count = draft->fogs.count,
                      .default_texture = draft->first_default,
                      .settings = draft->settings,
                      .clock = clock};
     scene->settings.assumed_gamma = build_assumed_gamma(context);
-    if (draft->fog) scene->fog = *draft->fog;
     return scene;
 }

@@ -82,28 +82,36 @@ static bool on_fog_value(Reader *reader, const Argument *value, void *target) {
     return take_transform(value, &ignored) || on_color(reader, value, &fog->color);
 }
 
+static void read_fog_type(Reader *reader, const Word *word, void *target) {
+    double type = 1;
+    if (word_arguments(reader, word, 1, 1) && word_float(reader, word, 0, &type)) ((Fog *)target)->ground = type == 2;
+}
+
 bool build_fog(BuildContext *context, const EvalBlock *block, Value *out) {
     static const WordRule fog_rules[] = {
         {"distance", WORD_FLOAT, offsetof(Fog, distance), NULL, false},
-        {"fog_type", WORD_IGNORED, 0, NULL, false},
-        {"fog_offset", WORD_INERT, offsetof(Fog, inert), NULL, false},
-        {"fog_alt", WORD_INERT, offsetof(Fog, inert), NULL, false},
+        {"fog_type", WORD_CUSTOM, 0, read_fog_type, false},
+        {"fog_offset", WORD_FLOAT, offsetof(Fog, offset), NULL, false},
+        {"fog_alt", WORD_FLOAT, offsetof(Fog, altitude), NULL, false},
         {"turbulence", WORD_INERT, offsetof(Fog, inert), NULL, false},
         {"turb_depth", WORD_IGNORED, 0, NULL, false},
         {"octaves", WORD_IGNORED, 0, NULL, false},
         {"omega", WORD_IGNORED, 0, NULL, false},
         {"lambda", WORD_IGNORED, 0, NULL, false},
-        {"up", WORD_IGNORED, 0, NULL, false},
+        {"up", WORD_VECTOR, offsetof(Fog, up), NULL, false},
     };
     Fog *fog = arena_new(context->arena, Fog);
-    Transform ignored = transform_identity();
+    fog->up = vec3(0, 1, 0);
+    Transform turned = transform_identity();
     Reader reader = reader_begin(context, block);
     reader_add_table(&reader, fog_rules, VTS_ARRAY_COUNT(fog_rules), fog);
-    reader_add_table(&reader, transform_rules, transform_rule_count, &ignored);
+    reader_add_table(&reader, transform_rules, transform_rule_count, &turned);
     reader.on_value = on_fog_value;
     reader.value_target = fog;
     if (!reader_run(&reader)) return false;
     fog->span = block->span;
+    fog->up = vec3_normalize(transform_vector(&turned, fog->up));
+    if (!(fog->altitude > 0)) fog->ground = false;
     if (fog->distance <= 0)
         diag_warning(context->diags, block->word_span, "this fog has no distance greater than 0: it has no effect");
     *out = (Value){.kind = VALUE_FOG, .as.fog = fog};

@@ -579,7 +579,10 @@ static inline bool light_is_parallel(const Light *light) { return light->kind ==
 typedef struct Fog {
     Span span;
     double distance;
-    Color color;
+    Color color;         /* filter: the share of what passes that it tints; transmit: the least that passes */
+    bool ground;         /* fog_type 2: thins out upwards from `offset` on; half as dense `altitude` higher */
+    double offset, altitude;
+    Vec3 up;             /* unit */
     const InertNote *inert;
 } Fog;
 
@@ -619,8 +622,8 @@ typedef struct Scene {
     const Pigment *const *sky_layers; /* of sky_sphere, first below; pattern space: unit direction */
     size_t sky_layer_count;
     Color background;
-    bool has_fog;
-    Fog fog;
+    const Fog *fogs;
+    size_t fog_count;
     const Texture *default_texture;
     GlobalSettings settings;
     double clock;

@@ -522,10 +522,12 @@ void scene_print(const Scene *scene, StrBuf *out) {
     add_color(p, "color", scene->background);
     end_line(p);
     for (size_t i = 0; i < scene->sky_layer_count; i++) print_pigment(p, "sky", scene->sky_layers[i]);
-    if (scene->has_fog) {
+    for (size_t i = 0; i < scene->fog_count; i++) {
+        const Fog *fog = &scene->fogs[i];
         begin_line(p, "fog");
-        add_number(p, "distance", scene->fog.distance);
-        add_color(p, "color", scene->fog.color);
+        add_number(p, "distance", fog->distance);
+        add_color(p, "color", fog->color);
+        if (fog->ground) strbuf_addf(p->out, " offset %g altitude %g", fog->offset, fog->altitude);
         end_line(p);
     }
     for (size_t i = 0; i < scene->light_count; i++) print_light(p, &scene->lights[i]);

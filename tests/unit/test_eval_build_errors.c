@@ -135,8 +135,6 @@ static const Case warnings[] = {
     {"sphere { 0, 1 interior { media { } } }", "1:26: 'media' is not modelled yet: it has no effect", NULL},
     {"sphere { 0, 1 texture { pigment { image_map { \"a.png\" } } } }",
      "1:35: 'image_map' is not modelled yet: it has no effect", NULL},
-    {"light_source { y, rgb 1 area_light x, z, 3, 3 circular }",
-     "1:25: 'area_light' is drawn as a point light", NULL},
     {"object { texel { bounds lsystem { axiom \"F\" } layer { lsystem { axiom \"F\" } } } }",
      "1:25: 'lsystem' is not modelled yet: it is left out", NULL},
     {"object { texel { layer { density { nanovdb \"a.nvdb\" } } } }",

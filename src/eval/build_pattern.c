@@ -40,6 +40,7 @@ static const struct PatternWord {
     {"mandel", PATTERN_MANDEL},
     {"julia", PATTERN_JULIA},
     {"average", PATTERN_AVERAGE},
+    {"aoi", PATTERN_AOI},
 };
 
 static PatternKind find_pattern(const char *word) {
@@ -407,6 +408,7 @@ const WordRule pattern_rules[] = {
     PATTERN("mandel"),
     PATTERN("julia"),
     PATTERN("average"),
+    PATTERN("aoi"),
     CUSTOM("magnet", read_magnet),
     CUSTOM("function", read_function_body),
     CUSTOM("pigment_pattern", read_pigment_pattern),

@@ -32,7 +32,6 @@ static const WordRule rules[] = {
     {"quick_colour", WORD_COLOR, FIELD(quick_color), NULL, false},
     INERT("map_type"),
     INERT("once"),
-    UNMODELLED("aoi"),
     UNMODELLED("facets"),
     {"image_map", WORD_CUSTOM, 0, read_image, false},
     UNMODELLED("pavement"),

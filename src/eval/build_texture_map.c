@@ -147,7 +147,8 @@ static void begin_pattern(Reader *reader, const Word *word, TextureDraft *draft)
 
 static bool on_word(Reader *reader, const Word *word, void *target) {
     TextureDraft *draft = target;
-    if (!grammar_word(reader, word)) return false;
+    bool entry = strcmp(reader->block->word->text, "texture_map") == 0; /* checked with the whole map */
+    if (!entry && !grammar_word(reader, word)) return false;
     if (strcmp(word->text, "texture_map") == 0) return read_map(reader, word, draft), true;
     bool tiles = strcmp(word->text, "tiles") == 0, materials = strcmp(word->text, "material_map") == 0;
     if (tiles || materials || grammar_has("pattern_types", word->text)) begin_pattern(reader, word, draft);

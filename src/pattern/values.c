@@ -211,6 +211,13 @@ static double slope(const Pigment *pigment, const Spot *spot) {
     return value >= 1 && value < 1 + 1e-10 ? value - 1e-10 : unwrapped(value);
 }
 
+/* From 0.5, along the surface, to 1, straight at it: the normal looks towards the ray's origin. */
+static double incidence(const Spot *spot) {
+    if (!spot->surface) return 1;
+    double cosine = vec3_dot(vec3_normalize(spot->normal), vec3_normalize(spot->surface->direction));
+    return acos(double_clamp(cosine, -1, 1)) / VTS_PI;
+}
+
 /* ---- others ---- */
 
 double quilt_curve(const Pigment *pigment, double t) {
@@ -271,6 +278,7 @@ Spread pattern_value(const Pigment *pigment, const Spot *spot) {
     case PATTERN_SPHERICAL: return falling(distance_from(spot, spot->p));
     case PATTERN_PLANAR: return falling((Spread){fabs(spot->p.y), spot_width(spot, vec3(0, 1, 0))});
     case PATTERN_SLOPE: return exactly(slope(pigment, spot));
+    case PATTERN_AOI: return exactly(incidence(spot));
     case PATTERN_FUNCTION: return exactly(function_at(pigment, spot->p));
     case PATTERN_QUILTED: return exactly(quilted(pigment, spot->p));
     case PATTERN_RIPPLES:

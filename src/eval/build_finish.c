@@ -133,6 +133,7 @@ static void read_irid(Reader *reader, const Word *word, void *target) {
         {"turbulence", WORD_CUSTOM, 0, read_irid_turbulence, false},
     };
     if (!word->body) return;
+    if (word->body->count == 0) reader_error(reader, word->span, "'%s' is empty", word->text);
     Reader body = reader_nested(reader, word->body);
     reader_add_table(&body, irid_rules, VTS_ARRAY_COUNT(irid_rules), target);
     body.on_value = on_irid_value;

@@ -32,12 +32,16 @@ typedef struct Facet {
     TexCoord uv;
 } Facet;
 
+/* So much of its pixel a ray stands for where patterns are averaged: nothing that anyone could see. */
+static const double RAY_WIDTH = 1.0 / 128;
+static Cone ray_cone(const Sample *s) { return (Cone){s->ray.origin, s->ray.direction, RAY_WIDTH * s->width, RAY_WIDTH * s->spread}; }
+
 static Vec3 facet_point(const Sample *s, double t) { return vec3_madd(s->ray.origin, s->ray.direction, t); }
 
 /* ---- what is met ---- */
 
 static Facet surface_facet(const Sample *s, const SurfaceHit *hit) {
-    const Cone cone = {s->ray.origin, s->ray.direction, s->width, s->spread};
+    const Cone cone = ray_cone(s);
     Facet facet = {.t = hit->t, .normal = hit->normal, .flat = hit->flat, .look = hit->look, .object = hit->object + 1, .uv = hit->uv};
     surface_glance(&cone, hit, &facet.color, &facet.normal);
     return facet;
@@ -99,7 +103,7 @@ static SurfaceTracer tracer_of(Sample *s) {
 static Vec3f lit(const Sample *s, const Light *light, const LightRay *to_light, const Facet *facet) {
     Sample own = *s;
     SurfaceTracer tracer = tracer_of(&own);
-    const Cone cone = {s->ray.origin, s->ray.direction, s->width, s->spread};
+    const Cone cone = ray_cone(s);
     const Leg leg = surface_leg(&cone);
     const Ray from = leaving(s, facet, to_light->direction);
     return surface_shadow(&tracer, light, to_light, &leg, from.origin, facet->bias, random_mix(s->random + 3));
@@ -154,7 +158,7 @@ static Radiance trace_sample(Sample *s) {
     if (s->aovs && met) tell(s, &facet);
     if (met && facet.object) {
         SurfaceTracer tracer = tracer_of(s);
-        const Cone cone = {s->ray.origin, s->ray.direction, s->width, s->spread};
+        const Cone cone = ray_cone(s);
         const Leg leg = surface_leg(&cone);
         light = surface_radiance(&tracer, &leg, &surface);
     } else {

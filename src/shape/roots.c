@@ -84,6 +84,31 @@ int roots_real(const double *c, int degree, double *out) {
     return count;
 }
 
+/* Secants, the end that stays counting half from its second time on (the Illinois method); halving where that is slow. */
+double roots_between(double (*f)(const void *context, double x), const void *context, double a, double at_a,
+                     double b, double at_b, double close) {
+    double first = fabs(b - a);
+    for (int i = 0, stays = 0; i < 200 && fabs(b - a) > close; i++) {
+        double x = a + (b - a) * (at_a / (at_a - at_b));
+        bool slow = i % 3 == 2 && fabs(b - a) > first / 4;
+        if (slow || !(x > fmin(a, b) && x < fmax(a, b))) x = a + (b - a) / 2;
+        if (i % 3 == 2) first = fabs(b - a);
+        if (x == a || x == b) break;
+        double value = f(context, x);
+        if (value == 0) return x;
+        if ((value > 0) == (at_a > 0)) {
+            a = x, at_a = value;
+            if (stays == 1) at_b /= 2;
+            stays = 1;
+        } else {
+            b = x, at_b = value;
+            if (stays == -1) at_a /= 2;
+            stays = -1;
+        }
+    }
+    return fabs(at_a) < fabs(at_b) ? a : b;
+}
+
 void roots_multiply(const double *a, int a_degree, const double *b, int b_degree, double *out) {
     for (int i = 0; i <= a_degree + b_degree; i++) out[i] = 0;
     for (int i = 0; i <= a_degree; i++)

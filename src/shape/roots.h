@@ -15,6 +15,11 @@ int roots_real(const double *c, int degree, double *out);
 /* The polynomial's value. */
 double roots_value(const double *c, int degree, double x);
 
+/* The zero between a and b of a continuous function with `at_a` and `at_b` there, of which just one is above 0: to `close`, or to
+ * what doubles can tell. */
+double roots_between(double (*f)(const void *context, double x), const void *context, double a, double at_a, double b, double at_b,
+                     double close);
+
 /* out[0 .. a + b] = the product of polynomials of degrees a and b; out must not overlap. */
 void roots_multiply(const double *a, int a_degree, const double *b, int b_degree, double *out);
 

@@ -136,13 +136,38 @@ static const void *super_prepare(const Object *object, Arena *arena) {
     return object->as.solid;
 }
 
-/* The same surface and inside, but a distance-like function: of degree 1 along rays from the middle, less 1. */
-static double super_value(const Solid *s, Vec3 p) {
+/* How far the surface is beyond the point on the line from the middle: of degree 1, 1 on the surface. Its shape is in the
+ * two rings: the larger of |x| and |y|, and of what they make and |z|, each times a power of 1 + the ratio's. */
+typedef struct SuperGauge {
+    double x, y, ring, wide, high,
+        value; /* x, y: the powers of |x| and |y| over the larger; wide, high: of ring and |z| */
+} SuperGauge;
+
+static SuperGauge super_gauge(const Solid *s, Vec3 p) {
     double e = s->as.superellipsoid.east_west, n = s->as.superellipsoid.north_south;
     double x = fabs(p.x), y = fabs(p.y), z = fabs(p.z), side = double_max(x, y);
-    double ring = side > 0 ? side * pow(pow(x / side, 2 / e) + pow(y / side, 2 / e), e / 2) : 0;
-    double most = double_max(ring, z);
-    return most > 0 ? most * pow(pow(ring / most, 2 / n) + pow(z / most, 2 / n), n / 2) - 1 : -1;
+    SuperGauge g = {0};
+    if (side > 0) {
+        g.x = x == side ? 1 : pow(x / side, 2 / e);
+        g.y = y == side ? 1 : pow(y / side, 2 / e);
+        g.ring = side * pow(g.x + g.y, e / 2);
+    }
+    double most = double_max(g.ring, z);
+    if (!(most > 0)) return g;
+    g.wide = g.ring == most ? 1 : pow(g.ring / most, 2 / n);
+    g.high = z == most ? 1 : pow(z / most, 2 / n);
+    g.value = most * pow(g.wide + g.high, n / 2);
+    return g;
+}
+
+static double super_value(const Solid *s, Vec3 p) { return super_gauge(s, p).value - 1; }
+
+/* The gauge's gradient, by the chain of its rings: of ring(x, y) = (x^(2/e) + y^(2/e))^(e/2) it is ring/x · x^(2/e)/(x^(2/e) + y^(2/e)). */
+static Vec3 super_gradient(const SuperGauge *g, Vec3 p) {
+    double outer = g->value * g->wide / (g->wide + g->high), sum = g->x + g->y;
+    return (Vec3){p.x != 0 && sum > 0 ? outer * g->x / (sum * p.x) : 0,
+                  p.y != 0 && sum > 0 ? outer * g->y / (sum * p.y) : 0,
+                  p.z != 0 ? g->value * g->high / ((g->wide + g->high) * p.z) : 0};
 }
 
 static Vec3 super_normal(const void *data, Vec3 p, const SolidTag *tag) {
@@ -168,25 +193,53 @@ static Box3 super_bounds(const void *data) {
 
 enum { SUPER_PARTS = 64 };
 
-static double super_zero(const Solid *s, const Ray *ray, double a, double b) {
-    bool inside = super_value(s, vec3_madd(ray->origin, ray->direction, a)) <= 0;
-    for (int i = 0; i < 80; i++) {
-        double middle = (a + b) / 2;
-        if ((super_value(s, vec3_madd(ray->origin, ray->direction, middle)) <= 0) == inside)
-            a = middle;
-        else
-            b = middle;
-    }
-    return (a + b) / 2;
+typedef struct SuperLine {
+    const Solid *solid;
+    const Ray *ray;
+} SuperLine;
+
+static double super_along(const void *context, double t) {
+    const SuperLine *line = context;
+    return super_value(line->solid, vec3_madd(line->ray->origin, line->ray->direction, t));
 }
 
-/* Where the value is least between a and b, by golden section: exact for the convex ones (e, n <= 2). */
-static double super_least(const Solid *s, const Ray *ray, double a, double b) {
+static bool super_is_convex(const Solid *s) {
+    return s->as.superellipsoid.east_west <= 2 && s->as.superellipsoid.north_south <= 2;
+}
+
+/* The first zero from t on, forwards or backwards. The gauge of a convex body is a convex function: from above 0 Newton's steps come
+ * nearer to the zero and never pass it, and where it rises there is none. */
+static bool super_newton(const SuperLine *line, double t, double way, double *zero) {
+    const Ray *ray = line->ray;
+    for (int i = 0; i < 200; i++) {
+        Vec3 p = vec3_madd(ray->origin, ray->direction, t);
+        SuperGauge g = super_gauge(line->solid, p);
+        double value = g.value - 1, slope = vec3_dot(super_gradient(&g, p), ray->direction),
+               next = t - value / slope;
+        *zero = t;
+        if (value <= 0) return true;
+        if (!(slope * way < 0)) return false;
+        if (!((next - t) * way > 4e-16 * fabs(t))) return value < 1e-12;
+        t = next;
+    }
+    return false;
+}
+
+static void super_cross_convex(const SuperLine *line, double in, double out, SolidSink *sink) {
+    double first, last;
+    if (!super_newton(line, in, 1, &first)) return;
+    solid_offer(sink, first, (SolidTag){0, 0, 0});
+    if (first > sink->t_max || out < sink->t_min) return;
+    if (!super_newton(line, out, -1, &last) || last < first) last = first;
+    solid_offer(sink, last, (SolidTag){0, 0, 0});
+}
+
+/* Where the value is least between a and b, by golden section. */
+static double super_least(const SuperLine *line, double a, double b) {
     const double golden = 0.6180339887498949;
     for (int i = 0; i < 60; i++) {
         double p = b - golden * (b - a), q = a + golden * (b - a);
-        if (super_value(s, vec3_madd(ray->origin, ray->direction, p)) <
-            super_value(s, vec3_madd(ray->origin, ray->direction, q)))
+        if (super_along(line, p) < super_along(line, q))
             b = q;
         else
             a = p;
@@ -194,29 +247,46 @@ static double super_least(const Solid *s, const Ray *ray, double a, double b) {
     return (a + b) / 2;
 }
 
-static void super_cross(const void *data, const Ray *ray, SolidSink *sink) {
-    const Solid *s = data;
-    const Box3 box = {vec3_splat(-1 - 1e-9), vec3_splat(1 + 1e-9)};
-    double in = -VTS_INFINITY, out = VTS_INFINITY, places[SUPER_PARTS + 2], values[SUPER_PARTS + 2];
-    if (!box3_clip_ray(box, ray, &in, &out) || !isfinite(in) || !isfinite(out)) return;
-    double step = (out - in) / SUPER_PARTS;
+/* By halving: hollow ones have fins that steps by the values would fall into. */
+static void super_offer(const SuperLine *line, double a, double b, SolidSink *sink) {
+    bool inside = super_along(line, a) <= 0;
+    for (int i = 0; i < 60; i++) {
+        double middle = (a + b) / 2;
+        if ((super_along(line, middle) <= 0) == inside)
+            a = middle;
+        else
+            b = middle;
+    }
+    solid_offer(sink, (a + b) / 2, (SolidTag){0, 0, 0});
+}
+
+static void super_cross_hollow(const SuperLine *line, double in, double out, SolidSink *sink) {
+    double places[SUPER_PARTS + 1], values[SUPER_PARTS + 1], step = (out - in) / SUPER_PARTS;
     for (int i = 0; i <= SUPER_PARTS; i++) {
         places[i] = in + i * step;
-        values[i] = i == 0 || i == SUPER_PARTS
-                        ? 1
-                        : super_value(s, vec3_madd(ray->origin, ray->direction, places[i]));
+        values[i] = i == 0 || i == SUPER_PARTS ? 1 : super_along(line, places[i]);
     }
     for (int i = 0; i < SUPER_PARTS; i++) {
         if ((values[i] <= 0) != (values[i + 1] <= 0)) {
-            solid_offer(sink, super_zero(s, ray, places[i], places[i + 1]), (SolidTag){0, 0, 0});
+            super_offer(line, places[i], places[i + 1], sink);
             continue;
         }
         if (i == 0 || values[i] <= 0 || values[i] > values[i - 1] || values[i] > values[i + 1]) continue;
-        double least = super_least(s, ray, places[i - 1], places[i + 1]);
-        if (super_value(s, vec3_madd(ray->origin, ray->direction, least)) > 0) continue;
-        solid_offer(sink, super_zero(s, ray, places[i - 1], least), (SolidTag){0, 0, 0});
-        solid_offer(sink, super_zero(s, ray, least, places[i + 1]), (SolidTag){0, 0, 0});
+        double least = super_least(line, places[i - 1], places[i + 1]);
+        if (super_along(line, least) > 0) continue;
+        super_offer(line, places[i - 1], least, sink);
+        super_offer(line, least, places[i + 1], sink);
     }
+}
+
+static void super_cross(const void *data, const Ray *ray, SolidSink *sink) {
+    const SuperLine line = {data, ray};
+    const Box3 box = {vec3_splat(-1 - 1e-9), vec3_splat(1 + 1e-9)};
+    double in = -VTS_INFINITY, out = VTS_INFINITY;
+    if (!box3_clip_ray(box, ray, &in, &out) || !isfinite(in) || !isfinite(out) || out < sink->t_min ||
+        in > sink->t_max)
+        return;
+    (super_is_convex(line.solid) ? super_cross_convex : super_cross_hollow)(&line, in, out, sink);
 }
 
 const SolidOps solid_super_ops = {.prepare = super_prepare,

@@ -7,18 +7,23 @@ static Vec3 facet_corner(const BeamFacet *f, int i) {
     return skin_cell_position(f->cell, (double)f->corner[i].x, (double)f->corner[i].y, (double)f->corner[i].z, NULL);
 }
 
-/* Where the pigment of a facet is looked up: in the texel's bounds. */
-static Vec3 facet_place(const BeamFacet *f, Vec3 point, const Vec3 p[3], Vec3 normal) {
+/* The place in the cell of a point of the facet, whose corners are p and whose normal, as long as two of its areas, is given. */
+static SkinPoint facet_skin_point(const BeamFacet *f, Vec3 point, const Vec3 p[3], Vec3 normal) {
     Vec3 e1 = vec3_sub(p[1], p[0]), e2 = vec3_sub(p[2], p[0]), r = vec3_sub(point, p[0]);
     double area = vec3_length_squared(normal);
     double u = area > 0 ? vec3_dot(vec3_cross(r, e2), normal) / area : 0, v = area > 0 ? vec3_dot(vec3_cross(e1, r), normal) / area : 0;
     Vec3f c = vec3f_add(f->corner[0], vec3f_add(vec3f_scale(vec3f_sub(f->corner[1], f->corner[0]), (float)u),
                                                 vec3f_scale(vec3f_sub(f->corner[2], f->corner[0]), (float)v)));
-    SkinPoint at = {0, (double)c.x, (double)c.y, (double)c.z};
-    TexturePlace place = skin_texture_place(f->cell, &at);
-    const TexelCopy *copy = &f->copy;
-    Vec3 in = vec3(copy->xu * place.u + copy->xv * place.v + copy->x0, place.w * copy->inverse_scale,
-                   copy->zu * place.u + copy->zv * place.v + copy->z0);
+    return (SkinPoint){0, (double)c.x, (double)c.y, (double)c.z};
+}
+
+/* In the copy's box, which repeats along y where that is cyclic. */
+static Vec3 place_in_box(const TexelCopy *copy, const TexturePlace *place) {
+    return vec3(copy->xu * place->u + copy->xv * place->v + copy->x0, place->w * copy->inverse_scale, copy->zu * place->u + copy->zv * place->v + copy->z0);
+}
+
+/* Where the pigment of a facet is looked up: in the texel's bounds. */
+static Vec3 place_in_bounds(const TexelCopy *copy, Vec3 in) {
     if (copy->texel->beam->cyclic[0]) in.x -= floor(in.x);
     if (copy->texel->beam->cyclic[1]) in.y -= floor(in.y);
     if (copy->texel->beam->cyclic[2]) in.z -= floor(in.z);
@@ -26,29 +31,30 @@ static Vec3 facet_place(const BeamFacet *f, Vec3 point, const Vec3 p[3], Vec3 no
     return vec3_add(b.min, vec3_mul(in, vec3_sub(b.max, b.min)));
 }
 
-/* Across the layer, away from the surface. */
-static Vec3f layer_up(const BeamFacet *f) {
-    Vec3f middle = vec3f_scale(vec3f_add(f->corner[0], vec3f_add(f->corner[1], f->corner[2])), 1.0f / 3);
-    SkinPoint at = {0, (double)middle.x, (double)middle.y, (double)middle.z};
-    TexturePlace place = skin_texture_place(f->cell, &at);
-    return vec3f_from(vec3_normalize(place.grad_layer));
+/* The unit normal of what the facet stands for, on the side of the unit vector `side`; zero where the mapping is singular. */
+static Vec3f normal_on_side(const TexelCopy *copy, const TexturePlace *place, Vec3 in_texel, Vec3 side) {
+    Vec3 n = vec3_normalize(texel_normal_in_scene(copy, place, in_texel));
+    return vec3f_from(vec3_dot(n, side) < 0 ? vec3_negate(n) : n);
 }
 
 static void see_facet(const BeamFacet *f, Vec3 point, double width, Sight *sight) {
+    const TexelCopy *copy = &f->copy;
     Vec3 p[3] = {facet_corner(f, 0), facet_corner(f, 1), facet_corner(f, 2)};
-    Vec3 normal = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0])), unit = vec3_normalize(normal);
-    if (vec3f_dot(vec3f_from(unit), sight->view) < 0) unit = vec3_negate(unit);
-    sight->up = layer_up(f);
-    const Look *own = &f->copy.texel->matter[f->layer].look;
+    Vec3 normal = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0])), flat = vec3_normalize(normal);
+    if (vec3f_dot(vec3f_from(flat), sight->view) < 0) flat = vec3_negate(flat);
+    SkinPoint at = facet_skin_point(f, point, p, normal);
+    TexturePlace place = skin_texture_place(f->cell, &at);
+    Vec3 in = place_in_box(copy, &place), in_texel = beam_facet_normal(f, in);
+    const Look *own = &copy->texel->matter[beam_facet_layer(f)].look;
     sight->look = f->placed->look ? f->placed->look : own;
-    sight->normal = sight->flat = vec3f_from(unit);
-    sight->bias = vec3f_from(vec3_scale(unit, BIAS_TILES * f->skin->tile_size + BIAS_PIXELS * width));
+    sight->up = vec3f_from(vec3_normalize(place.grad_layer));
+    sight->flat = vec3f_from(flat);
+    sight->normal = sheet_normal(normal_on_side(copy, &place, in_texel, flat), sight->flat, sight->view);
+    sight->bias = vec3f_from(vec3_scale(flat, BIAS_TILES * f->skin->tile_size + BIAS_PIXELS * width));
     Vec3f color = sight->look->color;
-    if (!sight->look->uniform) {
-        Vec3 place = sight->look == own ? facet_place(f, point, p, normal) : point;
-        color = look_color(sight->look, place, unit, 0);
-    }
-    sight->color = vec3f_mul(color, f->copy.tint);
+    if (!sight->look->uniform)
+        color = sight->look == own ? look_color(own, place_in_bounds(copy, in), in_texel, 0) : look_color(sight->look, point, vec3_from_f(sight->normal), 0);
+    sight->color = vec3f_mul(color, copy->tint);
 }
 
 static void see_explicit(const SeenSurface *seen, Vec3 point, double width, double t, Sight *sight) {

@@ -18,6 +18,7 @@ typedef struct CopyFrame {
     const TexelCopy *copy;
     double u_x, u_z, u_0, v_x, v_z, v_0, w_y, w_0; /* (x, y, z) → (u, v, w') */
     float a_x, a_z, a_0, b_x, b_z, b_0, y_w, y_0;  /* (x, y, z) → (a, b, w) where that is affine */
+    int period;                                    /* of cyclic y */
     float tolerance;                               /* of bent triangles, scene units */
 } CopyFrame;
 
@@ -27,12 +28,13 @@ typedef struct Drawing {
     const SkinCell *cell;     /* of which a part is drawn: its (a, b) times `size`, plus these */
     float from_a, from_b, size;
     CopyFrame at;
+    const TexelCluster *cluster;
     Vec3f walls[4];           /* of the part, in box coordinates of a copy: inside where x·p.x + y·p.z + z >= 0 */
 } Drawing;
 
 static bool frame_copy(CopyFrame *c, const CellFrame *f, const PlacedTexel *placed, const TexelCopy *copy, int period) {
     double det = copy->xu * copy->zv - copy->xv * copy->zu;
-    *c = (CopyFrame){.frame = f, .placed = placed, .copy = copy};
+    *c = (CopyFrame){.frame = f, .placed = placed, .copy = copy, .period = period};
     if (!(fabs(det) > 0) || !(copy->inverse_scale > 0)) return false;
     c->u_x = copy->zv / det, c->u_z = -copy->xv / det, c->u_0 = -(c->u_x * copy->x0 + c->u_z * copy->z0);
     c->v_x = -copy->zu / det, c->v_z = copy->xu / det, c->v_0 = -(c->v_x * copy->x0 + c->v_z * copy->z0);
@@ -103,12 +105,30 @@ static void drop_hidden(BeamDraft *draft) {
     draft->facet_count = kept;
 }
 
-static void keep_facet(const Drawing *d, const Vec3f corner[3], size_t layer) {
+static void keep_facet(const Drawing *d, const Vec3f corner[3], int triangle) {
     BeamDraft *draft = d->draft;
     BeamFacet *f = &draft->facets[draft->facet_count++];
-    *f = (BeamFacet){.skin = d->skin, .cell = d->cell, .placed = d->at.placed, .copy = *d->at.copy, .layer = layer};
+    *f = (BeamFacet){.skin = d->skin, .cell = d->cell, .placed = d->at.placed, .copy = *d->at.copy, .cluster = d->cluster, .triangle = triangle,
+                     .period = d->at.period};
     for (int i = 0; i < 3; i++) f->corner[i] = vec3f(d->from_a + d->size * corner[i].x, d->from_b + d->size * corner[i].y, corner[i].z);
     if (draft->facet_count == draft->facet_capacity) drop_hidden(draft);
+}
+
+static Vec3 cluster_corner(const TexelCluster *cluster, int vertex) {
+    return vec3((double)cluster->x[vertex], (double)cluster->y[vertex], (double)cluster->z[vertex]);
+}
+
+Vec3 beam_facet_normal(const BeamFacet *f, Vec3 in) {
+    const uint8_t *v = f->cluster->triangles[f->triangle];
+    Vec3 extent = vec3_from_f(f->copy.texel->extent), a = cluster_corner(f->cluster, v[0]), p = vec3_mul(vec3_sub(in, a), extent);
+    Vec3 e1 = vec3_mul(vec3_sub(cluster_corner(f->cluster, v[1]), a), extent), e2 = vec3_mul(vec3_sub(cluster_corner(f->cluster, v[2]), a), extent);
+    Vec3 flat = vec3_cross(e1, e2);
+    double area = vec3_length_squared(flat);
+    if (!f->cluster->normals || !(area > 0)) return vec3_normalize(flat);
+    p.y -= f->period * extent.y;
+    double s = vec3_dot(vec3_cross(p, e2), flat) / area, t = vec3_dot(vec3_cross(e1, p), flat) / area;
+    Vec3 round = vec3_normalize(vec3_from_f(facet_normals_at(&f->cluster->normals[f->triangle], (float)s, (float)t)));
+    return vec3_length_squared(round) > 0 ? round : vec3_normalize(flat);
 }
 
 static float edge_side(const Vec3f *p, int edge, bool triangle) {
@@ -156,11 +176,11 @@ static float bend(const CellFrame *f, const Vec3f p[3]) {
     return f->bend_ab * a * b + f->bend_aw * a * w + f->bend_bw * b * w;
 }
 
-/* One triangle of a layer, in the cell and in the beam. */
+/* One triangle of the cluster or a part of it, in the cell and in the beam. */
 typedef struct Piece {
     Vec3f p[3], q[3];
     Vec3f x[3];  /* box coordinates, where texture coordinates are not affine */
-    size_t layer;
+    int triangle;
     bool inside; /* the cell as a whole */
 } Piece;
 
@@ -187,7 +207,7 @@ static void draw_flat(Drawing *d, const Piece *piece) {
     } else {
         seen = beam_draw(beam, q, 3, mark);
     }
-    if (seen && d->draft->facets) keep_facet(d, piece->p, piece->layer);
+    if (seen && d->draft->facets) keep_facet(d, piece->p, piece->triangle);
 }
 
 /* Cut in four, and again, until the mapping bends it no more than is tolerated. */
@@ -198,7 +218,7 @@ static void draw_bent(Drawing *d, const Piece *piece, int depth) {
         draw_flat(d, piece);
         return;
     }
-    Piece middle = {.layer = piece->layer, .inside = piece->inside};
+    Piece middle = {.triangle = piece->triangle, .inside = piece->inside};
     for (int i = 0; i < 3; i++) {
         middle.p[i] = vec3f_scale(vec3f_add(piece->p[i], piece->p[(i + 1) % 3]), 0.5f);
         middle.x[i] = vec3f_scale(vec3f_add(piece->x[i], piece->x[(i + 1) % 3]), 0.5f);
@@ -208,7 +228,7 @@ static void draw_bent(Drawing *d, const Piece *piece, int depth) {
     for (int i = 0; i < 3; i++) {
         int k = (i + 2) % 3;
         Piece corner = {{piece->p[i], middle.p[i], middle.p[k]}, {piece->q[i], middle.q[i], middle.q[k]}, {piece->x[i], middle.x[i], middle.x[k]},
-                        piece->layer, piece->inside};
+                        piece->triangle, piece->inside};
         draw_bent(d, &corner, depth + 1);
     }
     draw_bent(d, &middle, depth + 1);
@@ -244,7 +264,7 @@ static void set_walls(Drawing *d) {
 
 /* A triangle that reaches out of a cell where texture coordinates are not affine is cut before it is mapped: beyond the cell there may be no
  * way back from them. */
-static void draw_across(Drawing *d, const Vec3f corner[3], size_t layer) {
+static void draw_across(Drawing *d, const Vec3f corner[3], int triangle) {
     Vec3f in[MOST_CLIPPED] = {corner[0], corner[1], corner[2]}, out[MOST_CLIPPED];
     int count = 3;
     for (int e = 0; e < 4; e++) {
@@ -259,7 +279,7 @@ static void draw_across(Drawing *d, const Vec3f corner[3], size_t layer) {
         for (int i = 0; i < kept; i++) in[i] = out[i];
     }
     for (int i = 2; i < count; i++) {
-        Piece piece = {.x = {in[0], in[i - 1], in[i]}, .layer = layer};
+        Piece piece = {.x = {in[0], in[i - 1], in[i]}, .triangle = triangle};
         for (int k = 0; k < 3; k++) {
             Vec3f p = place_of(&d->at, piece.x[k]);
             piece.p[k] = vec3f(float_clamp(p.x, 0, 1), float_clamp(p.y, 0, 1), p.z);
@@ -274,6 +294,7 @@ static void draw_cluster(Drawing *d, const TexelCluster *cluster) {
     Vec3f q[CLUSTER_VERTICES];
     unsigned char code[CLUSTER_VERTICES];
     const CellFrame *f = d->at.frame;
+    d->cluster = cluster;
     to_skin(&d->at, cluster->vertex_count, cluster->x, cluster->y, cluster->z, a, b, w);
     for (int i = 0; i < cluster->vertex_count; i++) {
         q[i] = cell_frame_point(f, a[i], b[i], w[i]);
@@ -282,11 +303,11 @@ static void draw_cluster(Drawing *d, const TexelCluster *cluster) {
     for (int i = 0; i < cluster->triangle_count; i++) {
         const uint8_t *v = cluster->triangles[i];
         bool inside = !((code[v[0]] | code[v[1]] | code[v[2]]) & OUT_OF_CELL);
-        Piece piece = {.layer = cluster->layers[i], .inside = inside};
+        Piece piece = {.triangle = i, .inside = inside};
         if (!f->affine) {
             for (int k = 0; k < 3; k++) piece.x[k] = vec3f(cluster->x[v[k]], cluster->y[v[k]], cluster->z[v[k]]);
             if (!inside) {
-                draw_across(d, piece.x, piece.layer);
+                draw_across(d, piece.x, i);
                 continue;
             }
         }

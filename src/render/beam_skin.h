@@ -12,9 +12,15 @@ typedef struct BeamFacet {
     const SkinCell *cell;
     const PlacedTexel *placed;
     TexelCopy copy;
-    size_t layer;
+    const TexelCluster *cluster; /* the triangle of the texel that it is, or a part of */
+    int triangle;
+    int period;      /* of cyclic y: how many boxes above the foot's */
     Vec3f corner[3]; /* (a, b, w) */
 } BeamFacet;
+
+static inline size_t beam_facet_layer(const BeamFacet *f) { return f->cluster->layers[f->triangle]; }
+/* The unit normal in texel space, at a place in the copy's box, of what the facet stands for; zero of a line. Which side is the front is not told. */
+Vec3 beam_facet_normal(const BeamFacet *f, Vec3 in);
 
 typedef struct BeamCell {
     uint32_t skin, cell;

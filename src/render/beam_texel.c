@@ -6,6 +6,7 @@
 typedef struct Facet {
     float at[3][3]; /* [corner][axis], box coordinates */
     uint16_t layer;
+    uint32_t normals; /* 1 + their number; 0: flat */
 } Facet;
 
 typedef struct FacetList {
@@ -13,9 +14,15 @@ typedef struct FacetList {
     size_t count, capacity;
 } FacetList;
 
+typedef struct NormalsList {
+    FacetNormals *items;
+    size_t count, capacity;
+} NormalsList;
+
 struct BeamTexelDraft {
     Arena *scratch;
     FacetList facets;
+    NormalsList normals;
     float per_extent[3];
     bool cyclic[3];
     int layer_count;
@@ -33,44 +40,65 @@ BeamTexelDraft *beam_texel_begin(Vec3f extent, unsigned cyclic, Arena *scratch) 
 
 /* ---- cutting at the walls ---- */
 
+/* A corner of a polygon: its place, and the normal there (0 of flat ones). */
+typedef struct Corner {
+    float at[3], normal[3];
+} Corner;
+
 typedef struct Cut {
-    float at[MOST_CUT_CORNERS][3];
+    Corner corner[MOST_CUT_CORNERS];
     int count;
+    bool round;
 } Cut;
+
+static Corner between(const Corner *a, const Corner *b, float t) {
+    Corner out;
+    for (int k = 0; k < 3; k++) {
+        out.at[k] = a->at[k] + t * (b->at[k] - a->at[k]);
+        out.normal[k] = a->normal[k] + t * (b->normal[k] - a->normal[k]);
+    }
+    return out;
+}
 
 /* The part of the polygon with side·(x − wall) <= 0 along an axis. */
 static void cut_at(Cut *p, int axis, float wall, float side) {
-    Cut out = {.count = 0};
+    Cut out = {.round = p->round};
     for (int i = 0; i < p->count; i++) {
-        const float *a = p->at[i], *b = p->at[(i + 1) % p->count];
-        float da = side * (a[axis] - wall), db = side * (b[axis] - wall);
-        if (da <= 0) memcpy(out.at[out.count++], a, sizeof out.at[0]);
+        const Corner *a = &p->corner[i], *b = &p->corner[(i + 1) % p->count];
+        float da = side * (a->at[axis] - wall), db = side * (b->at[axis] - wall);
+        if (da <= 0) out.corner[out.count++] = *a;
         if ((da <= 0) == (db <= 0)) continue;
-        float t = da / (da - db), *on = out.at[out.count++];
-        for (int k = 0; k < 3; k++) on[k] = a[k] + t * (b[k] - a[k]);
-        on[axis] = wall;
+        out.corner[out.count] = between(a, b, da / (da - db));
+        out.corner[out.count++].at[axis] = wall;
     }
     *p = out;
 }
 
 static void add_cut(BeamTexelDraft *draft, const Cut *p, uint16_t layer) {
     for (int i = 2; i < p->count; i++) {
+        const Corner *corner[3] = {&p->corner[0], &p->corner[i - 1], &p->corner[i]};
         Facet *f = list_push(draft->scratch, &draft->facets);
-        memcpy(f->at[0], p->at[0], sizeof f->at[0]);
-        memcpy(f->at[1], p->at[i - 1], sizeof f->at[0]);
-        memcpy(f->at[2], p->at[i], sizeof f->at[0]);
+        Vec3f normals[3];
+        for (int c = 0; c < 3; c++) {
+            memcpy(f->at[c], corner[c]->at, sizeof f->at[c]);
+            normals[c] = vec3f(corner[c]->normal[0], corner[c]->normal[1], corner[c]->normal[2]);
+        }
         f->layer = layer;
+        f->normals = 0;
+        if (!p->round) continue;
+        *list_push(draft->scratch, &draft->normals) = facet_normals_pack(normals);
+        f->normals = (uint32_t)draft->normals.count;
     }
 }
 
 /* One period of a triangle. */
-static void add_moved(BeamTexelDraft *draft, float at[3][3], const int period[3], uint16_t layer) {
-    Cut p = {.count = 3};
+static void add_moved(BeamTexelDraft *draft, const Cut *triangle, const int period[3], uint16_t layer) {
+    Cut p = *triangle;
     for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++) p.at[i][k] = at[i][k] + (float)period[k];
+        for (int k = 0; k < 3; k++) p.corner[i].at[k] += (float)period[k];
     for (int k = 0; k < 3 && p.count; k++) {
         bool below = false, above = false;
-        for (int i = 0; i < p.count; i++) below |= p.at[i][k] < 0, above |= p.at[i][k] > 1;
+        for (int i = 0; i < p.count; i++) below |= p.corner[i].at[k] < 0, above |= p.corner[i].at[k] > 1;
         if (below) cut_at(&p, k, 0, -1);
         if (above) cut_at(&p, k, 1, 1);
     }
@@ -78,9 +106,10 @@ static void add_moved(BeamTexelDraft *draft, float at[3][3], const int period[3]
 }
 
 /* The periods by which it is to be moved so that some of it is in the box; false when none is. */
-static bool find_periods(const BeamTexelDraft *draft, float at[3][3], int from[3], int to[3]) {
+static bool find_periods(const BeamTexelDraft *draft, const Cut *triangle, int from[3], int to[3]) {
     for (int k = 0; k < 3; k++) {
-        float lo = float_min(at[0][k], float_min(at[1][k], at[2][k])), hi = float_max(at[0][k], float_max(at[1][k], at[2][k]));
+        float a = triangle->corner[0].at[k], b = triangle->corner[1].at[k], c = triangle->corner[2].at[k];
+        float lo = float_min(a, float_min(b, c)), hi = float_max(a, float_max(b, c));
         from[k] = to[k] = 0;
         if (!isfinite(lo) || !isfinite(hi)) return false;
         if (draft->cyclic[k]) {
@@ -94,25 +123,27 @@ static bool find_periods(const BeamTexelDraft *draft, float at[3][3], int from[3
     return true;
 }
 
-static bool load(const BeamTexelDraft *draft, const TexelMesh *mesh, size_t triangle, float at[3][3]) {
+static bool load(const BeamTexelDraft *draft, const TexelMesh *mesh, size_t triangle, Cut *out) {
+    Vec3f normals[3];
+    *out = (Cut){.count = 3, .round = facet_normals_of(mesh, triangle, normals)};
     for (int i = 0; i < 3; i++) {
         uint32_t v = mesh->triangles[triangle][i];
         if (v >= mesh->vertex_count) return false;
-        Vec3f p = mesh->vertices[v];
-        at[i][0] = p.x * draft->per_extent[0], at[i][1] = p.y * draft->per_extent[1], at[i][2] = p.z * draft->per_extent[2];
+        Vec3f p = mesh->vertices[v], n = out->round ? normals[i] : vec3f(0, 0, 0);
+        out->corner[i] = (Corner){{p.x * draft->per_extent[0], p.y * draft->per_extent[1], p.z * draft->per_extent[2]}, {n.x, n.y, n.z}};
     }
     return true;
 }
 
 void beam_texel_add_layer(BeamTexelDraft *draft, const TexelMesh *mesh) {
     uint16_t layer = (uint16_t)int_min(draft->layer_count++, MOST_LAYERS);
-    float at[3][3];
+    Cut triangle;
     int from[3], to[3], period[3];
     for (size_t i = 0; i < mesh->triangle_count; i++) {
-        if (!load(draft, mesh, i, at) || !find_periods(draft, at, from, to)) continue;
+        if (!load(draft, mesh, i, &triangle) || !find_periods(draft, &triangle, from, to)) continue;
         for (period[2] = from[2]; period[2] <= to[2]; period[2]++)
             for (period[1] = from[1]; period[1] <= to[1]; period[1]++)
-                for (period[0] = from[0]; period[0] <= to[0]; period[0]++) add_moved(draft, at, period, layer);
+                for (period[0] = from[0]; period[0] <= to[0]; period[0]++) add_moved(draft, &triangle, period, layer);
     }
 }
 
@@ -120,6 +151,7 @@ void beam_texel_add_layer(BeamTexelDraft *draft, const TexelMesh *mesh) {
 
 typedef struct Tree {
     Facet *facets;
+    const FacetNormals *normals;
     ClusterNode *nodes;
     TexelCluster *clusters;
     size_t node_count, cluster_count, bytes;
@@ -137,6 +169,18 @@ static void bound(const Facet *facets, size_t count, ClusterNode *node) {
                 node->max[k] = float_max(node->max[k], facets[i].at[c][k]);
             }
     }
+}
+
+/* NULL where all of them are flat. */
+static const FacetNormals *normals_of(Tree *tree, const Facet *facets, int count) {
+    static const Vec3f none[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    bool any = false;
+    for (int i = 0; i < count; i++) any |= facets[i].normals != 0;
+    if (!any) return NULL;
+    FacetNormals *out = arena_new_array(tree->arena, FacetNormals, (size_t)count);
+    for (int i = 0; i < count; i++) out[i] = facets[i].normals ? tree->normals[facets[i].normals - 1] : facet_normals_pack(none);
+    tree->bytes += (size_t)count * sizeof *out;
+    return out;
 }
 
 static void make_cluster(Tree *tree, const Facet *facets, int count, ClusterNode *node) {
@@ -160,7 +204,7 @@ static void make_cluster(Tree *tree, const Facet *facets, int count, ClusterNode
     size_t row = (size_t)vertices * sizeof(float);
     tree->clusters[tree->cluster_count] = (TexelCluster){
         .x = arena_copy(tree->arena, at[0], row), .y = arena_copy(tree->arena, at[1], row), .z = arena_copy(tree->arena, at[2], row),
-        .triangles = (const uint8_t(*)[3])triangles, .layers = layers, .vertex_count = vertices, .triangle_count = count};
+        .triangles = (const uint8_t(*)[3])triangles, .layers = layers, .normals = normals_of(tree, facets, count), .vertex_count = vertices, .triangle_count = count};
     node->leaf = true;
     node->first = (uint32_t)tree->cluster_count++;
     tree->bytes += 3 * row + 4 * (size_t)count + sizeof(TexelCluster);
@@ -212,7 +256,7 @@ const BeamTexel *beam_texel_finish(BeamTexelDraft *draft, Arena *arena) {
     size_t count = draft->facets.count;
     BeamTexel *out = arena_new(arena, BeamTexel);
     /* Every split leaves at least one facet on each side. */
-    Tree tree = {.facets = draft->facets.items, .arena = arena, .nodes = arena_new_array(draft->scratch, ClusterNode, 2 * count + 1),
+    Tree tree = {.facets = draft->facets.items, .normals = draft->normals.items, .arena = arena, .nodes = arena_new_array(draft->scratch, ClusterNode, 2 * count + 1),
                  .clusters = arena_new_array(draft->scratch, TexelCluster, count)};
     if (count) {
         tree.node_count = 1;

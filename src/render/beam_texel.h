@@ -3,7 +3,7 @@
 #define VTS_RENDER_BEAM_TEXEL_H
 
 #include "base/arena.h"
-#include "texel/texel.h"
+#include "texel/facet_normals.h"
 
 enum { CLUSTER_TRIANGLES = 32, CLUSTER_VERTICES = 96 };
 
@@ -12,6 +12,7 @@ typedef struct TexelCluster {
     const float *x, *y, *z;
     const uint8_t (*triangles)[3];
     const uint16_t *layers; /* of each triangle */
+    const FacetNormals *normals; /* the same, in texel space; NULL: all are flat */
     int vertex_count, triangle_count;
 } TexelCluster;
 

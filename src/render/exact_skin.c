@@ -466,16 +466,6 @@ static bool begin_walk(Walk *w, const ExactSkins *exact, const Ray *ray, double 
     return embree_takes(embree);
 }
 
-/* Normals transform by the transposed map world → texel. */
-static Vec3 normal_in_scene(const TexelCopy *copy, const TexturePlace *place, Vec3 n) {
-    Vec3f e = copy->texel->extent;
-    Vec3 x = vec3_madd(vec3_scale(place->grad_u, copy->xu), place->grad_v, copy->xv);
-    Vec3 z = vec3_madd(vec3_scale(place->grad_u, copy->zu), place->grad_v, copy->zv);
-    Vec3 out = vec3_scale(x, (double)e.x * n.x);
-    out = vec3_madd(out, place->grad_w, copy->inverse_scale * (double)e.y * n.y);
-    return vec3_madd(out, z, (double)e.z * n.z);
-}
-
 /* From a place in texel space to the box of scene space that the texel was cut out of. */
 static Vec3 place_in_bounds(const BuiltTexel *texel, Vec3 p) {
     Box3 b = texel->def->bounds;
@@ -485,9 +475,10 @@ static Vec3 place_in_bounds(const BuiltTexel *texel, Vec3 p) {
 
 static SkinHit describe(const Walk *w) {
     const BuiltTexel *texel = w->copy.texel;
-    Vec3 normal = normal_in_scene(&w->copy, &w->at.place, w->hit.normal);
-    double stretch = vec3_length(normal); /* of texel space against the scene, along the normal */
-    SkinHit out = {.t = w->t, .normal = vec3_normalize(normal), .clearance = stretch > 0 ? CLEARANCE / stretch : 0, .tint = w->copy.tint,
+    Vec3 at = point_in_copy(&w->copy, coordinates(&w->at)), round = exact_texel_normal(&w->hit, at);
+    Vec3 flat = texel_normal_in_scene(&w->copy, &w->at.place, w->hit.normal), normal = texel_normal_in_scene(&w->copy, &w->at.place, round);
+    double stretch = vec3_length(flat); /* of texel space against the scene, along the normal */
+    SkinHit out = {.t = w->t, .normal = vec3_normalize(normal), .flat = vec3_normalize(flat), .clearance = stretch > 0 ? CLEARANCE / stretch : 0, .tint = w->copy.tint,
                    .up = vec3_normalize(w->at.place.grad_layer)};
     out.look = w->placed->look;
     if (out.look) { /* laid over the texel: it lives in the scene */
@@ -496,8 +487,8 @@ static SkinHit describe(const Walk *w) {
         return out;
     }
     out.look = &texel->matter[w->hit.layer].look;
-    out.place = place_in_bounds(texel, vec3_sub(point_in_copy(&w->copy, coordinates(&w->at)), w->hit.period));
-    out.place_normal = w->hit.normal;
+    out.place = place_in_bounds(texel, vec3_sub(at, w->hit.period));
+    out.place_normal = round;
     return out;
 }
 

@@ -11,8 +11,9 @@
 
 typedef struct SkinHit {
     double t;
-    Vec3 normal;      /* unit, scene space; zero where the mapping is singular. Which side is the front is not told */
-    double clearance; /* how far along the normal other matter may be told from this: scene units */
+    Vec3 normal;      /* unit, scene space, of what the triangle stands for; zero where the mapping is singular. Which side is the front is not told */
+    Vec3 flat;        /* the same of the triangle itself, on the same side */
+    double clearance; /* how far along `flat` other matter may be told from this: scene units */
     Vec3 up;          /* unit, across the layer from its foot; zero where the mapping is singular */
     const Look *look; /* the layer's own or the skin's */
     Vec3f tint;

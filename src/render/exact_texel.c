@@ -10,6 +10,7 @@ typedef struct ExactTriangle {
 /* Triangles of one layer, as they were added. */
 typedef struct ExactLayer {
     ExactTriangle *triangles;
+    FacetNormals *normals; /* the same; NULL: all are flat */
     size_t count;
 } ExactLayer;
 
@@ -19,6 +20,7 @@ struct ExactTexel {
     ExactLayer *layers;
     size_t layer_count;
     ExactTriangle *triangles; /* of all layers, in the order of the tree */
+    FacetNormals *normals;    /* the same; NULL: all are flat */
     const CurveTree *tree;
 };
 
@@ -67,17 +69,29 @@ static size_t wrap_count(const Wraps *w) {
     return count;
 }
 
-static void add_moved(const ExactTexel *texel, ExactLayer *layer, const Vec3f corner[3], int x, int y, int z) {
+/* A triangle of a mesh. */
+typedef struct Source {
+    Vec3f corner[3];
+    FacetNormals normals;
+} Source;
+
+static void add_moved(const ExactTexel *texel, ExactLayer *layer, const Source *source, int x, int y, int z) {
     Vec3 move = vec3_mul(vec3(x, y, z), texel->extent);
+    if (layer->normals) layer->normals[layer->count] = source->normals;
     ExactTriangle *triangle = &layer->triangles[layer->count++];
-    for (int i = 0; i < 3; i++) triangle->corner[i] = vec3f_from(vec3_add(vec3_from_f(corner[i]), move));
+    for (int i = 0; i < 3; i++) triangle->corner[i] = vec3f_from(vec3_add(vec3_from_f(source->corner[i]), move));
     triangle->layer = (uint32_t)(layer - texel->layers);
 }
 
-static void add_wrapped(const ExactTexel *texel, ExactLayer *layer, const Vec3f corner[3], const Wraps *w) {
+static void add_wrapped(const ExactTexel *texel, ExactLayer *layer, const Source *source, const Wraps *w) {
     for (int z = w->from[2]; z <= w->to[2]; z++)
         for (int y = w->from[1]; y <= w->to[1]; y++)
-            for (int x = w->from[0]; x <= w->to[0]; x++) add_moved(texel, layer, corner, x, y, z);
+            for (int x = w->from[0]; x <= w->to[0]; x++) add_moved(texel, layer, source, x, y, z);
+}
+
+static FacetNormals normals_of(const TexelMesh *mesh, size_t triangle) {
+    Vec3f normals[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, found[3];
+    return facet_normals_pack(facet_normals_of(mesh, triangle, found) ? found : normals);
 }
 
 static bool load_corners(const TexelMesh *mesh, size_t triangle, Vec3f corner[3]) {
@@ -92,13 +106,17 @@ static bool load_corners(const TexelMesh *mesh, size_t triangle, Vec3f corner[3]
 void exact_texel_add_layer(ExactTexel *texel, const TexelMesh *mesh, Arena *arena) {
     ExactLayer *layer = &texel->layers[texel->layer_count++];
     size_t count = 0;
-    Vec3f corner[3];
+    Source source;
     Wraps wraps;
     for (size_t i = 0; i < mesh->triangle_count; i++)
-        if (load_corners(mesh, i, corner) && find_wraps(texel, corner, &wraps)) count += wrap_count(&wraps);
+        if (load_corners(mesh, i, source.corner) && find_wraps(texel, source.corner, &wraps)) count += wrap_count(&wraps);
     layer->triangles = arena_new_array(arena, ExactTriangle, count);
-    for (size_t i = 0; i < mesh->triangle_count; i++)
-        if (load_corners(mesh, i, corner) && find_wraps(texel, corner, &wraps)) add_wrapped(texel, layer, corner, &wraps);
+    if (mesh->normals) layer->normals = arena_new_array(arena, FacetNormals, count);
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        if (!load_corners(mesh, i, source.corner) || !find_wraps(texel, source.corner, &wraps)) continue;
+        if (mesh->normals) source.normals = normals_of(mesh, i);
+        add_wrapped(texel, layer, &source, &wraps);
+    }
 }
 
 size_t exact_texel_triangles(const ExactTexel *texel) {
@@ -111,6 +129,20 @@ static Box3 triangle_box(const ExactTriangle *t) {
     Box3 box = box3_empty();
     for (int i = 0; i < 3; i++) box = box3_add_point(box, vec3_from_f(t->corner[i]));
     return box;
+}
+
+/* The normals of all layers in the order of the tree. */
+static FacetNormals *order_normals(const ExactTexel *texel, const uint32_t *order, size_t count, Arena *arena, Arena *scratch) {
+    static const Vec3f none[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    bool any = false;
+    for (size_t l = 0; l < texel->layer_count; l++) any |= texel->layers[l].normals != NULL;
+    if (!any) return NULL;
+    FacetNormals *all = arena_new_array(scratch, FacetNormals, count), *out = arena_new_array(arena, FacetNormals, count);
+    size_t n = 0;
+    for (size_t l = 0; l < texel->layer_count; l++)
+        for (size_t i = 0; i < texel->layers[l].count; i++) all[n++] = texel->layers[l].normals ? texel->layers[l].normals[i] : facet_normals_pack(none);
+    for (size_t i = 0; i < count; i++) out[i] = all[order[i]];
+    return out;
 }
 
 void exact_texel_commit(ExactTexel *texel, Arena *arena, Arena *scratch) {
@@ -127,6 +159,7 @@ void exact_texel_commit(ExactTexel *texel, Arena *arena, Arena *scratch) {
     texel->tree = curve_tree_build(boxes, count, order, arena);
     texel->triangles = arena_new_array(arena, ExactTriangle, count);
     for (size_t i = 0; i < count; i++) texel->triangles[i] = *all[order[i]];
+    texel->normals = order_normals(texel, order, count, arena, scratch);
     arena_reset_to(scratch, mark);
 }
 
@@ -158,6 +191,15 @@ bool exact_texel_covers(const ExactTexel *texel, const ExactTexelHit *hit, Vec3 
     return within(in.x, texel->extent.x, margin) && within(in.y, texel->extent.y, margin) && within(in.z, texel->extent.z, margin);
 }
 
+Vec3 exact_texel_normal(const ExactTexelHit *hit, Vec3 point) {
+    if (!hit->round) return hit->normal;
+    Vec3 e1 = hit->edge[0], e2 = hit->edge[1], n = vec3_cross(e1, e2), p = vec3_sub(point, hit->corner);
+    double nn = vec3_length_squared(n), s = vec3_dot(vec3_cross(p, e2), n) / nn, t = vec3_dot(vec3_cross(e1, p), n) / nn;
+    Vec3 round = vec3_normalize(vec3_from_f(facet_normals_at(hit->round, (float)s, (float)t)));
+    double side = vec3_dot(round, hit->normal);
+    return side != 0 ? vec3_scale(round, side < 0 ? -1 : 1) : hit->normal;
+}
+
 static void try_triangle(Shot *shot, const ExactTriangle *triangle) {
     Vec3 a = vec3_from_f(triangle->corner[0]), e1 = vec3_sub(vec3_from_f(triangle->corner[1]), a);
     Vec3 e2 = vec3_sub(vec3_from_f(triangle->corner[2]), a), n = vec3_cross(e1, e2);
@@ -168,7 +210,7 @@ static void try_triangle(Shot *shot, const ExactTriangle *triangle) {
     for (int i = 0; i < count && !shot->enough; i++) {
         if (!(s[i] >= shot->s0 - shot->hair && s[i] <= shot->s1 + shot->hair)) continue;
         ExactTexelHit hit = {shot->curve.start + shot->curve.length * s[i], triangle->layer, vec3_add(a, shot->period), {e1, e2},
-                             shot->period, vec3_normalize(n)};
+                             shot->period, vec3_normalize(n), shot->texel->normals ? &shot->texel->normals[triangle - shot->texel->triangles] : NULL};
         if (!exact_texel_covers(shot->texel, &hit, vec3_add(curve_point(&shot->curve, s[i]), shot->period), shot->way->margin)) continue;
         shot->enough = shot->way->settle(shot->way->context, &hit);
         shot->s1 = double_min(shot->s1, end_of_search(shot->way, &shot->curve));

@@ -5,7 +5,7 @@
 
 #include "base/arena.h"
 #include "render/curve.h"
-#include "texel/texel.h"
+#include "texel/facet_normals.h"
 
 typedef struct ExactTexel ExactTexel;
 
@@ -14,7 +14,8 @@ typedef struct ExactTexelHit {
     size_t layer; /* in the order in which they were added */
     Vec3 corner, edge[2]; /* of the triangle, where this curve meets it: period added */
     Vec3 period;  /* of texel space in which the hit lies: the hit − period is within the texel */
-    Vec3 normal;  /* unit; which side is the front is not told */
+    Vec3 normal;  /* unit, of the triangle; which side is the front is not told */
+    const FacetNormals *round; /* at its corners; or NULL */
 } ExactTexelHit;
 
 /* What a curve stands for: the way itself, which may be `margin` away from it, in texel space. settle() moves a hit from the curve to
@@ -40,5 +41,7 @@ size_t exact_texel_triangles(const ExactTexel *texel);
 bool exact_texel_shoot(const ExactTexel *texel, const Curve *curve, double s0, unsigned repeat, const ExactWay *way);
 /* Whether a point of the hit's plane, period included, is within `margin` of the triangle and of the texel's box. */
 bool exact_texel_covers(const ExactTexel *texel, const ExactTexelHit *hit, Vec3 point, double margin);
+/* The unit normal of what the triangle stands for, at a point of the hit's plane, period included: on the side of hit->normal. */
+Vec3 exact_texel_normal(const ExactTexelHit *hit, Vec3 point);
 
 #endif

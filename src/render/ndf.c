@@ -121,6 +121,13 @@ static float highlight(float n_h, float r_l, float facing, const SheetLook *look
     return facing > 0 ? sum : 0;
 }
 
+Vec3f sheet_normal(Vec3f normal, Vec3f flat, Vec3f view) {
+    if (vec3f_dot(flat, view) < 0) normal = vec3f_scale(normal, -1), flat = vec3f_scale(flat, -1);
+    float n_v = vec3f_dot(normal, view);
+    Vec3f on_rim = n_v < 0 ? vec3f_normalize(vec3f_madd(normal, view, -n_v)) : normal;
+    return vec3f_dot(on_rim, on_rim) > 0.5f ? on_rim : flat;
+}
+
 NdfShade sheet_shade(Vec3f n, Vec3f view, Vec3f light, const SheetLook *look) {
     float n_v = vec3f_dot(n, view);
     if (n_v < 0) {

@@ -32,6 +32,10 @@ typedef struct NdfShade {
  * light   unit vector to the light */
 NdfShade ndf_shade(Quadrature quadrature, const Sym3f *s, Vec3f view, Vec3f light, const SheetLook *look);
 
+/* The normal to shade with of a surface whose facets are flat and which is rounder than they are, all unit: on the side of the eye where the facet
+ * is seen, and never beyond the rim. `view` points to the eye; `normal` is on the side of `flat`. */
+Vec3f sheet_normal(Vec3f normal, Vec3f flat, Vec3f view);
+
 /* The same model on one normal (exact geometry): n is turned towards the eye by the callee. */
 NdfShade sheet_shade(Vec3f n, Vec3f view, Vec3f light, const SheetLook *look);
 

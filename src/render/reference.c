@@ -50,8 +50,9 @@ static Facet surface_facet(const Sample *s, const SurfaceHit *hit) {
 static Facet skin_facet(const Sample *s, const SkinHit *hit) {
     Vec3f color = vec3f_mul(look_color(hit->look, hit->place, hit->place_normal, 0), hit->tint);
     /* Where the mapping is singular nothing tells how matter is turned. */
-    Vec3 normal = vec3_length_squared(hit->normal) > 0 ? hit->normal : vec3_negate(s->ray.direction);
-    return (Facet){.t = hit->t, .normal = normal, .flat = normal, .bias = hit->clearance, .up = hit->up, .look = hit->look, .color = color};
+    Vec3 flat = vec3_length_squared(hit->flat) > 0 ? hit->flat : vec3_negate(s->ray.direction);
+    Vec3 normal = vec3_from_f(sheet_normal(vec3f_from(hit->normal), vec3f_from(flat), vec3f_from(vec3_negate(s->ray.direction))));
+    return (Facet){.t = hit->t, .normal = normal, .flat = flat, .bias = hit->clearance, .up = hit->up, .look = hit->look, .color = color};
 }
 
 /* `surface` gets the explicit one, if facet->object says that it is one. */

@@ -159,6 +159,9 @@ typedef struct TexelCopy {
     double xu, xv, x0, zu, zv, z0, inverse_scale;
     Vec3f tint; /* 1, 1, 1: none */
 } TexelCopy;
+/* A normal of texel space at the place, in the scene: by the transposed map world → texel. Its length is that of texel space against the scene along it;
+ * zero where the mapping is singular. */
+Vec3 texel_normal_in_scene(const TexelCopy *copy, const TexturePlace *place, Vec3 normal);
 enum { MOST_REACH = 2, MOST_COPIES = 25 };
 /* The copy that is tile (iu, iv)'s own, wherever it was moved to; false when it has none. */
 bool texel_copy_of(const PlacedTexel *placed, int64_t iu, int64_t iv, TexelCopy *copy);

@@ -30,6 +30,15 @@ TexturePlace skin_texture_place(const SkinCell *cell, const SkinPoint *p) {
     return out;
 }
 
+Vec3 texel_normal_in_scene(const TexelCopy *copy, const TexturePlace *place, Vec3 n) {
+    Vec3f e = copy->texel->extent;
+    Vec3 x = vec3_madd(vec3_scale(place->grad_u, copy->xu), place->grad_v, copy->xv);
+    Vec3 z = vec3_madd(vec3_scale(place->grad_u, copy->zu), place->grad_v, copy->zv);
+    Vec3 out = vec3_scale(x, (double)e.x * n.x);
+    out = vec3_madd(out, place->grad_w, copy->inverse_scale * (double)e.y * n.y);
+    return vec3_madd(out, z, (double)e.z * n.z);
+}
+
 /* What a tile's hash decides about its copy. Each property reads its own bits, so that adding one changes no other. */
 enum { CHANCE_DENSITY, CHANCE_FAMILY, CHANCE_U, CHANCE_V, CHANCE_ROTATE, CHANCE_SCALE, CHANCE_MIRROR, CHANCE_TINT };
 

@@ -31,6 +31,8 @@ typedef struct TexelMesh {
     /* solid[t]: triangle t belongs to the boundary of a closed solid (its two walls hide each other); otherwise it is an
      * open sheet seen from both sides. NULL: all sheets. */
     const bool *solid;
+    /* Per vertex, to the outside: unit, or zero where its triangles are as flat as they look. NULL: all of them are. */
+    const Vec3f *normals;
 } TexelMesh;
 
 /* Matter that is no triangles, asked for by cells of texel space; its functions are called from any thread. What they give lies as random

@@ -1,6 +1,7 @@
 #include "texel/texel_content.h"
 
 #include "grow/particles.h"
+#include "texel/facet_normals.h"
 #include "texel/texel_field.h"
 
 /* Triangles that stand for a density where only triangles will do. */
@@ -25,6 +26,19 @@ Transform texel_space(const TexelDef *def) {
     Transform move = transform_translate(vec3_negate(def->bounds.min));
     Transform scale = transform_scale(vec3_splat(1 / longest_side(def->bounds)));
     return transform_then(&move, &scale);
+}
+
+/* NULL where no triangle is rounder than it looks. */
+static const Vec3f *round_normals(const TriangleSoup *soup, const TexelMesh *mesh, Arena *arena) {
+    ArenaMark mark = arena_mark(arena);
+    Vec3f *normals = arena_new_array(arena, Vec3f, soup->vertices.count), at[3];
+    for (size_t i = 0; i < soup->vertices.count; i++) normals[i] = vec3f_from(soup->vertices.items[i].normal);
+    TexelMesh with = *mesh;
+    with.normals = normals;
+    for (size_t i = 0; i < mesh->triangle_count; i++)
+        if (facet_normals_of(&with, i, at)) return normals;
+    arena_reset_to(arena, mark);
+    return NULL;
 }
 
 bool texel_layer_mesh(const TexelDef *def, const TexelLayer *layer, const TexelMeshOptions *how, Arena *arena, TexelMesh *out,
@@ -55,5 +69,6 @@ bool texel_layer_mesh(const TexelDef *def, const TexelLayer *layer, const TexelM
                        .vertex_count = soup.vertices.count,
                        .triangle_count = soup.triangles.count,
                        .solid = solid};
+    out->normals = round_normals(&soup, out, arena);
     return true;
 }

@@ -116,7 +116,50 @@ static void normals_go_by_the_cofactor(void **state) {
     assert_true(far[BY_DERIVATIVE] > 4 * VOXEL_BOUND && far[UNTRANSFORMED] > 4 * VOXEL_BOUND);
 }
 
+/* ---- what is rounder than its triangles ---- */
+
+/* The middle of a glossy ball, leant over and squashed by its layer, or by a matrix. */
+static const char ball_text[] =
+    "camera { orthographic location <0.8, 4, -3> direction <0, -3.65, 3.6> right 0.3*x up 0.3*vnormalize(vcross(<0, -3.65, 3.6>, x)) }\n"
+    "light_source { <-20, 30, -25>, rgb 1 parallel point_at 0 shadowless }\n"
+    "#declare Shine = texture { pigment { rgb 0.5 } finish { ambient 0.1 diffuse 0.5 phong 0.9 phong_size 40 } }\n"
+    "#if (%d)\n"
+    "  sphere { <0.5, 0.5, 0.5>, 0.4 texture { Shine } matrix <1, 0, 0, 0.6, 0.7, 0.2, 0, 0, 1, 0, 0, 0> }\n"
+    "#else\n"
+    "  global_settings { detail exact }\n"
+    "  #declare Foot = array[2][2] { { <0, 0, 0>, <0, 0, 1> }, { <1, 0, 0>, <1, 0, 1> } }\n"
+    "  #declare Lean = array[2][2] { { <0.6, 0.7, 0.2>, <0.6, 0.7, 0.2> }, { <0.6, 0.7, 0.2>, <0.6, 0.7, 0.2> } }\n"
+    "  #declare Ball = texel { layer { sphere { <0.5, 0.5, 0.5>, 0.4 } texture { Shine } } }\n"
+    "  skin { surface { patch_grid 1, 1 points Foot height_vectors Lean } texel { Ball } mapping { repeat <1, 1> height 1 } }\n"
+    "#end\n";
+
+static Picture draw_ball(const Bench *b, bool explicitly, bool reference) {
+    static char text[4096];
+    VtsOptions o = options_of_size(64, 64);
+    o.reference_samples = 4;
+    snprintf(text, sizeof text, ball_text, explicitly);
+    bench_write(b, text);
+    VtsSession *session = vts_session_create(&o, NULL);
+    assert_non_null(session);
+    VtsStatus status = reference ? vts_reference(session, b->scene, b->output) : vts_render(session, b->scene, b->output);
+    if (status != VTS_OK) fputs(vts_diagnostics(session), stdout);
+    assert_int_equal(status, VTS_OK);
+    vts_session_destroy(session);
+    return picture_read(b->output);
+}
+
+static void balls_shine_as_round_ones(void **state) {
+    Picture sphere = draw_ball(*state, true, false), beams = draw_ball(*state, false, false), exact = draw_ball(*state, false, true);
+    Difference of_beams = picture_difference(&beams, &sphere), of_reference = picture_difference(&exact, &sphere);
+    printf("a glossy ball, against a sphere: beams %.4f (at most %.3f), reference %.4f (%.3f)\n", of_beams.rms, of_beams.most, of_reference.rms, of_reference.most);
+    assert_true(of_beams.rms < 0.002 && of_reference.rms < 0.002);
+    picture_free(&sphere);
+    picture_free(&beams);
+    picture_free(&exact);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test_setup_teardown(normals_go_by_the_cofactor, bench_set_up, bench_tear_down)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test_setup_teardown(normals_go_by_the_cofactor, bench_set_up, bench_tear_down),
+                                       cmocka_unit_test_setup_teardown(balls_shine_as_round_ones, bench_set_up, bench_tear_down)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -50,7 +50,7 @@ static inline void scene_free(TestMesh *m) {
 
 static inline TexelMesh scene_view(const TestMesh *m) {
     return (TexelMesh){m->vertices, (const uint32_t(*)[3])m->triangles, m->vertex_count, m->triangle_count,
-                       m->solid};
+                       m->solid, NULL};
 }
 
 static inline Vec3 scene_direction(RandomStream *r) {

@@ -3,15 +3,25 @@
 /* How far beside a place its shadow begins, in pixels and tiles. */
 static const double BIAS_PIXELS = 0.02, BIAS_TILES = 3e-4;
 
-static Vec3 facet_corner(const BeamFacet *f, int i) {
-    return skin_cell_position(f->cell, (double)f->corner[i].x, (double)f->corner[i].y, (double)f->corner[i].z, NULL);
+/* A facet in the scene. */
+typedef struct FacetPlane {
+    const BeamFacet *facet;
+    Vec3 corner, e1, e2, normal; /* e1 × e2 */
+} FacetPlane;
+
+static FacetPlane plane_of(const BeamFacet *f) {
+    Vec3 p[3];
+    for (int i = 0; i < 3; i++) p[i] = skin_cell_position(f->cell, (double)f->corner[i].x, (double)f->corner[i].y, (double)f->corner[i].z, NULL);
+    Vec3 e1 = vec3_sub(p[1], p[0]), e2 = vec3_sub(p[2], p[0]);
+    return (FacetPlane){f, p[0], e1, e2, vec3_cross(e1, e2)};
 }
 
-/* The place in the cell of a point of the facet, whose corners are p and whose normal, as long as two of its areas, is given. */
-static SkinPoint facet_skin_point(const BeamFacet *f, Vec3 point, const Vec3 p[3], Vec3 normal) {
-    Vec3 e1 = vec3_sub(p[1], p[0]), e2 = vec3_sub(p[2], p[0]), r = vec3_sub(point, p[0]);
-    double area = vec3_length_squared(normal);
-    double u = area > 0 ? vec3_dot(vec3_cross(r, e2), normal) / area : 0, v = area > 0 ? vec3_dot(vec3_cross(e1, r), normal) / area : 0;
+/* The place in the cell of a point of the plane. */
+static SkinPoint in_cell(const FacetPlane *plane, Vec3 point) {
+    const BeamFacet *f = plane->facet;
+    Vec3 r = vec3_sub(point, plane->corner);
+    double area = vec3_length_squared(plane->normal), per = area > 0 ? 1 / area : 0;
+    double u = vec3_dot(vec3_cross(r, plane->e2), plane->normal) * per, v = vec3_dot(vec3_cross(plane->e1, r), plane->normal) * per;
     Vec3f c = vec3f_add(f->corner[0], vec3f_add(vec3f_scale(vec3f_sub(f->corner[1], f->corner[0]), (float)u),
                                                 vec3f_scale(vec3f_sub(f->corner[2], f->corner[0]), (float)v)));
     return (SkinPoint){0, (double)c.x, (double)c.y, (double)c.z};
@@ -37,24 +47,54 @@ static Vec3f normal_on_side(const TexelCopy *copy, const TexturePlace *place, Ve
     return vec3f_from(vec3_dot(n, side) < 0 ? vec3_negate(n) : n);
 }
 
-static void see_facet(const BeamFacet *f, Vec3 point, double width, Sight *sight) {
+/* The pigment of the texel's own at a point of the plane. */
+static Vec3f own_color(const FacetPlane *plane, const Look *own, Vec3 point) {
+    const TexelCopy *copy = &plane->facet->copy;
+    SkinPoint at = in_cell(plane, point);
+    TexturePlace place = skin_texture_place(plane->facet->cell, &at);
+    Vec3 in = place_in_box(copy, &place);
+    return look_color(own, place_in_bounds(copy, in), beam_facet_normal(plane->facet, in), 0);
+}
+
+/* Its mean over the samples. */
+static Vec3f facet_color(const BeamTracer *tr, const FacetPlane *plane, const Look *own, const Sight *sight) {
+    if (sight->look->uniform) return sight->look->color;
+    Vec3f sum = {0, 0, 0};
+    for (int i = sight->first; i != BEAM_NOTHING; i = tr->next[i]) {
+        double t;
+        Vec3 point = beam_sample_point(tr, (uint32_t)i, &t);
+        sum = vec3f_add(sum, sight->look == own ? own_color(plane, own, point) : look_color(sight->look, point, vec3_from_f(sight->normal), 0));
+    }
+    return vec3f_scale(sum, 1 / (float)sight->count);
+}
+
+static Vec3 mean_point(const BeamTracer *tr, const Sight *sight) {
+    Vec3 sum = {0, 0, 0};
+    for (int i = sight->first; i != BEAM_NOTHING; i = tr->next[i]) {
+        double t;
+        sum = vec3_add(sum, beam_sample_point(tr, (uint32_t)i, &t));
+    }
+    return vec3_scale(sum, 1.0 / sight->count);
+}
+
+/* When all samples of the sight are known: it is what they see on average. */
+static void see_facet(const BeamTracer *tr, Sight *sight) {
+    const BeamFacet *f = &tr->draft.facets[tr->beam.samples.mark[sight->first] - 1];
     const TexelCopy *copy = &f->copy;
-    Vec3 p[3] = {facet_corner(f, 0), facet_corner(f, 1), facet_corner(f, 2)};
-    Vec3 normal = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0])), flat = vec3_normalize(normal);
-    if (vec3f_dot(vec3f_from(flat), sight->view) < 0) flat = vec3_negate(flat);
-    SkinPoint at = facet_skin_point(f, point, p, normal);
-    TexturePlace place = skin_texture_place(f->cell, &at);
-    Vec3 in = place_in_box(copy, &place), in_texel = beam_facet_normal(f, in);
     const Look *own = &copy->texel->matter[beam_facet_layer(f)].look;
+    FacetPlane plane = plane_of(f);
+    Vec3 flat = vec3_normalize(plane.normal);
+    if (vec3f_dot(vec3f_from(flat), sight->view) < 0) flat = vec3_negate(flat);
+    if (sight->count > 1) sight->point = mean_point(tr, sight);
+    SkinPoint at = in_cell(&plane, sight->point);
+    TexturePlace place = skin_texture_place(f->cell, &at);
+    double width = cone_diameter(&tr->cones[sight->pixel], (double)sight->t);
     sight->look = f->placed->look ? f->placed->look : own;
     sight->up = vec3f_from(vec3_normalize(place.grad_layer));
     sight->flat = vec3f_from(flat);
-    sight->normal = sheet_normal(normal_on_side(copy, &place, in_texel, flat), sight->flat, sight->view);
+    sight->normal = sheet_normal(normal_on_side(copy, &place, beam_facet_normal(f, place_in_box(copy, &place)), flat), sight->flat, sight->view);
     sight->bias = vec3f_from(vec3_scale(flat, BIAS_TILES * f->skin->tile_size + BIAS_PIXELS * width));
-    Vec3f color = sight->look->color;
-    if (!sight->look->uniform)
-        color = sight->look == own ? look_color(own, place_in_bounds(copy, in), in_texel, 0) : look_color(sight->look, point, vec3_from_f(sight->normal), 0);
-    sight->color = vec3f_mul(color, copy->tint);
+    sight->color = vec3f_mul(facet_color(tr, &plane, own, sight), copy->tint);
 }
 
 static void see_explicit(const SeenSurface *seen, Vec3 point, double width, double t, Sight *sight) {
@@ -120,9 +160,7 @@ static Sight new_sight(const BeamTracer *tr, int pixel, uint32_t sample, bool be
     sight.point = beam_sample_point(tr, sample, &t);
     sight.t = (float)t;
     sight.view = vec3f_from(vec3_normalize(vec3_negate(beam_sample_line(tr, sample).direction)));
-    double width = cone_diameter(&tr->cones[pixel], t);
-    if (mark) see_facet(&tr->draft.facets[mark - 1], sight.point, width, &sight);
-    else see_explicit(beam_surface_of(tr, pixel, sample), sight.point, width, t, &sight);
+    if (!mark) see_explicit(beam_surface_of(tr, pixel, sample), sight.point, cone_diameter(&tr->cones[pixel], t), t, &sight);
     return sight;
 }
 
@@ -144,5 +182,7 @@ void beam_gather_sights(BeamTracer *tr) {
             sight->count++;
             sight->odd += (int)((i - s->first[pixel]) & 1);
         }
+        for (uint32_t k = begin; k < tr->sight_count; k++)
+            if (s->mark[tr->sights[k].first]) see_facet(tr, &tr->sights[k]);
     }
 }

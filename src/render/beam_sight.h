@@ -34,7 +34,7 @@ typedef struct Sight {
     uint32_t begin;       /* of its points */
     bool asked;           /* whether it has any */
     bool beyond;          /* its samples may see voxels before it, and get the shadows of voxels; else all before it is exact */
-    Vec3 point;           /* of the first sample */
+    Vec3 point;           /* the mean of its samples on a facet; that of the first on explicit objects */
 } Sight;
 
 struct BeamTracer {

@@ -12,7 +12,7 @@ static bool pigment_is_opaque(const Pigment *pigment, int *budget) {
     if (pigment->kind == PATTERN_SOLID) return color_is_opaque(pigment->color);
     if (pigment->kind == PATTERN_IMAGE_MAP) {
         const ImageMap *image = pigment->image;
-        return image && !image->once && !image->filter_all && !image->transmit_all && !image->palette_count &&
+        return image && !image->once && image->filter_all == 0 && image->transmit_all == 0 && !image->palette_count &&
                !(image->picture && image->picture->has_alpha);
     }
     for (size_t i = 0; i < pigment->entry_count; i++) {

@@ -272,7 +272,12 @@ bool hierarchy_bounds(const Hierarchy *h, Box3 *box) {
     return vec3_is_finite(box->min) && vec3_is_finite(box->max);
 }
 
-Vec3 hierarchy_origin(const Hierarchy *h) { return h->all->origin; }
+double hierarchy_coarseness(const Hierarchy *h, Vec3 point) {
+    const Cluster *all = h->all;
+    if (box3_is_empty(all->bounds)) return 0;
+    double reach = vec3_length(vec3_sub(all->bounds.max, all->bounds.min)) / 2;
+    return 1e-6 * fmin(vec3_length(vec3_sub(point, all->origin)), reach);
+}
 bool hierarchy_is_plain(const Hierarchy *h) { return h->plain; }
 bool hierarchy_is_clear(const Hierarchy *h) { return h->clear; }
 void *hierarchy_device(const Hierarchy *h) { return h->device; }

@@ -38,8 +38,9 @@ typedef struct Filling {
 Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags);
 void hierarchy_destroy(Hierarchy *hierarchy);
 size_t hierarchy_object_count(const Hierarchy *hierarchy);
-/* Where its floats count from: they are as coarse as the distance from there is long. */
-Vec3 hierarchy_origin(const Hierarchy *hierarchy);
+/* How far from its true place, at most, a surface about this point may be met: some steps of floats that count from the middle of all
+ * that is bounded. */
+double hierarchy_coarseness(const Hierarchy *hierarchy, Vec3 point);
 /* Whether something lets light through, so that shadows have colours. */
 bool hierarchy_is_clear(const Hierarchy *hierarchy);
 /* Whether nothing mirrors or lets light through. */

@@ -7,7 +7,7 @@
 enum { MOST_PARTS = 4, MOST_LAYERS = 12, DEEPEST_LEGS = 256, MOST_STRAIGHT = 4096 };
 /* Rays begin so far from their surface: some steps of the hierarchy's floats, and of doubles. */
 static double clearance(const SurfaceTracer *tracer, Vec3 point, double t) {
-    return 1e-6 * vec3_length(vec3_sub(point, hierarchy_origin(tracer->compiled->hierarchy))) + 1e-12 * vec3_length(point) + 1e-9 * t;
+    return hierarchy_coarseness(tracer->compiled->hierarchy, point) + 1e-12 * vec3_length(point) + 1e-9 * t;
 }
 /* Indices of refraction that differ by less leave a ray straight. */
 static const double SAME_INDEX = 1e-6;
@@ -217,7 +217,7 @@ static Outcome see_surface(SurfaceTracer *tracer, const Leg *leg, const SurfaceH
     TexturePart parts[MOST_PARTS];
     size_t count = texture_parts(hit->look->texture, &place, parts, MOST_PARTS);
     Meeting m = {.leg = leg, .hit = hit, .point = place.point, .width = cone_diameter(&leg->cone, hit->t), .lit_already = lit_already,
-                 .clear = clearance(tracer, place.point, hit->t), .curvature = NAN,
+                 .clear = clearance(tracer, place.point, hit->t), .curvature = (double)NAN,
                  .seed = random_mix(tracer->seed + (uint64_t)leg->level)};
     Outcome out = {{0, 0, 0}, {0, 0, 0}};
     for (size_t i = 0; i < count; i++) {

@@ -34,7 +34,7 @@ static uint64_t place_rays(uint64_t rays, bool halve_columns, bool halve_rows, i
 
 static void merge_rays(VoxelCell *parent, const VoxelCell *child, const VoxelMerge *step, const int corner[3],
                        int axis) {
-    int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    int u = voxel_ray_columns(axis), v = voxel_ray_rows(axis);
     bool hu = step->halved[u], hv = step->halved[v];
     uint64_t cover = place_rays(child->cover[axis], hu, hv, corner[u], corner[v], step->level);
     uint64_t inside = place_rays(child->inside[axis], hu, hv, corner[u], corner[v], step->level);
@@ -162,12 +162,16 @@ void voxel_cell_close_merged(VoxelCell *cell, TexelFiltering filtering) {
     cell->single = cell->odd > 0 ? cell->apart * (1 - cell->joined / cell->odd) : 0;
 }
 
-float voxel_cell_thinness(const VoxelCell *parent) {
+float voxel_cell_thinness(const VoxelCell *parent, bool fine) {
+    /* What is thin is at most all; but that the noise of many rays may average out, estimates may be beyond that, by the more the thicker
+     * it is. Of few rays the noise is worse than what cutting it off is wrong by. */
+    static const float BEYOND = 0.22f, LEAST_PAIRED = 0.25f;
     if (!(parent->walls > 0)) return 1; /* met by no ray: very thin */
     /* A pair at distance c is in the same cell of side h with probability 1 − c/h, in the same one of side 2h with
      * 1 − c/2h: extrapolating gives 1 for all c < h. */
     float small = 1 - parent->apart / parent->walls, large = 1 - parent->single / parent->walls;
-    return float_clamp(2 * large - small, 0, 1);
+    float beyond = fine && small > LEAST_PAIRED ? BEYOND * (1 - small) : 0;
+    return float_clamp(2 * large - small, 0, 1 + beyond);
 }
 
 /* Mean over directions of sqrt(dᵗ S d), from the axis projections, largest first: Thomsen's formula (erratum E15 of Neyret
@@ -309,7 +313,7 @@ VoxelMatter voxel_cell_matter(const VoxelCell *cell, const VoxelSurround *around
     /* Cauchy: an area is seen as half of itself, on the mean over directions. */
     matter.density = area / (2 * sides[0] * sides[1] * sides[2]) * side;
     AxisLight light = axis_light(cell, &matter.root, matter.density, sides, side);
-    matter.gamma = fit_gamma(cell, around, &light, matter.density, thin, backed);
+    matter.gamma = fit_gamma(cell, around, &light, matter.density, float_min(thin, 1), backed);
     matter.wall = backed && thin < MOSTLY_THICK && cell->solid > cell->sheet;
     return matter;
 }

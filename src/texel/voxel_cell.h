@@ -20,9 +20,14 @@ typedef struct VoxelCell {
     float
         apart; /* the same while pairs had to be in the same child; both are valid once the cell is closed */
     float odd, joined;  /* rays kept that left a child inside a solid, and those of them that met again */
-    uint64_t cover[3];  /* rays that met anything */
+    uint64_t cover[3];  /* rays that met anything: a byte of columns for each of eight rows, along voxel_ray_columns() and voxel_ray_rows() */
     uint64_t inside[3]; /* rays that met an odd number of walls */
 } VoxelCell;
+
+/* Which axis the columns and rows of rays along an axis count along. Columns go up where they can: what grows, and is higher than wide, is
+ * met by few rows. */
+static inline int voxel_ray_columns(int axis) { return axis == 1 ? 2 : 1; }
+static inline int voxel_ray_rows(int axis) { return axis == 0 ? 2 : 0; }
 
 /* The cell as it is drawn. */
 typedef struct VoxelMatter {
@@ -59,8 +64,8 @@ void voxel_cell_close_finest(VoxelCell *cell);
 void voxel_cell_close_merged(VoxelCell *cell, TexelFiltering filtering);
 
 /* How many of the walls in a closed cell's children are halves of solids thinner than a child, 0 … 1: all where solids are
- * thinner than one side of a child, falling to none at two. */
-float voxel_cell_thinness(const VoxelCell *parent);
+ * thinner than one side of a child, falling to none at two. fine: all or half of the finest rays are kept; may then be a little more than 1. */
+float voxel_cell_thinness(const VoxelCell *parent, bool fine);
 
 /* The cells before and behind a cell along each axis; NULL where it is not known what is there. */
 typedef struct VoxelSurround {

@@ -246,7 +246,7 @@ static bool is_beside_walls(const BrickBlock *block, const int brick[3], int i) 
 }
 
 /* Thinness around a parent: over its neighbours too, as far as they are in its brick, since few pairs of walls are a bad sample. */
-static float thinness_around(const VoxelCell *parents, int i) {
+static float thinness_around(const VoxelCell *parents, int i, bool fine) {
     VoxelCell sum = {.walls = 0};
     const int first[3] = {i & 7, i >> 3 & 7, i >> 6};
     if (!(parents[i].walls > 0)) return 1;
@@ -259,7 +259,7 @@ static float thinness_around(const VoxelCell *parents, int i) {
         sum.apart += near->apart;
         sum.single += near->single;
     }
-    return voxel_cell_thinness(&sum);
+    return voxel_cell_thinness(&sum, fine);
 }
 
 static VoxelCode code_inside(const VoxelCell *parent) {
@@ -296,7 +296,7 @@ static void code_brick(const BrickBlock *block, int level, const bool halved[3],
             continue;
         VoxelCode *code = grow_buffer_add(&out->codes, 1, sizeof *code);
         if (!code) return;
-        if (!inside && thin[above] < 0) thin[above] = thinness_around(parent, above);
+        if (!inside && thin[above] < 0) thin[above] = thinness_around(parent, above, level < LEAST_LEVEL);
         *code = inside ? code_inside(&parent[above]) : code_matter(&cells[i], &around, l, block->scattered, thin[above], is_backed(block, level, at, &cells[i], i));
         brick.slice[i >> 6] |= (uint64_t)1 << (i & 63);
     }

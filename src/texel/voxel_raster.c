@@ -71,8 +71,8 @@ static bool fits_depth(double x) { return x > -0x1p20 && x < 0x1p20; }
 
 static void add_row(VoxelCell *cells, const RayRow *r, bool solid, const int size[3], int axis) {
     static const int shifts[3] = {0, 3, 6}; /* of a cell's index, along each axis */
-    int along = shifts[axis], across = shifts[(axis + 1) % 3], current = -1;
-    int base = r->row >> 3 << shifts[(axis + 2) % 3];
+    int along = shifts[axis], across = shifts[voxel_ray_columns(axis)], current = -1;
+    int base = r->row >> 3 << shifts[voxel_ray_rows(axis)];
     uint64_t rays = 0, first = (uint64_t)1 << ((r->row & 7) * 8), limit = (uint64_t)size[axis] << 32;
     int64_t depth = r->depth;
     for (int column = r->begin; column < r->end; column++, depth += r->step) {
@@ -89,7 +89,7 @@ static void add_row(VoxelCell *cells, const RayRow *r, bool solid, const int siz
 }
 
 static void add_rays(VoxelCell *cells, const ClipPolygon *t, bool solid, const int size[3], int axis) {
-    int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    int u = voxel_ray_columns(axis), v = voxel_ray_rows(axis);
     double facing = clip_projected_area(t, axis);
     if (facing == 0) return;
     double slope_u = -clip_projected_area(t, u) / facing, slope_v = -clip_projected_area(t, v) / facing;

@@ -9,14 +9,15 @@
 /* Places at which the triangles are looked for, at most, per side of the picture; triangles that cover more than so many of them, over and
  * over, are no texel's. */
 enum {
-    TRIM_GRID = 256,
+    TRIM_GRID = 128,
     TRIM_MOST_PLACES = 1 << 24,
     TRIM_MOST_TRIANGLES = 200000,
     TRIM_DIRECTIONS = TRIM_NODES * TRIM_NODES
 };
-/* Of some triangles half as many places each way are enough, of many every other direction as well: it is much matter. */
-enum { TRIM_SOME_TRIANGLES = 2000, TRIM_MANY_TRIANGLES = 10000 };
-/* Rays through a level of so many voxels, per side and voxel, and at most; their steps, in voxels, are as the renderer's. */
+/* Of some triangles half as many places each way are enough, of many every other direction: it is much matter. */
+enum { TRIM_SOME_TRIANGLES = 1000, TRIM_MANY_TRIANGLES = 10000 };
+/* Rays through a level of so many voxels, per side and voxel, and at most, of a period half as many; their steps, in voxels, are as the
+ * renderer's. */
 enum { TRIM_RAYS_A_VOXEL = 3, TRIM_LEAST_RAYS = 16, TRIM_MOST_RAYS = 24 };
 static const float TRIM_STEP = 0.8f;
 /* Ways along the layer are looked along from a little above. */
@@ -30,14 +31,16 @@ typedef struct TrimView {
     float slope_x, slope_z; /* d / d.y */
     float origin[2], size[2];
     bool cyclic[2];
-    int grid; /* places each way */
+    int grid;       /* places each way */
+    float shift[2]; /* of a place's middle, in places */
 } TrimView;
 
 typedef struct TrimWork {
     VoxelLayer *layer;
     const TexelMesh *mesh;
-    Vec3f extent;
-    bool coarse; /* many triangles */
+    Vec3f extent, low; /* low: the least coordinates of the mesh */
+    bool contained;    /* nothing of it lies beyond the extent, but along cyclic axes */
+    bool coarse;       /* many triangles */
     bool known[TRIM_DIRECTIONS];
 } TrimWork;
 
@@ -50,12 +53,22 @@ static Vec3f trim_direction(int node) {
     return vec3f_normalize(vec3f(d.x, float_max(d.y, TRIM_LOWEST), d.z));
 }
 
-static TrimView look_along(const TrimWork *work, Vec3f d) {
+static bool is_period(const VoxelLayer *layer) { return layer->cyclic[0] && layer->cyclic[2]; }
+
+/* A period needs fewer places than the wider view of what stands alone. */
+static int places_each_way(const TrimWork *work) {
+    return is_period(work->layer) && work->mesh->triangle_count > TRIM_SOME_TRIANGLES ? TRIM_GRID / 2 : TRIM_GRID;
+}
+
+static TrimView look_along(const TrimWork *work, int node) {
+    Vec3f d = trim_direction(node);
+    uint64_t bits = random_hash((uint64_t)node, 0, 0, 0);
     TrimView v = {.d = d,
                   .extent = work->extent,
                   .slope_x = d.x / d.y,
                   .slope_z = d.z / d.y,
-                  .grid = work->mesh->triangle_count > TRIM_SOME_TRIANGLES ? TRIM_GRID / 2 : TRIM_GRID};
+                  .grid = places_each_way(work),
+                  .shift = {random_unitf(bits), random_unitf(random_mix(bits))}};
     const float slope[2] = {v.slope_x, v.slope_z}, extent[2] = {work->extent.x, work->extent.z};
     for (int k = 0; k < 2; k++) {
         v.cyclic[k] = work->layer->cyclic[2 * k];
@@ -68,6 +81,33 @@ static TrimView look_along(const TrimWork *work, Vec3f d) {
 
 /* ---- triangles ---- */
 
+/* A vertex on the grid of places, whose middles have whole numbers, and its height. */
+typedef struct TrimCorner {
+    float column, row, height;
+} TrimCorner;
+
+/* Whole turns along a cyclic axis that the least of the mesh lies away from the extent. */
+static float turns_away(const TrimWork *work, const TrimView *v, int k) {
+    float size = k ? v->extent.z : v->extent.x, least = k ? work->low.z : work->low.x;
+    return v->cyclic[k] ? floorf(least / size) * size : 0;
+}
+
+/* Where the vertices are seen. False if some are so far off that no texel has them there. */
+static bool project(const TrimWork *work, const TrimView *v, TrimCorner *corners) {
+    float per_column = (float)v->grid / v->size[0], per_row = (float)v->grid / v->size[1],
+          left = v->origin[0] + turns_away(work, v, 0), front = v->origin[1] + turns_away(work, v, 1);
+    const float far = 64 * (float)v->grid;
+    bool known = true;
+    for (size_t i = 0; i < work->mesh->vertex_count; i++) {
+        Vec3f q = work->mesh->vertices[i];
+        float column = (q.x - q.y * v->slope_x - left) * per_column - v->shift[0],
+              row = (q.z - q.y * v->slope_z - front) * per_row - v->shift[1];
+        corners[i] = (TrimCorner){column, row, q.y};
+        known &= fabsf(column) < far && fabsf(row) < far;
+    }
+    return known;
+}
+
 static bool within(const TrimView *v, float at, float y, int k) {
     float x = at + y * (k ? v->slope_z : v->slope_x);
     return v->cyclic[k] || (x >= 0 && x <= (k ? v->extent.z : v->extent.x));
@@ -78,74 +118,80 @@ static int wrapped_place(int i, int grid, bool cyclic) {
     return cyclic ? i & (grid - 1) : i >= 0 && i < grid ? i : -1;
 }
 
-/* Marks the places of row `row` between the two edges that pass it. Corners are (column, row, height). */
-static int mark_row(const TrimView *v, const Vec3f p[3], int row, uint8_t *seen) {
-    float at = (float)row + 0.5f, x[2] = {INFINITY, -INFINITY}, y[2] = {0, 0};
+static int least_not_below(float x) {
+    int whole = (int)x;
+    return whole + ((float)whole < x);
+}
+
+/* Where a row is between two edges of a triangle. */
+typedef struct TrimSpan {
+    float column[2], height[2];
+} TrimSpan;
+
+static bool cut_row(const TrimCorner *const p[3], float row, TrimSpan *span) {
+    *span = (TrimSpan){{INFINITY, -INFINITY}, {0, 0}};
     for (int i = 0; i < 3; i++) {
-        const Vec3f *a = &p[i], *b = &p[(i + 1) % 3];
-        if ((a->y <= at) == (b->y <= at)) continue;
-        float t = (at - a->y) / (b->y - a->y), cross = a->x + t * (b->x - a->x),
-              high = a->z + t * (b->z - a->z);
-        if (cross < x[0]) x[0] = cross, y[0] = high;
-        if (cross > x[1]) x[1] = cross, y[1] = high;
+        const TrimCorner *a = p[i], *b = p[i < 2 ? i + 1 : 0];
+        if ((a->row <= row) == (b->row <= row)) continue;
+        float t = (row - a->row) / (b->row - a->row), column = a->column + t * (b->column - a->column),
+              height = a->height + t * (b->height - a->height);
+        if (column < span->column[0]) span->column[0] = column, span->height[0] = height;
+        if (column > span->column[1]) span->column[1] = column, span->height[1] = height;
     }
+    return span->column[0] < span->column[1];
+}
+
+/* Of a row, the places within the extent. */
+static void mark_row(const TrimWork *work, const TrimView *v, int row, const TrimSpan *span, uint8_t *seen) {
     int line = wrapped_place(row, v->grid, v->cyclic[1]);
-    if (!(x[0] <= x[1]) || line < 0) return 1;
-    int first = (int)ceilf(x[0] - 0.5f), end = (int)ceilf(x[1] - 0.5f);
+    if (line < 0) return;
     float cell_x = v->size[0] / (float)v->grid, cell_z = v->size[1] / (float)v->grid;
+    int first = least_not_below(span->column[0]), end = least_not_below(span->column[1]);
     for (int i = first; i < end; i++) {
-        float t = x[1] > x[0] ? ((float)i + 0.5f - x[0]) / (x[1] - x[0]) : 0, high = y[0] + t * (y[1] - y[0]);
         int column = wrapped_place(i, v->grid, v->cyclic[0]);
-        if (column < 0 || high < 0 || high > v->extent.y) continue;
-        if (!within(v, v->origin[0] + ((float)i + 0.5f) * cell_x, high, 0) ||
-            !within(v, v->origin[1] + at * cell_z, high, 1))
+        float t = ((float)i - span->column[0]) / (span->column[1] - span->column[0]),
+              height = span->height[0] + t * (span->height[1] - span->height[0]);
+        if (column < 0) continue;
+        if (!work->contained &&
+            (!(height >= 0 && height <= v->extent.y) ||
+             !within(v, v->origin[0] + ((float)i + v->shift[0]) * cell_x, height, 0) ||
+             !within(v, v->origin[1] + ((float)row + v->shift[1]) * cell_z, height, 1)))
             continue;
         seen[line * v->grid + column] = 1;
     }
-    return 1 + end - first;
 }
 
-/* Whole turns along a cyclic axis that the triangle lies away from the extent. */
-static float turns_away(const TrimView *v, const TexelMesh *mesh, size_t t, int k) {
-    float least = INFINITY, size = k ? v->extent.z : v->extent.x;
-    for (int i = 0; i < 3; i++) {
-        Vec3f q = mesh->vertices[mesh->triangles[t][i]];
-        least = float_min(least, k ? q.z : q.x);
+/* Marks the places where a triangle is seen; many have none. Returns how much work that was. */
+static int64_t mark_triangle(const TrimWork *work, const TrimView *v, const TrimCorner *const p[3], uint8_t *seen) {
+    float left = float_min(p[0]->column, float_min(p[1]->column, p[2]->column)),
+          right = float_max(p[0]->column, float_max(p[1]->column, p[2]->column)),
+          front = float_min(p[0]->row, float_min(p[1]->row, p[2]->row)),
+          back = float_max(p[0]->row, float_max(p[1]->row, p[2]->row));
+    int columns = least_not_below(right) - least_not_below(left), first = least_not_below(front), end = least_not_below(back);
+    if (columns <= 0) return 1;
+    for (int row = first; row < end; row++) {
+        TrimSpan span;
+        if (cut_row(p, (float)row, &span)) mark_row(work, v, row, &span, seen);
     }
-    return v->cyclic[k] ? floorf(least / size) * size : 0;
-}
-
-/* Returns how many places were looked at; TRIM_MOST_PLACES where there are too many. */
-static int64_t mark_triangle(const TrimView *v, const TexelMesh *mesh, size_t t, uint8_t *seen) {
-    Vec3f p[3];
-    float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    float away_x = turns_away(v, mesh, t, 0), away_z = turns_away(v, mesh, t, 1);
-    for (int i = 0; i < 3; i++) {
-        Vec3f q = mesh->vertices[mesh->triangles[t][i]];
-        q.x -= away_x, q.z -= away_z;
-        p[i] = vec3f((q.x - q.y * v->slope_x - v->origin[0]) / v->size[0] * (float)v->grid,
-                     (q.z - q.y * v->slope_z - v->origin[1]) / v->size[1] * (float)v->grid, q.y);
-        low[0] = float_min(low[0], p[i].x), high[0] = float_max(high[0], p[i].x);
-        low[1] = float_min(low[1], p[i].y), high[1] = float_max(high[1], p[i].y);
-    }
-    const float far = 64 * (float)v->grid;
-    if (!(low[0] > -far && high[0] < far && low[1] > -far && high[1] < far)) return TRIM_MOST_PLACES;
-    int64_t places = 1;
-    for (int row = (int)floorf(low[1]); row <= (int)high[1]; row++) places += mark_row(v, p, row, seen);
-    return places;
+    return 1 + (int64_t)columns * (end - first);
 }
 
 /* The share of the view that the triangles hide; < 0 where that is not known. */
-static double hidden_by_triangles(const TrimView *v, const TexelMesh *mesh) {
-    uint8_t *seen = calloc(TRIM_GRID * TRIM_GRID, 1);
-    int64_t places = 0;
-    size_t hidden = 0;
-    for (size_t t = 0; seen && t < mesh->triangle_count && places < TRIM_MOST_PLACES; t++)
-        places += mark_triangle(v, mesh, t, seen);
-    for (size_t i = 0; seen && i < (size_t)(v->grid * v->grid); i++) hidden += seen[i];
-    bool known = seen && places < TRIM_MOST_PLACES;
+static double hidden_by_triangles(const TrimWork *work, const TrimView *v) {
+    const TexelMesh *mesh = work->mesh;
+    size_t places = (size_t)(v->grid * v->grid), hidden = 0;
+    int64_t spent = 0;
+    uint8_t *seen = calloc(places, 1);
+    TrimCorner *corners = malloc(mesh->vertex_count * sizeof *corners);
+    bool known = seen && corners && project(work, v, corners);
+    for (size_t t = 0; known && t < mesh->triangle_count && spent < TRIM_MOST_PLACES; t++) {
+        const uint32_t *at = mesh->triangles[t];
+        spent += mark_triangle(work, v, (const TrimCorner *const[3]){&corners[at[0]], &corners[at[1]], &corners[at[2]]}, seen);
+    }
+    for (size_t i = 0; known && i < places; i++) hidden += seen[i];
     free(seen);
-    return known ? (double)hidden / (v->grid * v->grid) : -1;
+    free(corners);
+    return known && spent < TRIM_MOST_PLACES ? (double)hidden / (double)places : -1;
 }
 
 /* ---- voxels ---- */
@@ -200,6 +246,7 @@ static float trim_level(const VoxelLayer *layer, int level, const TrimView *v, d
     float depths[TRIM_MOST_RAYS * TRIM_MOST_RAYS];
     int side =
         int_clamp(TRIM_RAYS_A_VOXEL * (int)layer->level[level].density_unit, TRIM_LEAST_RAYS, TRIM_MOST_RAYS);
+    if (is_period(layer)) side /= 2;
     for (int i = 0; i < side * side; i++) {
         uint64_t bits = random_hash((uint64_t)i, (uint64_t)level, 0, 0);
         float a = ((float)(i % side) + random_unitf(bits)) / (float)side,
@@ -215,8 +262,8 @@ static void look_through(void *context, size_t node, int worker) {
     VoxelLayer *layer = work->layer;
     work->known[node] = true;
     if (work->coarse && (node % TRIM_NODES % 2 || node / TRIM_NODES % 2)) return; /* between others */
-    TrimView view = look_along(work, trim_direction((int)node));
-    double hidden = hidden_by_triangles(&view, work->mesh);
+    TrimView view = look_along(work, (int)node);
+    double hidden = hidden_by_triangles(work, &view);
     work->known[node] = hidden >= 0;
     if (!work->known[node]) return;
     for (int i = 0; i < TRIM_LEVELS && i < layer->levels; i++)
@@ -228,20 +275,27 @@ void voxel_layer_forget_trim(VoxelLayer *layer) {
         for (int node = 0; node < TRIM_DIRECTIONS; node++) layer->trim[i][node] = 1;
 }
 
+/* The odd nodes of a row, whose nodes are `stride` apart, by the cubic through the nearest four even ones. */
+static void fill_row(float *f, int stride) {
+    const int last = TRIM_NODES - 1;
+    for (int i = 1; i < last; i += 2) {
+        int first = int_clamp(i - 3, 0, last - 6);
+        float t = 0.5f * (float)(i - first), sum = 0; /* even nodes are at 0, 1, 2, 3 */
+        for (int k = 0; k < 4; k++) {
+            float weight = 1;
+            for (int j = 0; j < 4; j++)
+                if (j != k) weight *= (t - (float)j) / (float)(k - j);
+            sum += weight * f[(first + 2 * k) * stride];
+        }
+        f[i * stride] = float_clamp(sum, TRIM_LEAST, TRIM_MOST);
+    }
+}
+
 /* Directions between those that were looked along. */
 static void fill_between(VoxelLayer *layer) {
     for (int i = 0; i < TRIM_LEVELS; i++) {
-        float *f = layer->trim[i];
-        for (int row = 0; row < TRIM_NODES; row += 2)
-            for (int column = 1; column < TRIM_NODES; column += 2) {
-                float *at = &f[row * TRIM_NODES + column];
-                *at = (at[-1] + at[1]) / 2;
-            }
-        for (int row = 1; row < TRIM_NODES; row += 2)
-            for (int column = 0; column < TRIM_NODES; column++) {
-                float *at = &f[row * TRIM_NODES + column];
-                *at = (at[-TRIM_NODES] + at[TRIM_NODES]) / 2;
-            }
+        for (int row = 0; row < TRIM_NODES; row += 2) fill_row(layer->trim[i] + row * TRIM_NODES, 1);
+        for (int column = 0; column < TRIM_NODES; column++) fill_row(layer->trim[i] + column, TRIM_NODES);
     }
 }
 
@@ -262,6 +316,24 @@ static void join_horizon(VoxelLayer *layer) {
     }
 }
 
+/* False if triangles have no vertices. */
+static bool find_bounds(TrimWork *work) {
+    Vec3f low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+    const TexelMesh *mesh = work->mesh;
+    for (size_t t = 0; t < mesh->triangle_count; t++)
+        for (int i = 0; i < 3; i++) {
+            if (mesh->triangles[t][i] >= mesh->vertex_count) return false;
+            Vec3f q = mesh->vertices[mesh->triangles[t][i]];
+            low = vec3f(float_min(low.x, q.x), float_min(low.y, q.y), float_min(low.z, q.z));
+            high = vec3f(float_max(high.x, q.x), float_max(high.y, q.y), float_max(high.z, q.z));
+        }
+    const bool *cyclic = work->layer->cyclic;
+    work->low = low;
+    work->contained = low.y >= 0 && high.y <= work->extent.y && (cyclic[0] || (low.x >= 0 && high.x <= work->extent.x)) &&
+                      (cyclic[2] || (low.z >= 0 && high.z <= work->extent.z));
+    return true;
+}
+
 void voxel_layer_trim(VoxelLayer *layer, const TexelMesh *mesh, Vec3f extent, Pool *pool) {
     voxel_layer_forget_trim(layer);
     if (layer->cyclic[1] || layer->scattered || !mesh->triangle_count ||
@@ -269,7 +341,7 @@ void voxel_layer_trim(VoxelLayer *layer, const TexelMesh *mesh, Vec3f extent, Po
         return;
     TrimWork work = {
         .layer = layer, .mesh = mesh, .extent = extent, .coarse = mesh->triangle_count > TRIM_MANY_TRIANGLES};
-    bool known = pool_run(pool, TRIM_DIRECTIONS, look_through, &work);
+    bool known = find_bounds(&work) && pool_run(pool, TRIM_DIRECTIONS, look_through, &work);
     for (int node = 0; node < TRIM_DIRECTIONS; node++) known &= work.known[node];
     if (known && work.coarse) fill_between(layer);
     if (known)

@@ -75,7 +75,7 @@ static void test_walls_of_thick_solids_stand_alone(void **state) {
 static void test_thin_solids_count_once(void **state) {
     (void)state;
     const double radius[] = {.004, .0008}; /* 0.5 and 0.1 voxels across at 64³ */
-    const double limits[] = {.04, .035};
+    const double limits[] = {.024, .024};
     for (int i = 0; i < 2; i++) {
         TestMesh mesh = scene_cylinder(vec3(.2, .1, .3), vec3(.7, .9, .6), radius[i], 12);
         VoxelLayer *layer = build(&mesh, (TexelBuildOptions){.resolution = 64}, NULL);

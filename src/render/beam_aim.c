@@ -7,9 +7,11 @@ void beam_aim(BeamTracer *tr) {
     const View *view = &tr->compiled->view;
     const Camera *c = &view->camera;
     Mat3 axes = {{c->right, c->up, c->direction}};
-    double det = mat3_determinant(&axes);
-    Vec3 to_s = vec3_scale(vec3_cross(axes.c[1], axes.c[2]), 1 / det), to_t = vec3_scale(vec3_cross(axes.c[2], axes.c[0]), 1 / det);
-    Vec3 to_d = vec3_scale(vec3_cross(axes.c[0], axes.c[1]), 1 / det);
+    double inverse = 1 / mat3_determinant(&axes);
+    bool flat = !isfinite(inverse); /* a camera that spans no space: such a beam is empty */
+    if (flat) inverse = 0;
+    Vec3 to_s = vec3_scale(vec3_cross(axes.c[1], axes.c[2]), inverse), to_t = vec3_scale(vec3_cross(axes.c[2], axes.c[0]), inverse);
+    Vec3 to_d = vec3_scale(vec3_cross(axes.c[0], axes.c[1]), inverse);
     double w = view->width, h = view->height, sx = 0.5 * w - tr->x0, sy = 0.5 * h - tr->y0;
     Beam *b = &tr->beam;
     b->perspective = c->kind == CAMERA_PERSPECTIVE;
@@ -29,7 +31,7 @@ void beam_aim(BeamTracer *tr) {
     tr->down = vec3_scale(c->up, -1 / h);
     b->samples.columns = tr->columns;
     b->samples.rows = tr->rows;
-    b->nearest = b->perspective ? tr->compiled->nearest : 0;
+    b->nearest = b->perspective ? tr->compiled->nearest : flat ? -1 : 0;
     b->farthest = b->perspective ? VTS_INFINITY : -VTS_INFINITY;
     beam_close(b);
 }

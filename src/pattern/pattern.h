@@ -56,6 +56,8 @@ Vec3 texture_layer_normal(const TexturePart *part, const Texture *layer, Vec3 no
 
 /* Whether it lets light through nowhere, as far as can be told without looking everywhere. */
 bool texture_is_opaque(const Texture *texture);
+/* Whether it is the same at all places, as far as can be told from its text: solid colours without bumps. */
+bool texture_is_even(const Texture *texture);
 /* Whether it mirrors anywhere. */
 bool texture_mirrors(const Texture *texture);
 

@@ -50,6 +50,12 @@ static bool mirrors(const Texture *texture, int *budget) {
     return false;
 }
 
+bool texture_is_even(const Texture *texture) {
+    for (; texture; texture = texture->under)
+        if (texture->map || texture->normal || texture->pigment->kind != PATTERN_SOLID) return false;
+    return true;
+}
+
 bool texture_mirrors(const Texture *texture) {
     int budget = MOST_LOOKED_AT;
     return mirrors(texture, &budget);

@@ -87,6 +87,7 @@ size_t texture_parts(const Texture *texture, const SurfacePlace *place, TextureP
 }
 
 Color texture_layer_color(const TexturePart *part, const Texture *layer, Vec3 normal) {
+    if (layer->pigment->kind == PATTERN_SOLID) return layer->pigment->color;
     Spot spot = part->space ? spot_back(&part->spot, part->space) : part->spot;
     spot = spot_back(&spot, &layer->transform);
     spot.normal = normal;

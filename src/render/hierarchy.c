@@ -39,7 +39,7 @@ static void keep_path(const Query *query, const Item *item) {
 
 static bool meet_plain(const Object *object, const Ray *ray, double t_min, double t_max, BodyHit *hit) {
     ShapeHit met;
-    if (!shape_intersect(object, ray, t_min, t_max, &met)) return false;
+    if (!shape_meet(object, ray, t_min, t_max, &met)) return false;
     *hit = (BodyHit){.t = met.t, .normal = object->inverse ? vec3_negate(met.normal) : met.normal, .leaf = object, .data = object,
                      .place = met.point, .tag = {.part = met.part}};
     hit->flat = hit->normal;
@@ -335,7 +335,14 @@ static bool meet(const Hierarchy *h, RayPurpose purpose, bool any, const Ray *ra
 bool hierarchy_meet(const Hierarchy *h, RayPurpose purpose, const Ray *ray, double t_min, double t_max, SurfaceHit *hit) {
     Found found;
     if (!meet(h, purpose, false, ray, t_min, t_max, &found)) return false;
-    hit_finish(&h->set, &found, ray, hit);
+    hit_finish(&h->set, &found, ray, true, hit);
+    return true;
+}
+
+bool hierarchy_glimpse(const Hierarchy *h, RayPurpose purpose, const Ray *ray, double t_min, double t_max, SurfaceHit *hit) {
+    Found found;
+    if (!meet(h, purpose, false, ray, t_min, t_max, &found)) return false;
+    hit_finish(&h->set, &found, ray, false, hit);
     return true;
 }
 

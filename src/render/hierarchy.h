@@ -53,6 +53,8 @@ bool hierarchy_bounds(const Hierarchy *hierarchy, Box3 *box);
 bool hierarchy_intersect(const Hierarchy *hierarchy, const Ray *ray, double t_min, double t_max, SurfaceHit *hit);
 /* The same for rays of any purpose. */
 bool hierarchy_meet(const Hierarchy *hierarchy, RayPurpose purpose, const Ray *ray, double t_min, double t_max, SurfaceHit *hit);
+/* The same, but where the look is the same everywhere `space` and `uv` are not told. */
+bool hierarchy_glimpse(const Hierarchy *hierarchy, RayPurpose purpose, const Ray *ray, double t_min, double t_max, SurfaceHit *hit);
 /* Whether anything that casts shadows lies between. */
 bool hierarchy_occluded(const Hierarchy *hierarchy, const Ray *ray, double t_min, double t_max);
 /* The interiors that the point lies in: at most `most`, each once; meshes are not asked. Returns how many. */

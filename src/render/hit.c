@@ -46,39 +46,41 @@ static const Texture *texture_in_body(const BodyHit *body, bool inside) {
     return inside && looked->rest && looked->rest->interior_texture ? looked->rest->interior_texture : looked->texture;
 }
 
-/* The innermost object with a texture gives it, and its space. */
-static void find_look(const ClusterSet *set, const Found *found, SurfaceHit *out) {
-    const Item *item = found->path[found->depth - 1];
-    const Texture *texture = NULL;
+static void find_space(const Found *found, Transform own, int from, SurfaceHit *out) {
+    out->space = own;
+    for (int i = from; i >= 0; i--) {
+        const Transform place = item_place(found->path[i]);
+        out->space = transform_then(&out->space, &place);
+    }
+}
+
+/* The innermost object with a texture gives it, and its space, which nobody asks for where the look is even. */
+static void find_look(const ClusterSet *set, const Found *found, bool places, SurfaceHit *out) {
     int i = found->depth - 1;
-    out->look = NULL;
+    const Item *item = found->path[i];
+    const Texture *texture = NULL;
     if (found->cluster) {
         MetTriangle met = met_triangle(found);
         texture = texture_of_triangle(met.mesh, met.number);
     } else {
         texture = texture_in_body(&found->body, out->leaving);
     }
-    if (texture) {
+    out->look = texture ? look_table_find(&set->looks, texture) : NULL;
+    if (out->look) {
+        if (out->look->even && !places) return;
         const Transform place = item_place(item);
-        out->look = look_table_find(&set->looks, texture);
-        out->space = found->cluster ? place : transform_then(&found->body.looked_place, &place);
-        i--;
+        find_space(found, found->cluster ? place : transform_then(&found->body.looked_place, &place), i - 1, out);
+        return;
     }
     for (; i >= 0 && !out->look; i--) {
         const Item *at = found->path[i];
         out->look = out->leaving && at->inside ? at->inside : at->look;
         if (!out->look) continue;
-        out->space = at->look_place ? *at->look_place : item_place(at);
-    }
-    if (!out->look) {
-        out->look = set->default_look;
-        out->space = transform_identity();
+        if (!out->look->even || places) find_space(found, at->look_place ? *at->look_place : item_place(at), i - 1, out);
         return;
     }
-    for (; i >= 0; i--) {
-        const Transform place = item_place(found->path[i]);
-        out->space = transform_then(&out->space, &place);
-    }
+    out->look = set->default_look;
+    out->space = transform_identity();
 }
 
 /* ---- interiors ---- */
@@ -158,7 +160,7 @@ static TexCoord hit_uv(const Found *found, Vec3 point) {
     return ops->uv ? ops->uv(body->data, body->place, &body->tag) : (TexCoord){point.x, point.y};
 }
 
-void hit_finish(const ClusterSet *set, Found *found, const Ray *ray, SurfaceHit *out) {
+void hit_finish(const ClusterSet *set, Found *found, const Ray *ray, bool places, SurfaceHit *out) {
     if (found->cluster) {
         MetTriangle met = met_triangle(found);
         smooth_normal(found, &met);
@@ -173,8 +175,8 @@ void hit_finish(const ClusterSet *set, Found *found, const Ray *ray, SurfaceHit 
     out->leaving = vec3_dot(flat, ray->direction) > 0;
     out->flat = out->leaving ? vec3_negate(flat) : flat;
     out->normal = vec3_dot(normal, ray->direction) > 0 ? vec3_negate(normal) : normal;
-    out->uv = hit_uv(found, vec3_madd(ray->origin, ray->direction, found->t));
-    find_look(set, found, out);
+    find_look(set, found, places, out);
+    if (places || !out->look->even) out->uv = hit_uv(found, vec3_madd(ray->origin, ray->direction, found->t));
     find_filling(found, out);
     out->both_sides = out->solid->double_illuminate;
     for (int i = 0; i < found->depth; i++) out->both_sides |= found->path[i]->both_sides;

@@ -17,7 +17,8 @@ typedef struct Found {
     BodyHit body;           /* of solids */
 } Found;
 
-void hit_finish(const ClusterSet *set, Found *found, const Ray *ray, SurfaceHit *out);
+/* `places`: with space and uv even where the look is the same everywhere. */
+void hit_finish(const ClusterSet *set, Found *found, const Ray *ray, bool places, SurfaceHit *out);
 
 /* Where the inside of what has an interior is looked for: a cluster, seen through copies. */
 typedef struct InsideSearch {

@@ -17,6 +17,7 @@ Look look_from_texture(const Texture *texture, const GlobalSettings *settings) {
     Color color;
     look.uniform = !texture->under && !texture->map && pigment_is_uniform(texture->pigment, &color);
     if (look.uniform) look.color = vec3f_from_color(color);
+    look.even = texture_is_even(texture);
     look.opaque = texture_is_opaque(texture);
     look.plain = look.opaque && !texture_mirrors(texture);
     return look;

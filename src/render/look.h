@@ -13,6 +13,7 @@ typedef struct Look {
     Vec3f color;
     const Texture *texture;   /* never NULL */
     bool opaque;              /* light passes it nowhere */
+    bool even;                /* the same everywhere: neither place nor u and v make a difference */
     bool plain;               /* opaque, mirrors nothing, one layer: no line of sight goes on from it */
 } Look;
 

@@ -83,9 +83,10 @@ static bool stopped(const Sampler *sp) { return sp->plan.interrupted && *sp->pla
 
 /* ---- one sample ---- */
 
-static bool find_surface(const CompiledScene *compiled, const Cone *cone, SurfaceHit *hit) {
+/* `places`: also where on the surface, whatever it looks like. */
+static bool find_surface(const CompiledScene *compiled, const Cone *cone, bool places, SurfaceHit *hit) {
     Ray ray = {cone->origin, cone->direction};
-    return hierarchy_intersect(compiled->hierarchy, &ray, 1e-9, VTS_INFINITY, hit);
+    return (places ? hierarchy_meet : hierarchy_glimpse)(compiled->hierarchy, RAY_SEES, &ray, 1e-9, VTS_INFINITY, hit);
 }
 
 /* Whether explicit surfaces look the same all over the pixel: same part, much the same direction and depth. */
@@ -97,7 +98,7 @@ static bool surfaces_vary(const CompiledScene *compiled, double x, double y, boo
     for (int corner = 0; corner < 4; corner++) {
         Cone probe = view_cone(&compiled->view, x + (corner & 1 ? 0.499 : -0.499), y + (corner & 2 ? 0.499 : -0.499), 1);
         SurfaceHit other;
-        bool other_found = find_surface(compiled, &probe, &other);
+        bool other_found = find_surface(compiled, &probe, false, &other);
         if (other_found != found || (found && !alike(hit, &other))) return true;
     }
     return false;
@@ -172,7 +173,7 @@ static void add_sample(Sampler *sp, Cell *cell, int px, int py, double x, double
     AovSum *aovs = aovs_of(sp, px, py);
     MatterAov matter = {.share = 0};
     tracer->matter = aovs ? &matter : NULL;
-    bool found = ray && find_surface(sp->compiled, &cone, &hit);
+    bool found = ray && find_surface(sp->compiled, &cone, aovs, &hit);
     Radiance seen = {{0, 0, 0}, 0};
     if (cell->count > 0 && ray && share_light(sp, cell, x, y, found ? &hit : NULL, &seen)) tracer->counters.camera_rays++;
     else if (ray) seen = trace_cone(tracer, &cone, found ? &hit : NULL, &reaching);

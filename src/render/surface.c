@@ -212,12 +212,23 @@ static SurfacePlace place_of(const Leg *leg, const SurfaceHit *hit) {
     return place;
 }
 
+/* `place` is what the parts point at. A texture that is even has no use for it. */
+static size_t parts_of(const Leg *leg, const SurfaceHit *hit, SurfacePlace *place, TexturePart parts[MOST_PARTS]) {
+    if (hit->look->even) {
+        parts[0].texture = hit->look->texture;
+        parts[0].weight = 1;
+        return 1;
+    }
+    *place = place_of(leg, hit);
+    return texture_parts(hit->look->texture, place, parts, MOST_PARTS);
+}
+
 static Outcome see_surface(SurfaceTracer *tracer, const Leg *leg, const SurfaceHit *hit, bool lit_already) {
-    SurfacePlace place = place_of(leg, hit);
+    SurfacePlace place;
     TexturePart parts[MOST_PARTS];
-    size_t count = texture_parts(hit->look->texture, &place, parts, MOST_PARTS);
-    Meeting m = {.leg = leg, .hit = hit, .point = place.point, .width = cone_diameter(&leg->cone, hit->t), .lit_already = lit_already,
-                 .clear = clearance(tracer, place.point, hit->t), .curvature = (double)NAN,
+    size_t count = parts_of(leg, hit, &place, parts);
+    Meeting m = {.leg = leg, .hit = hit, .point = cone_point(&leg->cone, hit->t), .width = cone_diameter(&leg->cone, hit->t), .lit_already = lit_already,
+                 .clear = clearance(tracer, cone_point(&leg->cone, hit->t), hit->t), .curvature = (double)NAN,
                  .seed = random_mix(tracer->seed + (uint64_t)leg->level)};
     Outcome out = {{0, 0, 0}, {0, 0, 0}};
     for (size_t i = 0; i < count; i++) {
@@ -231,9 +242,9 @@ static Outcome see_surface(SurfaceTracer *tracer, const Leg *leg, const SurfaceH
 
 void surface_glance(const Cone *cone, const SurfaceHit *hit, Vec3f *color, Vec3 *normal) {
     Leg leg = surface_leg(cone);
-    SurfacePlace place = place_of(&leg, hit);
+    SurfacePlace place;
     TexturePart parts[MOST_PARTS];
-    size_t count = texture_parts(hit->look->texture, &place, parts, MOST_PARTS);
+    size_t count = parts_of(&leg, hit, &place, parts);
     Meeting m = {.leg = &leg, .hit = hit};
     double heaviest = 0;
     *color = vec3f(0, 0, 0);
@@ -279,7 +290,7 @@ static Vec3f follow(SurfaceTracer *tracer, Leg *leg, const SurfaceHit *first, bo
         } else {
             if (leg->level >= deepest || leg->weight < (float)settings->adc_bailout) return sum;
             const Ray ray = {leg->cone.origin, leg->cone.direction};
-            bool found = hierarchy_meet(compiled->hierarchy, leg->purpose, &ray, leg->clear, VTS_INFINITY, &hit);
+            bool found = hierarchy_glimpse(compiled->hierarchy, leg->purpose, &ray, leg->clear, VTS_INFINITY, &hit);
             tracer->counters->camera_rays++;
             if (i == 0) leg->level++; /* but where it goes on straight */
             if (!gather_before(tracer, leg, found ? hit.t : VTS_INFINITY, &sum, &through)) return sum;

@@ -24,11 +24,12 @@ void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit) {
 
 /* What a surface lets through of light: of each layer filter × pigment + transmit. */
 static Vec3f filtered(const Texture *texture, const Ray *ray, const SurfaceHit *hit) {
-    SurfacePlace place = {.point = vec3_madd(ray->origin, ray->direction, hit->t), .normal = hit->normal, .space = &hit->space,
-                          .surface = {.direction = ray->direction, .uv = {hit->uv.u, hit->uv.v}}};
     enum { MOST_PARTS = 4 };
     TexturePart parts[MOST_PARTS];
-    size_t count = texture_parts(texture, &place, parts, MOST_PARTS);
+    if (hit->look->even) parts[0].texture = texture, parts[0].weight = 1;
+    SurfacePlace place = {.point = vec3_madd(ray->origin, ray->direction, hit->t), .normal = hit->normal, .space = &hit->space,
+                          .surface = {.direction = ray->direction, .uv = {hit->uv.u, hit->uv.v}}};
+    size_t count = hit->look->even ? 1 : texture_parts(texture, &place, parts, MOST_PARTS);
     Vec3f sum = {0, 0, 0};
     for (size_t i = 0; i < count; i++) {
         Vec3f through = {1, 1, 1};
@@ -56,7 +57,7 @@ static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from,
     for (int i = 0; i < count; i++) enclosures[i] = leg->enclosures[i];
     for (int i = 0; i < MOST_CLEAR; i++) {
         SurfaceHit hit;
-        if (!hierarchy_meet(compiled->hierarchy, RAY_SHADOWS, ray, from, distance, &hit)) return through;
+        if (!hierarchy_glimpse(compiled->hierarchy, RAY_SHADOWS, ray, from, distance, &hit)) return through;
         if (hit.look->opaque) break;
         through = vec3f_mul(through, filtered(hit.look->texture, ray, &hit));
         if (hit.interior && surface_enclosure(enclosures, count, &hit) >= 0)

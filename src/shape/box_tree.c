@@ -96,7 +96,8 @@ static bool clip_axis(double lo, double hi, double origin, double direction, dou
     lo -= margin;
     hi += margin;
     if (direction == 0) return origin >= lo && origin <= hi;
-    double a = (lo - origin) / direction, b = (hi - origin) / direction;
+    double inverse = 1 / direction, a = (lo - origin) * inverse, b = (hi - origin) * inverse;
+    if (isinf(inverse)) a = (lo - origin) / direction, b = (hi - origin) / direction;
     *t_near = double_max(*t_near, double_min(a, b));
     *t_far = double_min(*t_far, double_max(a, b));
     return *t_near <= *t_far;

@@ -57,6 +57,9 @@ static void finish_sphere(const Object *object, ShapeHit *hit) {
     Vec3 d = vec3_sub(hit->point, object->as.sphere.center);
     hit->normal = vec3_normalize(vec3(d.x / radius, d.y / radius, d.z / radius));
     hit->point = vec3_madd(object->as.sphere.center, hit->normal, radius);
+}
+
+static void place_on_sphere(ShapeHit *hit) {
     double ring = hypot(hit->normal.x, hit->normal.z);
     hit->uv =
         (TexCoord){shape_turn_of(-hit->normal.x, hit->normal.z), 0.5 + atan2(hit->normal.y, ring) / VTS_PI};
@@ -214,7 +217,7 @@ static int cross_cone(const Object *object, const Ray *ray, ShapeCrossing out[4]
     return kept;
 }
 
-static void finish_cone(const Object *object, int part, ShapeHit *hit) {
+static void finish_cone(const Object *object, int part, bool place, ShapeHit *hit) {
     ConeFrame frame;
     Vec3 side, other;
     if (!cone_frame(object, &frame)) return;
@@ -240,7 +243,7 @@ static void finish_cone(const Object *object, int part, ShapeHit *hit) {
                              : vec3_splat(0); /* zero: the apex, which looks along the axis */
     hit->normal = vec3_normalize(vec3_madd(radial, frame.axis, -frame.slope));
     hit->point = vec3_madd(vec3_madd(frame.middle, frame.axis, z), radial, radius);
-    hit->uv = (TexCoord){shape_turn_of(vec3_dot(q, side), vec3_dot(q, other)), along};
+    if (place) hit->uv = (TexCoord){shape_turn_of(vec3_dot(q, side), vec3_dot(q, other)), along};
 }
 
 /* ---- plane and disc ---- */
@@ -303,7 +306,7 @@ static int cross_torus(const Object *object, const Ray *ray, ShapeCrossing out[4
     return count;
 }
 
-static void finish_torus(const Object *object, ShapeHit *hit) {
+static void finish_torus(const Object *object, bool place, ShapeHit *hit) {
     double major = fabs(object->as.torus.major_radius), minor = fabs(object->as.torus.minor_radius);
     Vec3 p = hit->point;
     double ring = hypot(p.x, p.z), c = ring > 0 ? p.x / ring : 1, s = ring > 0 ? p.z / ring : 0;
@@ -311,7 +314,7 @@ static void finish_torus(const Object *object, ShapeHit *hit) {
     double nr = length > 0 ? out / length : 1, ny = length > 0 ? p.y / length : 0;
     hit->normal = vec3(c * nr, ny, s * nr);
     hit->point = vec3(c * (major + minor * nr), minor * ny, s * (major + minor * nr));
-    hit->uv = (TexCoord){shape_turn_of(-c, s), shape_turn_of(-nr, ny)};
+    if (place) hit->uv = (TexCoord){shape_turn_of(-c, s), shape_turn_of(-nr, ny)};
 }
 
 /* ---- all ---- */
@@ -340,31 +343,57 @@ int shape_crossings(const Object *object, const Ray *ray, ShapeCrossing out[SHAP
     return 0;
 }
 
-ShapeHit shape_hit_at(const Object *object, const Ray *ray, const ShapeCrossing *crossing) {
-    ShapeHit hit = {.t = crossing->t,
-                    .point = vec3_madd(ray->origin, ray->direction, crossing->t),
-                    .leaving = crossing->leaving,
-                    .part = crossing->part};
+/* All that follows from point and part; `place`: also u and v, which cost more than the rest. */
+static void finish(const Object *object, bool place, ShapeHit *hit) {
     switch (object->kind) {
-    case OBJECT_SPHERE: finish_sphere(object, &hit); break;
-    case OBJECT_BOX: finish_box(object, crossing->part, &hit); break;
+    case OBJECT_SPHERE:
+        finish_sphere(object, hit);
+        if (place) place_on_sphere(hit);
+        break;
+    case OBJECT_BOX: finish_box(object, hit->part, hit); break;
     case OBJECT_CYLINDER:
-    case OBJECT_CONE: finish_cone(object, crossing->part, &hit); break;
-    case OBJECT_PLANE: finish_plane(object, &hit); break;
-    case OBJECT_DISC: finish_disc(object, &hit); break;
-    case OBJECT_TORUS: finish_torus(object, &hit); break;
+    case OBJECT_CONE: finish_cone(object, hit->part, place, hit); break;
+    case OBJECT_PLANE: finish_plane(object, hit); break;
+    case OBJECT_DISC: finish_disc(object, hit); break;
+    case OBJECT_TORUS: finish_torus(object, place, hit); break;
     default: break;
     }
+}
+
+static ShapeHit crossing_hit(const Ray *ray, const ShapeCrossing *crossing) {
+    return (ShapeHit){.t = crossing->t,
+                      .point = vec3_madd(ray->origin, ray->direction, crossing->t),
+                      .leaving = crossing->leaving,
+                      .part = crossing->part};
+}
+
+ShapeHit shape_hit_at(const Object *object, const Ray *ray, const ShapeCrossing *crossing) {
+    ShapeHit hit = crossing_hit(ray, crossing);
+    finish(object, true, &hit);
     return hit;
 }
 
-bool shape_intersect(const Object *object, const Ray *ray, double t_min, double t_max, ShapeHit *hit) {
+Vec3 shape_normal_at(const Object *object, Vec3 point, uint8_t part) {
+    ShapeHit hit = {.point = point, .part = part};
+    finish(object, false, &hit);
+    return hit.normal;
+}
+
+bool shape_meet(const Object *object, const Ray *ray, double t_min, double t_max, ShapeHit *hit) {
     ShapeCrossing crossings[SHAPE_MOST_CROSSINGS];
     int count = shape_crossings(object, ray, crossings);
     for (int i = 0; i < count; i++) {
         if (!(crossings[i].t > t_min && crossings[i].t < t_max)) continue;
-        *hit = shape_hit_at(object, ray, &crossings[i]);
+        *hit = crossing_hit(ray, &crossings[i]);
+        finish(object, false, hit);
         return true;
     }
     return false;
+}
+
+bool shape_intersect(const Object *object, const Ray *ray, double t_min, double t_max, ShapeHit *hit) {
+    if (!shape_meet(object, ray, t_min, t_max, hit)) return false;
+    hit->point = vec3_madd(ray->origin, ray->direction, hit->t); /* where finish() begins */
+    finish(object, true, hit);
+    return true;
 }

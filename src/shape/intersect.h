@@ -29,12 +29,16 @@ enum { SHAPE_MOST_CROSSINGS = 4 };
  * at a t of some roundings of the distance from the solid's middle: a t_min above that passes it by. Rays that touch in one
  * point may hit or miss; a solid without any extent is missed. */
 bool shape_intersect(const Object *object, const Ray *ray, double t_min, double t_max, ShapeHit *hit);
+/* The same, but `uv` is left as it is. */
+bool shape_meet(const Object *object, const Ray *ray, double t_min, double t_max, ShapeHit *hit);
 
 /* All crossings of the whole line, ascending; returns their number. For a solid the line is inside between crossings
  * 2i and 2i + 1 (a plane's inside may begin or end at infinity). Used for CSG. */
 int shape_crossings(const Object *object, const Ray *ray, ShapeCrossing out[SHAPE_MOST_CROSSINGS]);
 /* All about one of these crossings. */
 ShapeHit shape_hit_at(const Object *object, const Ray *ray, const ShapeCrossing *crossing);
+/* Of that only the normal, at a point of the part. */
+Vec3 shape_normal_at(const Object *object, Vec3 point, uint8_t part);
 
 /* Whether the point is inside the object or on its boundary, in object space, `inverse` applied. Unions, merges,
  * intersections and differences as of their children; a plane's inside is p · normal <= distance; sheets, open cones,

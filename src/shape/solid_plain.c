@@ -9,20 +9,21 @@ static void cross(const void *data, const Ray *ray, SolidSink *sink) {
 }
 
 static Vec3 normal(const void *data, Vec3 point, const SolidTag *tag) {
-    const Ray here = {point, vec3_splat(0)};
-    const ShapeCrossing crossing = {0, (uint8_t)tag->part, false};
-    return shape_hit_at(data, &here, &crossing).normal;
+    return shape_normal_at(data, point, (uint8_t)tag->part);
 }
 
 /* A disc divides space as its plane does, and an open cylinder holds what a closed one would. On a sphere is not in it: POV-Ray. */
 static bool inside(const void *data, Vec3 point) {
-    Object object = object_copy(data);
-    if (object.kind == OBJECT_DISC)
-        return vec3_dot(vec3_sub(point, object.as.disc.center), object.as.disc.normal) <= 0;
-    if (object.kind == OBJECT_SPHERE)
-        return vec3_length(vec3_sub(point, object.as.sphere.center)) < fabs(object.as.sphere.radius);
-    if (object.kind == OBJECT_CYLINDER || object.kind == OBJECT_CONE) object.as.cone.open = false;
-    return shape_inside(&object, point) != object.inverse;
+    const Object *object = data;
+    if (object->kind == OBJECT_DISC)
+        return vec3_dot(vec3_sub(point, object->as.disc.center), object->as.disc.normal) <= 0;
+    if (object->kind == OBJECT_SPHERE)
+        return vec3_length(vec3_sub(point, object->as.sphere.center)) < fabs(object->as.sphere.radius);
+    bool open = (object->kind == OBJECT_CYLINDER || object->kind == OBJECT_CONE) && object->as.cone.open;
+    if (!open) return shape_inside(object, point) != object->inverse;
+    Object closed = object_copy(object);
+    closed.as.cone.open = false;
+    return shape_inside(&closed, point) != object->inverse;
 }
 
 static Box3 bounds(const void *data) { return shape_bounds(data); }

@@ -51,6 +51,45 @@ static int zeros_among(const double *c, const double *slope, int degree, double 
     return count;
 }
 
+/* ---- how many there may be ---- */
+
+enum { MANY = 2, HIGHEST_COUNTED = 12 };
+/* Coefficients below this share of the largest may have either sign. */
+static const double DOUBTFUL = 1e-13;
+
+/* The coefficients of p(lo + (hi − lo)·x). */
+static void move_to_unit(const double *c, int degree, double lo, double hi, double *out) {
+    double scale = 1;
+    memcpy(out, c, sizeof *c * (size_t)(degree + 1));
+    for (int k = 0; k < degree && lo != 0; k++)
+        for (int i = degree - 1; i >= k; i--) out[i] += lo * out[i + 1];
+    for (int i = 1; i <= degree && hi - lo != 1; i++) out[i] *= scale *= hi - lo;
+}
+
+/* No fewer zeros than there are in [lo, hi], by Descartes' rule for Bernstein's coefficients: 0, 1 (then there is one), or MANY. */
+static int count_zeros(const double *c, int degree, double lo, double hi) {
+    double b[HIGHEST_COUNTED + 1], largest = 0;
+    if (degree > HIGHEST_COUNTED) return MANY;
+    move_to_unit(c, degree, lo, hi, b);
+    /* From the powers to Bernstein's basis: b_i = Σ_j C(i, j)/C(n, j) a_j, by differences. */
+    double binomial = 1;
+    for (int j = 0; j <= degree; j++) {
+        b[j] /= binomial;
+        binomial = binomial * (degree - j) / (j + 1);
+    }
+    for (int k = 1; k <= degree; k++)
+        for (int i = degree; i >= k; i--) b[i] += b[i - 1];
+    for (int i = 0; i <= degree; i++) largest = fmax(largest, fabs(b[i]));
+    int changes = 0;
+    for (int i = 0; i <= degree; i++) {
+        if (!(fabs(b[i]) > DOUBTFUL * largest)) return MANY;
+        changes += i > 0 && (b[i] > 0) != (b[i - 1] > 0);
+    }
+    return int_min(changes, MANY);
+}
+
+/* ---- finding them ---- */
+
 int roots_in(const double *c, int degree, double lo, double hi, double *out) {
     double slopes[ROOTS_HIGHEST_DEGREE + 1][ROOTS_HIGHEST_DEGREE + 1], stations[ROOTS_HIGHEST_DEGREE + 1];
     while (degree > 0 && c[degree] == 0) degree--;
@@ -60,8 +99,16 @@ int roots_in(const double *c, int degree, double lo, double hi, double *out) {
     memcpy(slopes[0], c, sizeof *c * (size_t)(degree + 1));
     for (int k = 1; k <= degree; k++)
         for (int i = 0; i <= degree - k; i++) slopes[k][i] = slopes[k - 1][i + 1] * (i + 1);
-    int count = 0;
-    for (int k = degree - 1; k >= 0; k--) {
+    int count = 0, from = degree - 1;
+    /* Down to a derivative whose zeros are known without those of its own. */
+    for (int k = 0; k < degree; k++) {
+        int most = count_zeros(slopes[k], degree - k, lo, hi);
+        if (most == MANY) continue;
+        if (most == 1) out[count++] = zero_between(slopes[k], slopes[k + 1], degree - k, lo, hi);
+        from = k - 1;
+        break;
+    }
+    for (int k = from; k >= 0; k--) {
         memcpy(stations, out, sizeof *out * (size_t)count);
         count = zeros_among(slopes[k], slopes[k + 1], degree - k, lo, hi, stations, count, out);
     }

@@ -189,14 +189,22 @@ static const WordRule rules[] = {
     {"subdivide", WORD_CUSTOM, 0, read_subdivide, true},
 };
 
-/* What a surface is wrapped in by default: a mesh by its own uvs, a ball by angles, a tube around its axis, others from above. */
+/* Whether all of it is meshes that bring their own; no deeper than objects are nested. */
+static bool has_mesh_uv(const Object *object) {
+    if (object->kind == OBJECT_TRIANGLES) return object->as.mesh->uvs != NULL;
+    if (object->kind != OBJECT_UNION || !object->as.group->count) return false;
+    for (size_t i = 0; i < object->as.group->count; i++)
+        if (!has_mesh_uv(object->as.group->items[i])) return false;
+    return true;
+}
+
+/* What a surface is wrapped in by default: meshes by their own uvs, a ball by angles, a tube around its axis, others from above. */
 static SurfaceUv natural_uv(const Object *object) {
     switch (object->kind) {
     case OBJECT_SPHERE: return SURFACE_UV_SPHERICAL;
     case OBJECT_CYLINDER:
     case OBJECT_CONE: return SURFACE_UV_CYLINDRICAL;
-    case OBJECT_TRIANGLES: return object->as.mesh->uvs ? SURFACE_UV_MESH : SURFACE_UV_PLANAR;
-    default: return SURFACE_UV_PLANAR;
+    default: return has_mesh_uv(object) ? SURFACE_UV_MESH : SURFACE_UV_PLANAR;
     }
 }
 

@@ -157,6 +157,31 @@ static void test_functions_of_skins(void **state) {
     release(&e);
 }
 
+/* Meshes that bring coordinates keep them in a union, unless something else is in it. */
+static void test_what_a_surface_is_wrapped_in(void **state) {
+    (void)state;
+    static const struct {
+        const char *object;
+        SurfaceUv uv;
+    } cases[] = {{"M", SURFACE_UV_MESH},
+                 {"union { object { M } union { object { M translate x } } }", SURFACE_UV_MESH},
+                 {"union { object { M } object { Bare translate x } }", SURFACE_UV_PLANAR},
+                 {"union { object { M } sphere { 0, 1 } }", SURFACE_UV_PLANAR}};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(cases); i++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 "#declare M = mesh { triangle { 0, x, z uv_vectors <0, 0>, <1, 0>, <0, 1> } }\n"
+                 "#declare Bare = mesh { triangle { 0, x, z } }\n"
+                 "skin { surface { %s } texel { layer { sphere { 0.5, 0.4 } } } mapping { tile 0.25 height 0.4 } }\n",
+                 cases[i].object);
+        Evaluated e;
+        evaluate_text(&e, text);
+        assert_int_equal(e.status, EVAL_OK);
+        assert_int_equal(e.scene->skins[0]->surface->uv, cases[i].uv);
+        release(&e);
+    }
+}
+
 static void test_a_function_of_the_wrong_shape(void **state) {
     (void)state;
     Evaluated e;
@@ -179,6 +204,7 @@ int main(void) {
         cmocka_unit_test(test_hashes_are_the_same_next_time),
         cmocka_unit_test(test_points_of_arrays),
         cmocka_unit_test(test_functions_of_skins),
+        cmocka_unit_test(test_what_a_surface_is_wrapped_in),
         cmocka_unit_test(test_a_function_of_the_wrong_shape),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -16,6 +16,8 @@ size_of() {
     meadow_ball) echo 400x400 ;;
     hillside) echo 480x320 ;;
     teddy) echo 480x480 ;;
+    tree) echo 400x320 ;;
+    still_life) echo 400x300 ;;
     contents | deformed | forest | jitter | superimposed) echo 640x360 ;;
     *) echo 480x360 ;;
   esac

@@ -1,5 +1,6 @@
 /* Surfaces of functions of the place: isosurface. */
 #include "shape/intersect.h"
+#include "shape/roots.h"
 #include "shape/solid.h"
 #include "shape/solid_field.h"
 
@@ -48,18 +49,14 @@ static double value_on(const Solid *s, const Ray *ray, double t) {
     return solid_isosurface_value(s, vec3_madd(ray->origin, ray->direction, t));
 }
 
-/* Where the sign changes between a and b, to rounding. */
-static double bisect(const Solid *s, const Ray *ray, double a, double b) {
-    bool inside = value_on(s, ray, a) <= 0;
-    for (int i = 0; i < 100; i++) {
-        double middle = a + (b - a) / 2;
-        if (middle <= a || middle >= b) break;
-        if ((value_on(s, ray, middle) <= 0) == inside)
-            a = middle;
-        else
-            b = middle;
-    }
-    return a + (b - a) / 2;
+typedef struct FieldLine {
+    const Solid *solid;
+    const Ray *ray;
+} FieldLine;
+
+static double value_along(const void *context, double t) {
+    const FieldLine *line = context;
+    return value_on(line->solid, line->ray, t);
 }
 
 /* Steps that a function of at most this gradient cannot pass a zero in; no shorter ones than the accuracy. */
@@ -74,7 +71,8 @@ static void march(const Solid *s, const Ray *ray, double from, double to, SolidS
         if (!(next < to)) next = to;
         double there = value_on(s, ray, next);
         if ((value <= 0) != (there <= 0))
-            solid_offer(sink, bisect(s, ray, t, next), (SolidTag){PART_SURFACE, 0, 0});
+            solid_offer(sink, roots_between(value_along, &(FieldLine){s, ray}, t, value, next, there, 1e-15 * (fabs(t) + fabs(next))),
+                        (SolidTag){PART_SURFACE, 0, 0});
         t = next;
         value = there;
     }

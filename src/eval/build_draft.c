@@ -34,6 +34,10 @@ struct SceneDraft {
         Fog *items;
         size_t count, capacity;
     } fogs;
+    struct {
+        Rainbow *items;
+        size_t count, capacity;
+    } rainbows;
     Color background;
     GlobalSettings settings;
 };
@@ -252,11 +256,19 @@ static void add_sky(SceneDraft *draft, BuildContext *context, const SkySphere *s
     }
 }
 
+static void add_rainbow(SceneDraft *draft, BuildContext *context, const Rainbow *bow) {
+    if (bow->distance > 0 && bow->width > 0 && bow->colors)
+        *list_push(context->arena, &draft->rainbows) = *bow;
+    else
+        diag_warning(context->diags, bow->span,
+                     "a rainbow without a distance and a width greater than 0 and a colour map is not seen");
+}
+
 static bool add_block(SceneDraft *draft, BuildContext *context, const EvalBlock *block, Span span) {
     const char *word = block->word->text;
     if (strcmp(word, "background") == 0) return background_read(context, block, &draft->background);
     if (strcmp(word, "global_settings") == 0) return settings_read(context, block, &draft->settings);
-    if (strcmp(word, "animation") == 0 || strcmp(word, "rainbow") == 0 || strcmp(word, "media") == 0) {
+    if (strcmp(word, "animation") == 0 || strcmp(word, "media") == 0) {
         InertNote note = {word, block->word_span, NULL};
         warn_inert(draft, context, &note);
         return true;
@@ -296,6 +308,7 @@ bool scene_draft_add(SceneDraft *draft, BuildContext *context, const Value *valu
         warn_inert(draft, context, value->as.fog->inert);
         *list_push(context->arena, &draft->fogs) = *value->as.fog;
         return true;
+    case VALUE_RAINBOW: add_rainbow(draft, context, value->as.rainbow); return true;
     case VALUE_BLOCK: return add_block(draft, context, value->as.block, span);
     default: return refuse(context, value, span);
     }
@@ -352,6 +365,8 @@ const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context, double
                      .background = draft->background,
                      .fogs = draft->fogs.items,
                      .fog_count = draft->fogs.count,
+                     .rainbows = draft->rainbows.items,
+                     .rainbow_count = draft->rainbows.count,
                      .default_texture = draft->first_default,
                      .settings = draft->settings,
                      .clock = clock};

@@ -57,7 +57,7 @@ static const char *const kind_words[] = {
     [VALUE_PIGMENT] = "pigment",   [VALUE_NORMAL] = "normal",     [VALUE_FINISH] = "finish",
     [VALUE_INTERIOR] = "interior", [VALUE_MATERIAL] = "material", [VALUE_COLOR_MAP] = "map",
     [VALUE_CAMERA] = "camera",     [VALUE_FOG] = "fog",           [VALUE_SKY_SPHERE] = "sky_sphere",
-    [VALUE_SPLINE] = "spline",
+    [VALUE_SPLINE] = "spline",     [VALUE_RAINBOW] = "rainbow",
 };
 
 static bool accepts_value(const Grammar *grammar, ValueKind kind) {

@@ -122,7 +122,7 @@ typedef struct LightFinder {
     uint32_t group_count; /* so far */
 } LightFinder;
 const Object *lights_find(LightFinder *finder, const Object *object);
-BlockBuilder build_sky_sphere, build_fog; /* build_sky.c */
+BlockBuilder build_sky_sphere, build_fog, build_rainbow; /* build_sky.c */
 bool background_read(BuildContext *context, const EvalBlock *block, Color *out);
 bool settings_read(BuildContext *context, const EvalBlock *block,
                    GlobalSettings *settings); /* build_settings.c */

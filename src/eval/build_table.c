@@ -71,7 +71,7 @@ static const struct BlockWord {
     {"background", NULL},
     {"global_settings", NULL},
     {"animation", NULL},
-    {"rainbow", build_checked},
+    {"rainbow", build_rainbow},
     {"radiosity", NULL},
     {"photons", NULL},
     {"subsurface", NULL},

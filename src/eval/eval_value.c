@@ -28,6 +28,7 @@ const char *value_kind_text(ValueKind kind) {
         [VALUE_MATERIAL] = "a material",
         [VALUE_COLOR_MAP] = "a colour map",
         [VALUE_FOG] = "a fog",
+        [VALUE_RAINBOW] = "a rainbow",
         [VALUE_SKY_SPHERE] = "a sky sphere",
         [VALUE_TEXEL] = "a texel",
         [VALUE_SURFACE] = "a surface",

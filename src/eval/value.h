@@ -21,7 +21,7 @@ typedef enum ValueKind {
     VALUE_MACRO,
     /* nodes of the scene graph */
     VALUE_OBJECT, VALUE_LIGHT, VALUE_CAMERA, VALUE_TEXTURE, VALUE_PIGMENT, VALUE_NORMAL, VALUE_FINISH, VALUE_INTERIOR,
-    VALUE_MATERIAL, VALUE_COLOR_MAP, VALUE_FOG, VALUE_SKY_SPHERE, VALUE_TEXEL, VALUE_SURFACE, VALUE_SKIN, VALUE_WIND_FIELD,
+    VALUE_MATERIAL, VALUE_COLOR_MAP, VALUE_FOG, VALUE_RAINBOW, VALUE_SKY_SPHERE, VALUE_TEXEL, VALUE_SURFACE, VALUE_SKIN, VALUE_WIND_FIELD,
     VALUE_BLOCK, /* a block without a builder of its own: its items, for the block around it (mapping { … } of a skin) */
 } ValueKind;
 
@@ -66,6 +66,7 @@ typedef struct Value {
         const Interior *interior;
         const ColorMap *color_map;
         const Fog *fog;
+        const Rainbow *rainbow;
         const SkySphere *sky_sphere;
         const TexelDef *texel;
         const Surface *surface;

@@ -12,6 +12,8 @@
 
 /* The colour at `point` of the textured object's space. `normal` (unit, or zero) is used by slope patterns too. */
 Color pigment_color(const Pigment *pigment, Vec3 point, Vec3 normal, double footprint);
+/* POV-Ray's scalar turbulence with the pigment's octaves, lambda, omega and noise. */
+double pigment_turbulence(const Pigment *pigment, Vec3 point);
 /* The pattern's value before the colour map, frequency, phase and wave applied: function { pattern { … } }. Block patterns
  * give the index of their entry (of checker and brick frequency, phase and wave are applied to it); PATTERN_SOLID and
  * PATTERN_AVERAGE give 0. */

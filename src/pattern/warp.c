@@ -1,5 +1,7 @@
 #include "pattern/warp.h"
 
+#include "pattern/pattern.h"
+
 #include "tape/noise.h"
 
 /* Mean and deviation of 2·noise - 0.5 and of a component of the vector noise, measured over 4·10⁵ points. */
@@ -103,4 +105,9 @@ Spot spot_in_pattern(const Pigment *pigment, const Spot *outer, bool warps_itsel
     if (!warps_itself && has_turbulence(pigment))
         spot = turbulence_warp(&spot, pigment->turbulence, octaves_of(pigment));
     return spot_kept(spot);
+}
+
+double pigment_turbulence(const Pigment *pigment, Vec3 point) {
+    Spot spot = spot_make(vec3(kept(point.x), kept(point.y), kept(point.z)), vec3(0, 0, 0), 0);
+    return turbulence(&spot, octaves_of(pigment)).value;
 }

@@ -112,26 +112,3 @@ Vec3f sky_radiance(const Scene *scene, Vec3 direction, double spread) {
     Color sky = sky_color(scene->sky_layers, scene->sky_layer_count, direction, spread);
     return vec3f_from_color(color_over(sky, scene->background));
 }
-
-/* The length of constant fog that is as thick as ground fog over t of the ray: it is 1/(1 + h²) as dense at height h = (y − offset)/altitude,
- * below 0 as at 0 (the formula is POV-Ray's program's; its manual has another). */
-static double ground_length(const Fog *fog, const Ray *ray, double t) {
-    double rise = vec3_dot(ray->direction, fog->up) / fog->altitude, h0 = (vec3_dot(ray->origin, fog->up) - fog->offset) / fog->altitude;
-    if (fabs(rise) * fmin(t, 1e9) < 1e-7) return t * (h0 > 0 ? 1 / (1 + h0 * h0) : 1);
-    double h1 = h0 + rise * t, low = fmin(h0, h1), high = fmax(h0, h1);
-    double dense = fmin(high, 0) - fmin(low, 0), thin = atan(fmax(high, 0)) - atan(fmax(low, 0));
-    return (dense + thin) / fabs(rise);
-}
-
-Air air_between(const Scene *scene, const Ray *ray, double t) {
-    Air air = {{1, 1, 1}, {0, 0, 0}};
-    for (size_t i = 0; i < scene->fog_count; i++) {
-        const Fog *fog = &scene->fogs[i];
-        Color c = fog->color;
-        float keep = (float)fmax(exp(-(fog->ground ? ground_length(fog, ray, t) : t) / fog->distance), c.transmit), filter = (float)c.filter;
-        Vec3f own = vec3f_from_color(c), tint = vec3f_madd(vec3f(1 - filter, 1 - filter, 1 - filter), own, filter);
-        air.keep = vec3f_mul(air.keep, vec3f_scale(tint, keep));
-        air.add = vec3f_madd(air.add, own, 1 - keep);
-    }
-    return air;
-}

@@ -35,7 +35,7 @@ Vec3f sky_radiance(const Scene *scene, Vec3 direction, double spread);
 typedef struct Air {
     Vec3f keep, add;
 } Air;
-/* Between the origin and what is seen at t (VTS_INFINITY: the sky) along the unit direction. */
+/* air.c. Between the origin and what is seen at t (VTS_INFINITY: the sky) along the unit direction. */
 Air air_between(const Scene *scene, const Ray *ray, double t);
 /* `color` is multiplied by `alpha`. */
 static inline Vec3f air_over(const Air *air, Vec3f color, float alpha) {

@@ -583,8 +583,20 @@ typedef struct Fog {
     bool ground;         /* fog_type 2: thins out upwards from `offset` on; half as dense `altitude` higher */
     double offset, altitude;
     Vec3 up;             /* unit */
+    const Pigment *turbulence; /* whose turbulence thins it; NULL: none */
+    double turbulence_depth;   /* how much; 0.5 */
     const InertNote *inert;
 } Fog;
+
+typedef struct Rainbow {
+    Span span;
+    Vec3 direction, right, up; /* unit: to the middle of the bow, and across it */
+    double angle, width;       /* degrees: between the bow's middle and `direction`, and across the bow */
+    double distance;           /* after which 1 - 1/e of the bow stands before what is seen */
+    double jitter;             /* degrees */
+    double arc, falloff;       /* degrees on both sides of `up`: to where it reaches, and is full; arc < 0: all around */
+    const Pigment *colors;     /* from the inner rim, x = 0, to the outer, x = 1 */
+} Rainbow;
 
 typedef struct GlobalSettings {
     double max_error;      /* 0: not given */
@@ -624,6 +636,8 @@ typedef struct Scene {
     Color background;
     const Fog *fogs;
     size_t fog_count;
+    const Rainbow *rainbows;
+    size_t rainbow_count;
     const Texture *default_texture;
     GlobalSettings settings;
     double clock;

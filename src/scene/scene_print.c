@@ -513,6 +513,26 @@ static void print_settings(Printer *p, const GlobalSettings *s) {
     end_line(p);
 }
 
+static void print_fog(Printer *p, const Fog *fog) {
+    begin_line(p, "fog");
+    add_number(p, "distance", fog->distance);
+    add_color(p, "color", fog->color);
+    if (fog->ground) strbuf_addf(p->out, " offset %g altitude %g", fog->offset, fog->altitude);
+    if (fog->turbulence) add_number(p, "turb_depth", fog->turbulence_depth);
+    end_line(p);
+}
+
+static void print_rainbow(Printer *p, const Rainbow *bow) {
+    begin_line(p, "rainbow");
+    add_number(p, "angle", bow->angle);
+    add_number(p, "width", bow->width);
+    add_number(p, "distance", bow->distance);
+    add_unless(p, "jitter", bow->jitter, 0);
+    if (bow->arc >= 0) strbuf_addf(p->out, " arc %g falloff %g", bow->arc, bow->falloff);
+    end_line(p);
+    if (bow->colors) print_pigment(p, "colors", bow->colors);
+}
+
 void scene_print(const Scene *scene, StrBuf *out) {
     Printer printer = {out, 1}, *p = &printer;
     strbuf_addf(out, "scene %s clock %g\n", scene->name, scene->clock);
@@ -522,14 +542,8 @@ void scene_print(const Scene *scene, StrBuf *out) {
     add_color(p, "color", scene->background);
     end_line(p);
     for (size_t i = 0; i < scene->sky_layer_count; i++) print_pigment(p, "sky", scene->sky_layers[i]);
-    for (size_t i = 0; i < scene->fog_count; i++) {
-        const Fog *fog = &scene->fogs[i];
-        begin_line(p, "fog");
-        add_number(p, "distance", fog->distance);
-        add_color(p, "color", fog->color);
-        if (fog->ground) strbuf_addf(p->out, " offset %g altitude %g", fog->offset, fog->altitude);
-        end_line(p);
-    }
+    for (size_t i = 0; i < scene->fog_count; i++) print_fog(p, &scene->fogs[i]);
+    for (size_t i = 0; i < scene->rainbow_count; i++) print_rainbow(p, &scene->rainbows[i]);
     for (size_t i = 0; i < scene->light_count; i++) print_light(p, &scene->lights[i]);
     for (size_t i = 0; i < scene->object_count; i++) print_object(p, scene->objects[i]);
     for (size_t i = 0; i < scene->skin_count; i++) print_skin(p, scene->skins[i]);

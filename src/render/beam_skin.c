@@ -402,6 +402,7 @@ static double seen_as_geometry(const Drawing *d) {
 }
 
 static void draw_tiles(Drawing *d, const CellFrame *f, const PlacedTexel *placed, TileRange r) {
+    if (beam_is_interrupted(d->draft)) return;
     if (r.u1 - r.u0 == 1 && r.v1 - r.v0 == 1) {
         draw_texel_at(d, f, placed, r.u0, r.v0);
         return;
@@ -477,7 +478,10 @@ typedef struct Gathering {
     uint32_t skin, count;
 } Gathering;
 
-static bool meets(const void *context, const Box3 *box) { return beam_meets_box(((const Gathering *)context)->draft->beam, box); }
+static bool meets(const void *context, const Box3 *box) {
+    const BeamDraft *draft = ((const Gathering *)context)->draft;
+    return !beam_is_interrupted(draft) && beam_meets_box(draft->beam, box);
+}
 
 /* The least q.z of a box. */
 static float nearest_of(const Beam *beam, const Box3 *box) {
@@ -530,7 +534,7 @@ void beam_draw_cells(BeamDraft *draft, const CompiledScene *compiled, uint32_t c
     Beam *beam = draft->beam;
     bool sorted = ordered(beam);
     if (sorted) qsort(draft->cells, count, sizeof *draft->cells, nearer_first);
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = 0; i < count && !beam_is_interrupted(draft); i++) {
         const BeamCell *at = &draft->cells[i];
         const CompiledSkin *skin = &compiled->skins[at->skin];
         if (sorted && (double)at->nearest > beam->farthest) break;

@@ -6,6 +6,8 @@
 #include "render/beam.h"
 #include "render/compile.h"
 
+#include <stdatomic.h>
+
 /* A triangle of a copy that some sample saw. */
 typedef struct BeamFacet {
     const CompiledSkin *skin;
@@ -38,7 +40,10 @@ typedef struct BeamDraft {
     uint32_t *renumber;       /* [facet_capacity + 1] */
     BeamCell *cells;          /* room for as many cells as all skins have */
     uint64_t triangles;       /* mapped and drawn: counted up */
+    const atomic_bool *interrupted; /* may be NULL; what is not drawn when it becomes true is left out */
 } BeamDraft;
+
+static inline bool beam_is_interrupted(const BeamDraft *draft) { return draft->interrupted && *draft->interrupted; }
 
 /* How many cells all skins have that are drawn by beams. */
 size_t beam_most_cells(const CompiledScene *compiled);

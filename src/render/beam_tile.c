@@ -31,6 +31,7 @@ static void draft_init(BeamTracer *tr, size_t all, Arena *arena) {
     draft->spread = middle.spread;
     draft->tolerance = tolerance_for(tr->plan.first < tr->plan.most ? 4 * tr->plan.first : tr->plan.first);
     draft->beam = &tr->beam;
+    draft->interrupted = tr->plan.interrupted;
 }
 
 static void sky_init(BeamTracer *tr, size_t all, Arena *arena) {
@@ -255,7 +256,7 @@ void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out, Ao
     tr->pixel_count += (uint64_t)pixels;
     if (beam_gather(&tr->draft, tr->compiled) == 0 && see_sky(tr, out)) return;
     ErrorLaw law = {.samples = 0, .power = 0.75};
-    for (tr->before = 0; tr->before < wanted; tr->before += tr->samples) {
+    for (tr->before = 0; tr->before < wanted && !beam_is_interrupted(&tr->draft); tr->before += tr->samples) {
         tr->samples = int_min(wanted - tr->before, BEAM_MOST_IN_PASS);
         if (tr->before) beam_aim(tr); /* drawing has narrowed the beam */
         double error = see_pass(tr, out);
@@ -264,7 +265,7 @@ void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out, Ao
         wanted = int_max(tr->before + tr->samples, samples_for(&law, tr->plan.max_error, tr->plan.most));
         if (tr->plan.first == tr->plan.most) wanted = tr->plan.most;
     }
-    double error = law.error * pow(law.samples / tr->before, law.power);
+    double error = tr->before > 0 ? law.error * pow(law.samples / tr->before, law.power) : 0;
     tr->squared_error += error * error * pixels;
 }
 

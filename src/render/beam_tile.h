@@ -19,6 +19,7 @@ typedef struct BeamTracer BeamTracer;
 typedef struct BeamPlan {
     int first, most; /* at least 1, at most MOST_BEAM_SAMPLES */
     double max_error;
+    const atomic_bool *interrupted; /* may be NULL; tiles may be anything once it is true */
 } BeamPlan;
 
 /* Of one worker. All memory comes from the arena, now. */

@@ -46,6 +46,7 @@ static void make_workers(Frame *frame, int workers) {
     if (has_exact_skins(compiled)) {
         BeamPlan plan = {.first = compiled->samples, .most = compiled->most_samples, .max_error = compiled->max_error};
         if (options->samples > 0) plan = (BeamPlan){.first = options->samples, .most = options->samples};
+        plan.interrupted = options->interrupted;
         frame->beams = arena_new_array(arena, BeamTracer *, (size_t)workers);
         for (int i = 0; i < workers; i++) frame->beams[i] = beam_tracer_create(compiled, &plan, options->seed, arena);
         return;

@@ -207,10 +207,8 @@ static void *interrupt_later(void *argument) {
     return NULL;
 }
 
-static void interruption_from_another_thread(void **state) {
-    const Bench *b = *state;
-    VtsOptions o = options_of_size(4000, 4000); /* minutes, if it went on */
-    bench_write(b, meadow);
+static void interrupt_renders(const Bench *b, VtsOptions o, const char *scene) {
+    bench_write(b, scene);
     remove(b->output);
     static const long after[] = {100000, 20000000, 150000000};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(after); i++) {
@@ -222,6 +220,22 @@ static void interruption_from_another_thread(void **state) {
         assert_int_not_equal(access(b->output, F_OK), 0);
         vts_session_destroy(other.session);
     }
+}
+
+static void interruption_from_another_thread(void **state) {
+    interrupt_renders(*state, options_of_size(4000, 4000), meadow); /* minutes, if it went on */
+}
+
+/* Each tile of the picture is minutes of work by itself. */
+static void interruption_within_a_tile(void **state) {
+    const VtsPair exact = {"detail", "exact"};
+    VtsOptions o = options_of_size(40, 30);
+    o.settings = &exact, o.setting_count = 1;
+    interrupt_renders(*state, o,
+                      "camera { location <0, 300, -9000> look_at 0 angle 60 right x*image_width/image_height }\n"
+                      "#declare Blades = texel { cyclic x + z layer { triangle { <0.2, 0, 0.3>, <0.3, 0, 0.3>, <0.2, 1, 0.4> } } }\n"
+                      "#declare Land = surface { patch_grid 1, 1 function(u, v) { <90000*(u - 0.5), 0, 90000*(v - 0.5)> } }\n"
+                      "skin { surface { Land } texel { Blades } mapping { repeat <90000, 90000> height 0.5 } }\n");
 }
 
 /* ---- alpha ---- */
@@ -252,6 +266,7 @@ int main(void) {
         cmocka_unit_test(sky_is_sky_with_many_samples),
         cmocka_unit_test(memory_runs_out_anywhere_without_harm),
         cmocka_unit_test(interruption_from_another_thread),
+        cmocka_unit_test(interruption_within_a_tile),
         cmocka_unit_test(alpha_is_coverage),
     };
     return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);

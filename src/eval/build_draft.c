@@ -126,6 +126,7 @@ static void walk_texture(SceneDraft *draft, BuildContext *context, const Texture
     for (; visit(draft, context, texture); texture = texture->under) {
         warn_inert(draft, context, texture->inert);
         walk_pigment(draft, context, texture->pigment);
+        if (texture->map) walk_pigment(draft, context, texture->map->pattern);
         for (size_t i = 0; texture->map && i < texture->map->count; i++)
             walk_texture(draft, context, texture->map->textures[i]);
         if (texture->normal) walk_pigment(draft, context, texture->normal->pattern);

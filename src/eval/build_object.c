@@ -54,6 +54,11 @@ static void read_clipped_by(Reader *reader, const Word *word, void *target) {
     read_objects(reader, word, draft, &draft->rest.clipped_by);
 }
 
+static void read_inside(Reader *reader, const Word *word, void *target) {
+    ObjectDraft *draft = target;
+    read_interior_texture(reader, word, &draft->rest.interior_texture, &draft->transform);
+}
+
 /* Modifiers without effect here that only some objects take. */
 static void read_restricted(Reader *reader, const Word *word, void *target) {
     static const struct {
@@ -91,7 +96,7 @@ static const WordRule rules[] = {
     IGNORED("radiosity"),
     IGNORED("no_radiosity"),
     INERT("uv_mapping"),
-    INERT("interior_texture"),
+    {"interior_texture", WORD_CUSTOM, 0, read_inside, false},
 };
 
 void take_interior(const Argument *value, ObjectDraft *draft) {
@@ -99,6 +104,14 @@ void take_interior(const Argument *value, ObjectDraft *draft) {
     if (value->value.kind == VALUE_INTERIOR) interior = value->value.as.interior;
     if (value->value.kind == VALUE_MATERIAL) interior = material_interior(value->value.as.node);
     if (interior) draft->rest.interior = interior;
+}
+
+/* The interior_texture of a material. */
+static void take_inside(const BuildContext *context, const Argument *value, ObjectDraft *draft) {
+    if (value->value.kind != VALUE_MATERIAL) return;
+    const Texture *inside = material_inside(context, value->value.as.node);
+    Transform back = transform_inverse(&draft->transform);
+    if (inside) draft->rest.interior_texture = texture_placed(context, inside, &back);
 }
 
 bool object_on_value(Reader *reader, const Argument *value, void *target) {
@@ -109,6 +122,7 @@ bool object_on_value(Reader *reader, const Argument *value, void *target) {
         return true;
     }
     take_interior(value, draft);
+    take_inside(reader->context, value, draft);
     return take_looks(reader->context, value, &draft->object.texture, &draft->rest.inert, &draft->transform) ||
            take_transform(value, &draft->transform);
 }

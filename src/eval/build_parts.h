@@ -61,6 +61,10 @@ BlockBuilder build_interior; /* build_interior.c */
 
 /* ---- build_texture.c ---- */
 BlockBuilder build_texture, build_material, build_inert_value;
+/* Reads a texture's items from the reader's position on; NULL after a report. */
+const Texture *texture_read(Reader *reader);
+/* interior_texture { … } over those before it, in the space that `place` maps from. */
+void read_interior_texture(Reader *reader, const Word *word, const Texture **texture, const Transform *place);
 BlockBuilder build_normal; /* build_normal.c */
 /* A copy with its transform followed by `t`. */
 const Normal *normal_placed(const BuildContext *context, const Normal *normal, const Transform *t);
@@ -72,6 +76,8 @@ const Texture *texture_over(const BuildContext *context, const Texture *top, con
  * `place`: transform so far of what carries the texture. */
 /* The interior of a material, or NULL. */
 const Interior *material_interior(const void *material);
+/* Its interior_texture, in the space of the material's user, or NULL. */
+const Texture *material_inside(const BuildContext *context, const void *material);
 bool take_looks(BuildContext *context, const Argument *value, const Texture **texture,
                 const InertNote **inert, const Transform *place);
 

@@ -41,6 +41,8 @@ static const struct PatternWord {
     {"julia", PATTERN_JULIA},
     {"average", PATTERN_AVERAGE},
     {"aoi", PATTERN_AOI},
+    {"tiling", PATTERN_TILING},
+    {"pavement", PATTERN_PAVEMENT},
 };
 
 static PatternKind find_pattern(const char *word) {
@@ -173,6 +175,7 @@ static void read_slope(Reader *reader, const Word *word, Vec3 *direction, double
 
 static void read_altitude(Reader *reader, const Word *word, void *target) {
     Pigment *pigment = &((PigmentDraft *)target)->pigment;
+    if (pigment->points_at) reader_error(reader, word->span, "'altitude' has no meaning beside 'point_at'");
     read_slope(reader, word, &pigment->altitude, &pigment->altitude_low, &pigment->altitude_high);
 }
 
@@ -181,7 +184,10 @@ static void read_slope_body(Reader *reader, const Word *word, PigmentDraft *draf
     static const WordRule altitude[] = {{"altitude", WORD_CUSTOM, 0, read_altitude, false}};
     Reader body = reader_nested(reader, word->body);
     Pigment *pigment = &draft->pigment;
-    reader_vector(&body, "the direction", &pigment->direction, NULL);
+    Word at;
+    pigment->points_at = reader_take_word(&body, "point_at", &at);
+    if (!pigment->points_at) reader_vector(&body, "the direction", &pigment->direction, NULL);
+    else if (word_arguments(&body, &at, 1, 3)) read_slope(&body, &at, &pigment->direction, &pigment->slope_low, &pigment->slope_high);
     Argument argument;
     if (reader_take_value(&body, VALUE_FLOAT, &argument))
         argument_float(&body, &argument, "'slope'", &pigment->slope_low);
@@ -277,6 +283,7 @@ static void read_pattern(Reader *reader, const Word *word, void *target) {
         break;
     case PATTERN_SLOPE:
         pigment->slope_low = pigment->slope_high = 0;
+        pigment->points_at = false;
         if (word->body)
             read_slope_body(reader, word, draft);
         else
@@ -286,10 +293,27 @@ static void read_pattern(Reader *reader, const Word *word, void *target) {
     case PATTERN_SPIRAL2:
         read_arms(reader, word, &pigment->number);
         break;
+    case PATTERN_TILING: break;
     case PATTERN_MANDEL:
     case PATTERN_JULIA: read_fractal(reader, word, draft); break;
     default: read_list(reader, word, draft);
     }
+}
+
+/* The first three are drawn. */
+static void read_tiling(Reader *reader, const Word *word, void *target) {
+    PigmentDraft *draft = target;
+    read_pattern(reader, word, target);
+    if (!word_arguments(reader, word, 1, draft->is_normal ? 2 : 1) || !word_int(reader, word, 0, &draft->pigment.number)) return;
+    if (draft->pigment.number < 1 || draft->pigment.number > 27)
+        reader_error(reader, word->arguments[0].span, "'tiling' is a number from 1 to 27, found %d", draft->pigment.number);
+    else if (draft->pigment.number > TILING_MOST)
+        inert_add(reader->context, &draft->pigment.inert, "tiling", word->span);
+}
+
+static void read_pavement(Reader *reader, const Word *word, void *target) {
+    read_pattern(reader, word, target);
+    inert_add(reader->context, &((PigmentDraft *)target)->pigment.inert, "pavement", word->span);
 }
 
 static void read_pigment_pattern(Reader *reader, const Word *word, void *target) {
@@ -409,6 +433,8 @@ const WordRule pattern_rules[] = {
     PATTERN("julia"),
     PATTERN("average"),
     PATTERN("aoi"),
+    CUSTOM("tiling", read_tiling),
+    CUSTOM("pavement", read_pavement),
     CUSTOM("magnet", read_magnet),
     CUSTOM("function", read_function_body),
     CUSTOM("pigment_pattern", read_pigment_pattern),
@@ -433,6 +459,9 @@ const WordRule pattern_setting_rules[] = {
     {"control0", WORD_FLOAT, FIELD(control0), NULL, false},
     {"control1", WORD_FLOAT, FIELD(control1), NULL, false},
     {"interpolate", WORD_INT, FIELD(interpolation), NULL, false},
+    {"number_of_sides", WORD_IGNORED, 0, NULL, false},
+    {"number_of_tiles", WORD_IGNORED, 0, NULL, false},
+    {"pattern", WORD_IGNORED, 0, NULL, false},
     CUSTOM("metric", read_metric),
     CUSTOM("octaves", read_octaves),
     CUSTOM("noise_generator", read_noise_generator),

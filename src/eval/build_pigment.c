@@ -34,10 +34,8 @@ static const WordRule rules[] = {
     INERT("once"),
     UNMODELLED("facets"),
     {"image_map", WORD_CUSTOM, 0, read_image, false},
-    UNMODELLED("pavement"),
     UNMODELLED("potential"),
     UNMODELLED("proximity"),
-    UNMODELLED("tiling"),
     {"uv_mapping", WORD_FLAG, offsetof(PigmentDraft, uv), NULL, false},
 };
 

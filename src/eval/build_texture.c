@@ -83,11 +83,17 @@ static const Texture *with_normal(const BuildContext *context, const Texture *te
 typedef struct Material {
     const Texture *texture; /* in the space before `transform`; NULL: none */
     const Interior *interior; /* or NULL */
+    const Texture *inside;    /* interior_texture, in the space before `transform`; or NULL */
     const InertNote *inert;
     Transform transform;
 } Material;
 
 const Interior *material_interior(const void *material) { return ((const Material *)material)->interior; }
+
+const Texture *material_inside(const BuildContext *context, const void *node) {
+    const Material *material = node;
+    return texture_placed(context, material->inside, &material->transform);
+}
 
 static void note_inert(const BuildContext *context, const InertNote *made, const InertNote **inert) {
     for (; made; made = made->next) inert_add(context, inert, made->word, made->span);
@@ -133,6 +139,22 @@ bool take_looks(BuildContext *context, const Argument *value, const Texture **te
     return true;
 }
 
+void read_interior_texture(Reader *reader, const Word *word, const Texture **texture, const Transform *place) {
+    if (!word->body) {
+        reader_error(reader, word->span, "'interior_texture' takes a texture in braces");
+        return;
+    }
+    Reader body = reader_nested(reader, word->body);
+    const Texture *made = texture_read(&body);
+    if (!reader_end_nested(reader, &body) || !made) return;
+    if (layer_count(made) + layer_count(*texture) > TEXTURE_MOST_LAYERS) {
+        reader_error(reader, word->span, "a texture has at most %d layers", TEXTURE_MOST_LAYERS);
+        return;
+    }
+    Transform back = transform_inverse(place);
+    *texture = texture_over(reader->context, texture_placed(reader->context, made, &back), *texture);
+}
+
 /* ---- wind_field: a note of what is not drawn ---- */
 
 bool build_inert_value(BuildContext *context, const EvalBlock *block, Value *out) {
@@ -163,9 +185,14 @@ static bool on_material_value(Reader *reader, const Argument *value, void *targe
            take_transform(value, &material->transform);
 }
 
+static void read_inside(Reader *reader, const Word *word, void *target) {
+    Material *material = target;
+    read_interior_texture(reader, word, &material->inside, &material->transform);
+}
+
 bool build_material(BuildContext *context, const EvalBlock *block, Value *out) {
     static const WordRule material_rules[] = {
-        {"interior_texture", WORD_INERT, offsetof(Material, inert), NULL, false},
+        {"interior_texture", WORD_CUSTOM, 0, read_inside, false},
         {"uv_mapping", WORD_INERT, offsetof(Material, inert), NULL, false}};
     Material *material = arena_new(context->arena, Material);
     material->transform = transform_identity();

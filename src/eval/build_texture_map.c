@@ -22,7 +22,7 @@ typedef struct TextureDraft {
     bool uv;
 } TextureDraft;
 
-static const Texture *texture_read(Reader *reader);
+
 
 static Transform *place_of(TextureDraft *draft) { return &draft->pattern.pigment.transform; }
 
@@ -250,7 +250,7 @@ static const Texture *finished(Reader *reader, TextureDraft *draft) {
 
 static const WordRule rules[] = {{"uv_mapping", WORD_FLAG, offsetof(TextureDraft, uv), NULL, false}};
 
-static const Texture *texture_read(Reader *reader) {
+const Texture *texture_read(Reader *reader) {
     TextureDraft *draft = arena_new(reader->context->arena, TextureDraft);
     draft->pattern.pigment = pigment_default();
     draft->pattern.is_texture = true;

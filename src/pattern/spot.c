@@ -1,7 +1,7 @@
 #include "pattern/spot.h"
 
 Spot spot_make(Vec3 point, Vec3 normal, double footprint) {
-    Spot spot = {.p = point, .normal = normal};
+    Spot spot = {.p = point, .outer = point, .normal = normal};
     if (!(footprint > 0)) return spot;
     if (vec3_length_squared(normal) > 0) {
         vec3_frame(vec3_normalize(normal), &spot.axes[0], &spot.axes[1]);
@@ -13,7 +13,7 @@ Spot spot_make(Vec3 point, Vec3 normal, double footprint) {
 }
 
 Spot spot_back(const Spot *spot, const Transform *t) {
-    Spot back = {.p = transform_point_back(t, spot->p), .normal = spot->normal, .surface = spot->surface};
+    Spot back = {.p = transform_point_back(t, spot->p), .outer = spot->outer, .normal = spot->normal, .surface = spot->surface};
     for (int k = 0; k < 3; k++) back.axes[k] = transform_vector_back(t, spot->axes[k]);
     if (spot->blur > 0) /* by the mean scale of the axes' directions */
         back.blur = spot->blur * cbrt(fabs(mat3_determinant(&t->inverse_linear)));
@@ -21,7 +21,7 @@ Spot spot_back(const Spot *spot, const Transform *t) {
 }
 
 Spot spot_in_uv(const Spot *spot) {
-    Spot plane = {.normal = spot->normal, .surface = spot->surface};
+    Spot plane = {.outer = spot->outer, .normal = spot->normal, .surface = spot->surface};
     if (!spot->surface) return plane;
     const SpotSurface *s = spot->surface;
     plane.p = vec3(s->uv[0], s->uv[1], 0);

@@ -16,7 +16,8 @@ typedef struct Spot {
     Vec3 p;
     Vec3 axes[3];
     double blur;
-    Vec3 normal; /* untransformed: the slope pattern's */
+    Vec3 normal; /* untransformed, as `outer`: the slope pattern's */
+    Vec3 outer;  /* the place before all transforms */
     const SpotSurface *surface; /* or NULL */
 } Spot;
 

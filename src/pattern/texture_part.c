@@ -4,13 +4,24 @@
 #include "pattern/pigment.h"
 #include "pattern/values.h"
 
+#include <string.h>
+
 typedef struct PartList {
     TexturePart *items;
     size_t count, most;
 } PartList;
 
-/* A full list loses its lightest part. */
+static bool same_part(const TexturePart *a, const TexturePart *b) {
+    return a->texture == b->texture && a->space == b->space && memcmp(&a->spot.p, &b->spot.p, sizeof a->spot.p) == 0;
+}
+
+/* Shares of one texture, from places of the footprint or pieces of its map, are one part. A full list loses its lightest. */
 static void add_part(PartList *list, const TexturePart *part) {
+    for (size_t i = 0; i < list->count; i++)
+        if (same_part(&list->items[i], part)) {
+            list->items[i].weight += part->weight;
+            return;
+        }
     if (list->count < list->most) {
         list->items[list->count++] = *part;
         return;

@@ -5,6 +5,7 @@
 #include "pattern/numbers.h"
 #include "pattern/picture_map.h"
 #include "pattern/pigment.h"
+#include "pattern/tiling.h"
 #include "tape/noise.h"
 
 PatternTraits pattern_traits(PatternKind kind) {
@@ -198,7 +199,8 @@ static double unwrapped(double value) { return value < 0 ? 1 + fmod(value, 1) : 
 /* From 0, facing against the direction, to 1, facing along it, by the angle; with the altitude's share. */
 static double slope(const Pigment *pigment, const Spot *spot) {
     if (vec3_length_squared(spot->normal) == 0) return 0;
-    double cosine = vec3_dot(vec3_normalize(pigment->direction), vec3_normalize(spot->normal));
+    Vec3 direction = pigment->points_at ? vec3_sub(pigment->direction, spot->outer) : pigment->direction;
+    double cosine = vec3_dot(vec3_normalize(direction), vec3_normalize(spot->normal));
     double value = 0.5 + asin(double_clamp(cosine, -1, 1)) / VTS_PI;
     if (pigment->slope_high != pigment->slope_low)
         value = (value - pigment->slope_low) / (pigment->slope_high - pigment->slope_low);
@@ -291,6 +293,8 @@ Spread pattern_value(const Pigment *pigment, const Spot *spot) {
     case PATTERN_MAGNET_JULIA: return exactly(fractal_number(pigment, spot->p));
     case PATTERN_PIGMENT: return exactly(source_gray(pigment, spot));
     case PATTERN_DENSITY: return exactly(density_number(pigment, spot->p));
+    case PATTERN_TILING: return exactly(tiling_number(pigment->number, spot->p));
+    case PATTERN_PAVEMENT: return exactly(0.5);
     case PATTERN_IMAGE: return exactly(pigment->image ? picture_map_value(pigment->image, spot) : 0);
     default: return exactly(0);
     }

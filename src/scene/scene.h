@@ -128,6 +128,7 @@ typedef struct ColorMapEntry {
     const Pigment *pigment; /* of a pigment_map (or block pattern with pigments); else NULL and `color` counts */
 } ColorMapEntry;
 
+enum { TILING_MOST = 3 }; /* those after it are read, and have the middle of the map everywhere */
 enum { PIGMENT_DEEPEST = 100 }; /* pigments within maps and functions of each other: whoever evaluates one may call itself that often */
 #define PIGMENT_MOST_WORK 1e8   /* steps of one evaluation */
 struct Pigment {
@@ -160,6 +161,7 @@ struct Pigment {
     int number;                      /* arms of a spiral, kind of a tiling */
     int wave_count;                  /* ripples, waves: 10 */
     double slope_low, slope_high;    /* slope: low = high: all of [0, 1] */
+    bool points_at;                  /* slope: `direction` is a place, and the way to it counts */
     Vec3 altitude;                   /* slope: 0: without; else its length is the altitude's share, `direction`'s the slope's */
     double altitude_low, altitude_high;
     const Pigment *source;           /* PATTERN_PIGMENT */

@@ -96,6 +96,7 @@ static void add_settings(Hash128 *h, const Pigment *p) {
                               p->wave_count,
                               p->slope_low,
                               p->slope_high,
+                              p->points_at,
                               p->altitude_low,
                               p->altitude_high,
                               p->interpolation,

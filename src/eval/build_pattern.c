@@ -175,7 +175,7 @@ static void read_slope(Reader *reader, const Word *word, Vec3 *direction, double
 
 static void read_altitude(Reader *reader, const Word *word, void *target) {
     Pigment *pigment = &((PigmentDraft *)target)->pigment;
-    if (pigment->points_at) reader_error(reader, word->span, "'altitude' has no meaning beside 'point_at'");
+    if (pigment->points_at) reader_error(reader, word->span, "'%s' means nothing to the pattern '%s'", word->text, "slope point_at");
     read_slope(reader, word, &pigment->altitude, &pigment->altitude_low, &pigment->altitude_high);
 }
 
@@ -305,9 +305,8 @@ static void read_tiling(Reader *reader, const Word *word, void *target) {
     PigmentDraft *draft = target;
     read_pattern(reader, word, target);
     if (!word_arguments(reader, word, 1, draft->is_normal ? 2 : 1) || !word_int(reader, word, 0, &draft->pigment.number)) return;
-    if (draft->pigment.number < 1 || draft->pigment.number > 27)
-        reader_error(reader, word->arguments[0].span, "'tiling' is a number from 1 to 27, found %d", draft->pigment.number);
-    else if (draft->pigment.number > TILING_MOST)
+    if (draft->pigment.number < 1 || draft->pigment.number > TILING_MOST) grammar_word(reader, word); /* knows how many there are */
+    if (draft->pigment.number > TILING_MOST)
         inert_add(reader->context, &draft->pigment.inert, "tiling", word->span);
 }
 

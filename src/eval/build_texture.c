@@ -141,7 +141,7 @@ bool take_looks(BuildContext *context, const Argument *value, const Texture **te
 
 void read_interior_texture(Reader *reader, const Word *word, const Texture **texture, const Transform *place) {
     if (!word->body) {
-        reader_error(reader, word->span, "'interior_texture' takes a texture in braces");
+        reader_error(reader, word->span, "'%s' needs its block { … }", word->text);
         return;
     }
     Reader body = reader_nested(reader, word->body);

@@ -7,6 +7,7 @@
 typedef struct TriangleDraft {
     ObjectDraft common;
     Vec3 *uvs; /* 3; NULL: none */
+    const Texture **textures; /* of the corners; or NULL */
 } TriangleDraft;
 
 static void read_uv_vectors(Reader *reader, const Word *word, void *target) {
@@ -18,17 +19,19 @@ static void read_uv_vectors(Reader *reader, const Word *word, void *target) {
     draft->uvs = uvs;
 }
 
-/* A texture for each corner; which is not blended: the first one is seen. */
+/* A texture for each corner. */
 static void read_corner_textures(Reader *reader, const Word *word, void *target) {
     TriangleDraft *draft = target;
     size_t count = word->body ? word->body->count : 0;
     for (size_t i = 0; i < count; i++)
         if (word->body->items[i].kind != ITEM_VALUE || word->body->items[i].value.kind != VALUE_TEXTURE)
             count = 0;
-    if (count != 3)
+    if (count != 3) {
         reader_error(reader, word->span, "'texture_list' of a triangle holds three textures");
-    else
-        draft->common.object.texture = word->body->items[0].value.as.texture;
+        return;
+    }
+    draft->textures = arena_new_array(reader->context->arena, const Texture *, 3);
+    for (size_t i = 0; i < 3; i++) draft->textures[i] = word->body->items[i].value.as.texture;
 }
 
 static bool is_degenerate(const Vec3 *v) {
@@ -48,6 +51,15 @@ static MeshData *one_triangle(Arena *arena, const Vec3 *vertices, const Vec3 *no
                        .triangles = (const uint32_t(*)[3])triangles,
                        .triangle_count = 1};
     return mesh;
+}
+
+static void blend_corners(Arena *arena, MeshData *mesh, const Texture *const *textures) {
+    uint32_t(*corners)[3] = arena_push(arena, sizeof *corners);
+    for (uint32_t k = 0; k < 3; k++) corners[0][k] = k;
+    mesh->textures = textures;
+    mesh->texture_count = 3;
+    mesh->triangle_textures = corners[0];
+    mesh->corner_textures = (const uint32_t(*)[3])corners;
 }
 
 bool build_triangle(BuildContext *context, const EvalBlock *block, Value *out) {
@@ -75,6 +87,7 @@ bool build_triangle(BuildContext *context, const EvalBlock *block, Value *out) {
     if (!object_read(&reader, &draft.common)) return false;
     mesh->uvs = draft.uvs;
     mesh->uv_count = draft.uvs ? 3 : 0;
+    if (draft.textures) blend_corners(context->arena, mesh, draft.textures);
     mesh_rehash(mesh);
     return object_make(&reader, &draft.common, out);
 }
@@ -87,7 +100,7 @@ typedef struct MeshDraft {
         const Object **items;
         size_t count, capacity;
     } parts;
-    bool textured, smooth, mapped;
+    bool textured, blended, smooth, mapped;
     Vec3 inside_vector;
 } MeshDraft;
 
@@ -100,7 +113,8 @@ static bool on_mesh_value(Reader *reader, const Argument *value, void *target) {
                take_transform(value, &draft->common.transform);
     const Object *part = value->value.as.object;
     if (part->as.mesh->triangle_count == 0) return true;
-    draft->textured |= part->texture != NULL;
+    draft->textured |= part->texture || part->as.mesh->corner_textures;
+    draft->blended |= part->as.mesh->corner_textures != NULL;
     draft->smooth |= part->as.mesh->normals != NULL;
     draft->mapped |= part->as.mesh->uvs != NULL;
     *list_push(reader->context->arena, &draft->parts) = part;
@@ -114,14 +128,22 @@ static void fill_normals(const MeshData *part, Vec3 *normals) {
 }
 
 static const Texture **gather_textures(Arena *arena, const MeshDraft *draft, MeshData *mesh,
-                                       uint32_t *indices) {
-    const Texture **textures = arena_new_array(arena, const Texture *, draft->parts.count + 1);
+                                       uint32_t *indices, uint32_t (*corners)[3]) {
+    const Texture **textures = arena_new_array(arena, const Texture *, (draft->blended ? 3 : 1) * draft->parts.count + 1);
     for (size_t i = 0; i < draft->parts.count; i++) {
+        const MeshData *part = draft->parts.items[i]->as.mesh;
+        if (part->corner_textures) {
+            indices[i] = (uint32_t)mesh->texture_count;
+            for (uint32_t k = 0; k < 3; k++) corners[i][k] = indices[i] + k;
+            for (uint32_t k = 0; k < 3; k++) textures[mesh->texture_count++] = part->textures[k];
+            continue;
+        }
         const Texture *texture = draft->parts.items[i]->texture;
         if (!texture) texture = draft->common.object.texture;
         if (mesh->texture_count == 0 || textures[mesh->texture_count - 1] != texture)
             textures[mesh->texture_count++] = texture;
         indices[i] = (uint32_t)(mesh->texture_count - 1);
+        for (uint32_t k = 0; corners && k < 3; k++) corners[i][k] = indices[i];
     }
     return textures;
 }
@@ -152,8 +174,10 @@ static const MeshData *join_triangles(const BuildContext *context, const MeshDra
                        .inside_vector = draft->inside_vector};
     if (draft->textured) {
         uint32_t *indices = arena_new_array(context->arena, uint32_t, count);
-        mesh->textures = gather_textures(context->arena, draft, mesh, indices);
+        uint32_t(*corners)[3] = draft->blended ? arena_push_array_(context->arena, count, sizeof *corners) : NULL;
+        mesh->textures = gather_textures(context->arena, draft, mesh, indices, corners);
         mesh->triangle_textures = indices;
+        mesh->corner_textures = (const uint32_t(*)[3])corners;
     }
     mesh_rehash(mesh);
     return mesh;

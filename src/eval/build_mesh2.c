@@ -160,8 +160,27 @@ static bool read_triangle(Reader *reader, size_t number, const char *what, size_
     return true;
 }
 
-/* `, t` or `, t0, t1, t2` behind a triangle: the first counts. *used is set when there is one. */
-static bool read_texture_index(Reader *reader, size_t number, size_t limit, uint32_t *out, bool *used) {
+typedef struct FaceList {
+    Triangle *triangles, *corner_textures; /* NULL: all corners of each triangle have the same */
+    uint32_t *textures;                    /* NULL: none are named */
+    size_t count;
+} FaceList;
+
+/* The texture of a triangle, and from the second corner on of this corner. */
+static void put_texture(Arena *arena, FaceList *list, size_t triangle, int corner, uint32_t texture) {
+    if (!list->textures) list->textures = arena_new_array(arena, uint32_t, list->count);
+    if (corner == 0) list->textures[triangle] = texture;
+    if (corner > 0 && corner < 3 && !list->corner_textures) {
+        list->corner_textures = arena_push_array_(arena, list->count, sizeof(Triangle));
+        for (size_t i = 0; i < list->count; i++)
+            for (int k = 0; k < 3; k++) list->corner_textures[i][k] = list->textures[i];
+    }
+    if (list->corner_textures)
+        for (int k = corner; k < 3; k++) list->corner_textures[triangle][k] = texture;
+}
+
+/* `, t` or `, t0, t1, t2` behind a triangle. */
+static bool read_texture_index(Reader *reader, size_t number, size_t limit, FaceList *list) {
     Argument argument;
     for (int i = 0; reader_take_value(reader, VALUE_FLOAT, &argument); i++) {
         double index = argument.value.as.number;
@@ -171,17 +190,10 @@ static bool read_texture_index(Reader *reader, size_t number, size_t limit, uint
                          limit ? limit - 1 : 0);
             return false;
         }
-        if (i == 0) *out = (uint32_t)index;
-        *used = true;
+        put_texture(reader->context->arena, list, number, i, (uint32_t)index);
     }
     return true;
 }
-
-typedef struct FaceList {
-    Triangle *triangles;
-    uint32_t *textures; /* NULL: none are named */
-    size_t count;
-} FaceList;
 
 /* A vector of indices, or false. */
 static bool listed_triangle(const ListedNumber *n, double limit, Triangle out) {
@@ -200,18 +212,17 @@ static bool listed_faces(Reader *reader, const EvalBlock *body, size_t limit, si
     size_t count = (size_t)n->components[0], found = 0;
     if ((double)count != n->components[0]) return false;
     Triangle *triangles = arena_push_array_(reader->context->arena, count, sizeof(Triangle));
-    uint32_t *textures = NULL;
+    FaceList list = {.triangles = triangles, .count = count};
     for (n++; n < end && found < count; found++) {
         if (!listed_triangle(n++, (double)limit, triangles[found])) return false;
         for (int i = 0; n < end && n->size == 1; i++, n++) {
             double index = n->components[0];
             if (!(index >= 0 && index < (double)texture_limit)) return false;
-            if (!textures) textures = arena_new_array(reader->context->arena, uint32_t, count);
-            if (i == 0) textures[found] = (uint32_t)index;
+            put_texture(reader->context->arena, &list, found, i, (uint32_t)index);
         }
     }
     if (n < end || found < count) return false;
-    *out = (FaceList){.triangles = triangles, .count = count, .textures = textures};
+    *out = list;
     return true;
 }
 
@@ -219,22 +230,19 @@ static bool read_faces(Reader *parent, const EvalBlock *body, const char *what, 
                        size_t texture_limit, FaceList *out) {
     if (listed_faces(parent, body, limit, texture_limit, out)) return true;
     Reader reader = reader_nested(parent, body);
-    bool used = false;
     if (stated_count(&reader, "triangles", &out->count)) {
         if (out->count > reader.block->count) /* before memory is taken for a slip of the keyboard */
             reader_error(&reader, body->word_span, "'%s' announces %zu triangles, but at most %zu follow",
                          body->word->text, out->count, reader.block->count - 1);
         out->triangles =
             arena_push_array_(parent->context->arena, reader.failed ? 0 : out->count, sizeof(Triangle));
-        out->textures = arena_new_array(parent->context->arena, uint32_t, reader.failed ? 0 : out->count);
         for (size_t i = 0; i < out->count && !reader.failed; i++)
             if (read_triangle(&reader, i, what, limit, out->triangles[i]))
-                read_texture_index(&reader, i, texture_limit, &out->textures[i], &used);
+                read_texture_index(&reader, i, texture_limit, out);
         if (!reader.failed && reader_peek(&reader))
             reader_error(&reader, reader_peek(&reader)->span, "'%s' announces %zu triangles, but more follow",
                          body->word->text, out->count);
     }
-    if (!used) out->textures = NULL;
     return reader_end_nested(parent, &reader);
 }
 
@@ -289,6 +297,7 @@ static bool assemble(Reader *reader, Mesh2Draft *draft) {
     mesh->triangles = (const Triangle *)faces.triangles;
     mesh->triangle_count = faces.count;
     mesh->triangle_textures = faces.textures;
+    mesh->corner_textures = (const Triangle *)faces.corner_textures;
     if (mesh->triangle_count == 0) reader_error(reader, draft->faces->word_span, "'mesh2' without triangles");
     read_other_faces(reader, draft->normal_faces, "normal", mesh->normal_count, faces.count,
                      &mesh->normal_triangles);

@@ -78,6 +78,11 @@ static void read_restricted(Reader *reader, const Word *word, void *target) {
             reader_error(reader, word->span, "'%s' has no meaning for '%s'", word->text, kind);
 }
 
+static void read_cutaway(Reader *reader, const Word *word, void *target) {
+    read_restricted(reader, word, target);
+    ((ObjectDraft *)target)->cutaway = true;
+}
+
 static const WordRule rules[] = {
     {"no_shadow", WORD_MARK, FIELD(no_shadow), NULL, false},
     {"no_image", WORD_FLAG, FIELD(no_image), NULL, false},
@@ -90,7 +95,7 @@ static const WordRule rules[] = {
     IGNORED("hierarchy"),
     {"sturm", WORD_CUSTOM, 0, read_restricted, false},
     {"split_union", WORD_CUSTOM, 0, read_restricted, false},
-    {"cutaway_textures", WORD_CUSTOM, 0, read_restricted, false},
+    {"cutaway_textures", WORD_CUSTOM, 0, read_cutaway, false},
     {"inside_vector", WORD_CUSTOM, 0, read_restricted, false},
     IGNORED("photons"),
     IGNORED("radiosity"),
@@ -146,6 +151,7 @@ bool object_make(Reader *reader, const ObjectDraft *draft, Value *out) {
     object.inverse = draft->inverse;
     object.no_reflection = draft->no_reflection;
     object.double_illuminate = draft->double_illuminate;
+    object.cutaway = draft->cutaway;
     object.rest = rest->inert || rest->hollow || rest->interior || rest->interior_texture || rest->clipped_by.count || rest->bounded_by.count
                       ? arena_copy(arena, rest, sizeof *rest)
                       : NULL;
@@ -238,6 +244,7 @@ bool build_object(BuildContext *context, const EvalBlock *block, Value *out) {
     draft.inverse = source->inverse;
     draft.no_reflection = source->no_reflection;
     draft.double_illuminate = source->double_illuminate;
+    draft.cutaway = source->cutaway;
     if (source->rest) draft.rest = *source->rest;
     return object_finish(&reader, &draft, out);
 }

@@ -325,13 +325,20 @@ static const char *find_file(const BuildContext *context, const char *name, Span
 }
 
 /* Where includes are looked for, and then where Debian keeps POV-Ray's fonts and others. */
-static const char *find_font(const BuildContext *context, const char *name, Span span) {
+static const char *find_named_font(const BuildContext *context, const char *name, Span span) {
     static const char *const folders[] = {"povray", "dejavu", "liberation", "liberation2", "freefont"};
     const char *path = find_file(context, name, span);
     for (size_t i = 0; !path && !strchr(name, '/') && i < VTS_ARRAY_COUNT(folders); i++)
         path = find_file(
             context, arena_printf(context->arena, "/usr/share/fonts/truetype/%s/%s", folders[i], name), span);
     return path;
+}
+
+/* As POV-Ray does, "crystal" finds crystal.ttf. */
+static const char *find_font(const BuildContext *context, const char *name, Span span) {
+    const char *path = find_named_font(context, name, span), *base = strrchr(name, '/');
+    if (path || strchr(base ? base : name, '.')) return path;
+    return find_named_font(context, arena_printf(context->arena, "%s.ttf", name), span);
 }
 
 /* `internal N` are POV-Ray's own fonts: Times, Helvetica and Courier lookalikes, and its logo. */

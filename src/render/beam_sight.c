@@ -102,7 +102,7 @@ static void see_explicit(const SeenSurface *seen, Vec3 point, double width, doub
     Vec3 normal = hit->normal, direction = vec3_negate(vec3_from_f(sight->view));
     const Cone cone = {vec3_madd(point, direction, -hit->t), direction, width, 0};
     sight->color = hit->look->color;
-    if (!hit->look->uniform || !hit->look->opaque || hit->look->texture->normal) surface_glance(&cone, hit, &sight->color, &normal);
+    if (hit->share_count || !hit->look->uniform || !hit->look->opaque || hit->look->texture->normal) surface_glance(&cone, hit, &sight->color, &normal);
     sight->look = hit->look;
     sight->surface = hit;
     sight->normal = vec3f_from(normal);

@@ -13,6 +13,15 @@ struct Interior;
 /* What a ray is for: `no_image`, `no_reflection` and `no_shadow` hide objects from each. */
 typedef enum RayPurpose { RAY_SEES, RAY_MIRRORS, RAY_SHADOWS } RayPurpose;
 
+/* A further look of a surface, which has so much of it. */
+typedef struct LookShare {
+    const Look *look;
+    double weight;
+    Transform space; /* as SurfaceHit has it */
+} LookShare;
+
+enum { LOOK_SHARES = 7 };
+
 typedef struct SurfaceHit {
     double t;
     Vec3 normal;       /* unit, turned towards the ray's origin; of smooth triangles the interpolated one */
@@ -26,6 +35,8 @@ typedef struct SurfaceHit {
     const struct Interior *interior; /* what fills it, its own or of a set around it; or NULL */
     bool both_sides;   /* lights shine on both of its sides */
     uint64_t filled;   /* tells the object that has that interior from its copies */
+    int share_count;   /* where several looks blend: all but `look`, which has the rest; it is clear or mirrors if any does */
+    LookShare shares[LOOK_SHARES];
 } SurfaceHit;
 
 /* An interior that a place lies in, and of which object. */

@@ -46,6 +46,7 @@ static const Texture *texture_in_body(const BodyHit *body, bool inside) {
     return inside && looked->rest && looked->rest->interior_texture ? looked->rest->interior_texture : looked->texture;
 }
 
+<<<<<<< HEAD
 static void find_space(const Found *found, Transform own, int from, SurfaceHit *out) {
     out->space = own;
     for (int i = from; i >= 0; i--) {
@@ -59,6 +60,71 @@ static void find_look(const ClusterSet *set, const Found *found, bool places, Su
     int i = found->depth - 1;
     const Item *item = found->path[i];
     const Texture *texture = NULL;
+=======
+static void place_in_scene(const Found *found, int depth, Transform *space) {
+    for (int i = depth; i >= 0; i--) {
+        const Transform place = item_place(found->path[i]);
+        *space = transform_then(space, &place);
+    }
+}
+
+/* The look that leaves least to be done must not stand for the others. */
+static void put_first(SurfaceHit *out, int share, double own_weight) {
+    const LookShare first = {out->look, own_weight, out->space};
+    out->look = out->shares[share].look;
+    out->space = out->shares[share].space;
+    out->shares[share] = first;
+}
+
+static int demands_of(const Look *look) { return 2 * !look->opaque + !look->plain; }
+
+static void order_shares(SurfaceHit *out) {
+    double weight = 1;
+    for (int i = 0; i < out->share_count; i++) weight -= out->shares[i].weight;
+    for (int i = 0; i < out->share_count; i++) {
+        double own = out->shares[i].weight;
+        if (demands_of(out->shares[i].look) <= demands_of(out->look)) continue;
+        put_first(out, i, weight);
+        weight = own;
+    }
+}
+
+/* Textures of the corners blend as smooth normals do. */
+static void blend_corners(const ClusterSet *set, const MeshData *mesh, uint32_t triangle, double u, double v, SurfaceHit *out) {
+    const uint32_t *corners = mesh->corner_textures[triangle];
+    const double weight[2] = {u, v};
+    if (corners[0] == corners[1] && corners[0] == corners[2]) return;
+    for (int k = 0; k < 2; k++) {
+        const Texture *texture = mesh->textures[corners[k + 1]];
+        const Look *look = texture ? look_table_find(&set->looks, texture) : NULL;
+        if (look) out->shares[out->share_count++] = (LookShare){look, weight[k], out->space};
+    }
+}
+
+/* Surfaces without a texture in sets with cutaway_textures; false where nothing that holds the place has one. */
+static bool share_cut(const ClusterSet *set, const Found *found, const Ray *ray, SurfaceHit *out) {
+    const BodyHit *body = &found->body;
+    BodyTexture textures[LOOK_SHARES + 1];
+    Transform to_scene = body->cut_place;
+    place_in_scene(found, found->depth - 1, &to_scene);
+    Vec3 point = transform_point_back(&to_scene, vec3_madd(ray->origin, ray->direction, found->t));
+    size_t count = body_textures(body->cut, body->cut_object, point, textures, LOOK_SHARES + 1);
+    for (size_t i = 0; i < count; i++) {
+        LookShare share = {look_table_find(&set->looks, textures[i].texture), 1.0 / (double)count, transform_then(&textures[i].place, &to_scene)};
+        if (i == 0) out->look = share.look, out->space = share.space;
+        else out->shares[out->share_count++] = share;
+    }
+    return count > 0;
+}
+
+/* The innermost object with a texture gives it, and its space. */
+static void find_look(const ClusterSet *set, const Found *found, const Ray *ray, SurfaceHit *out) {
+    const Item *item = found->path[found->depth - 1];
+    const Texture *texture = NULL;
+    int i = found->depth - 1;
+    out->look = NULL;
+    out->share_count = 0;
+>>>>>>> 5773040 (cutaway_textures; textures of triangles' corners blend; fonts are found without their suffix)
     if (found->cluster) {
         MetTriangle met = met_triangle(found);
         texture = texture_of_triangle(met.mesh, met.number);
@@ -69,18 +135,45 @@ static void find_look(const ClusterSet *set, const Found *found, bool places, Su
     if (out->look) {
         if (out->look->even && !places) return;
         const Transform place = item_place(item);
+<<<<<<< HEAD
         find_space(found, found->cluster ? place : transform_then(&found->body.looked_place, &place), i - 1, out);
+=======
+        out->look = look_table_find(&set->looks, texture);
+        out->space = found->cluster ? place : transform_then(&found->body.looked_place, &place);
+        i--;
+        place_in_scene(found, i, &out->space);
+        if (found->cluster) {
+            MetTriangle met = met_triangle(found);
+            if (met.mesh->corner_textures) blend_corners(set, met.mesh, met.number, found->u, found->v, out);
+        }
+        order_shares(out);
+>>>>>>> 5773040 (cutaway_textures; textures of triangles' corners blend; fonts are found without their suffix)
         return;
     }
     for (; i >= 0 && !out->look; i--) {
         const Item *at = found->path[i];
         out->look = out->leaving && at->inside ? at->inside : at->look;
         if (!out->look) continue;
+<<<<<<< HEAD
         if (!out->look->even || places) find_space(found, at->look_place ? *at->look_place : item_place(at), i - 1, out);
         return;
     }
     out->look = set->default_look;
     out->space = transform_identity();
+=======
+        out->space = at->look_place ? *at->look_place : item_place(at);
+    }
+    if (!out->look && !found->cluster && found->body.cut && share_cut(set, found, ray, out)) {
+        order_shares(out);
+        return;
+    }
+    if (!out->look) {
+        out->look = set->default_look;
+        out->space = transform_identity();
+        return;
+    }
+    place_in_scene(found, i, &out->space);
+>>>>>>> 5773040 (cutaway_textures; textures of triangles' corners blend; fonts are found without their suffix)
 }
 
 /* ---- interiors ---- */
@@ -175,8 +268,13 @@ void hit_finish(const ClusterSet *set, Found *found, const Ray *ray, bool places
     out->leaving = vec3_dot(flat, ray->direction) > 0;
     out->flat = out->leaving ? vec3_negate(flat) : flat;
     out->normal = vec3_dot(normal, ray->direction) > 0 ? vec3_negate(normal) : normal;
+<<<<<<< HEAD
     find_look(set, found, places, out);
     if (places || !out->look->even) out->uv = hit_uv(found, vec3_madd(ray->origin, ray->direction, found->t));
+=======
+    out->uv = hit_uv(found, vec3_madd(ray->origin, ray->direction, found->t));
+    find_look(set, found, ray, out);
+>>>>>>> 5773040 (cutaway_textures; textures of triangles' corners blend; fonts are found without their suffix)
     find_filling(found, out);
     out->both_sides = out->solid->double_illuminate;
     for (int i = 0; i < found->depth; i++) out->both_sides |= found->path[i]->both_sides;

@@ -3,8 +3,9 @@
 #include "base/random.h"
 #include "pattern/pattern.h"
 #include "render/footprint.h"
+#include "render/surface_parts.h"
 
-enum { MOST_PARTS = 4, MOST_LAYERS = 12, DEEPEST_LEGS = 256, MOST_STRAIGHT = 4096 };
+enum { MOST_LAYERS = 12, DEEPEST_LEGS = 256, MOST_STRAIGHT = 4096 };
 /* Rays begin so far from their surface: some steps of the hierarchy's floats, and of doubles. */
 static double clearance(const SurfaceTracer *tracer, Vec3 point, double t) {
     return hierarchy_coarseness(tracer->compiled->hierarchy, point) + 1e-12 * vec3_length(point) + 1e-9 * t;
@@ -212,49 +213,43 @@ static SurfacePlace place_of(const Leg *leg, const SurfaceHit *hit) {
     return place;
 }
 
-/* `place` is what the parts point at. A texture that is even has no use for it. */
-static size_t parts_of(const Leg *leg, const SurfaceHit *hit, SurfacePlace *place, TexturePart parts[MOST_PARTS]) {
-    if (hit->look->even) {
-        parts[0].texture = hit->look->texture;
-        parts[0].weight = 1;
-        return 1;
-    }
-    *place = place_of(leg, hit);
-    return texture_parts(hit->look->texture, place, parts, MOST_PARTS);
+/* A texture that is even has no use for its place. */
+static void looks_of(const Leg *leg, const SurfaceHit *hit, SurfaceParts *looks) {
+    SurfacePlace place = {.space = &hit->space};
+    if (hit->share_count || !hit->look->even) place = place_of(leg, hit);
+    surface_parts_find(hit, &place, looks);
 }
 
 static Outcome see_surface(SurfaceTracer *tracer, const Leg *leg, const SurfaceHit *hit, bool lit_already) {
-    SurfacePlace place;
-    TexturePart parts[MOST_PARTS];
-    size_t count = parts_of(leg, hit, &place, parts);
+    SurfaceParts looks;
+    looks_of(leg, hit, &looks);
     Meeting m = {.leg = leg, .hit = hit, .point = cone_point(&leg->cone, hit->t), .width = cone_diameter(&leg->cone, hit->t), .lit_already = lit_already,
                  .clear = clearance(tracer, cone_point(&leg->cone, hit->t), hit->t), .curvature = (double)NAN,
                  .seed = random_mix(tracer->seed + (uint64_t)leg->level)};
     Outcome out = {{0, 0, 0}, {0, 0, 0}};
-    for (size_t i = 0; i < count; i++) {
-        m.part = &parts[i];
+    for (size_t i = 0; i < looks.count; i++) {
+        m.part = &looks.parts[i];
         Outcome one = see_part(tracer, &m);
-        out.light = vec3f_madd(out.light, one.light, (float)parts[i].weight);
-        out.straight = vec3f_madd(out.straight, one.straight, (float)parts[i].weight);
+        out.light = vec3f_madd(out.light, one.light, (float)m.part->weight);
+        out.straight = vec3f_madd(out.straight, one.straight, (float)m.part->weight);
     }
     return out;
 }
 
 void surface_glance(const Cone *cone, const SurfaceHit *hit, Vec3f *color, Vec3 *normal) {
     Leg leg = surface_leg(cone);
-    SurfacePlace place;
-    TexturePart parts[MOST_PARTS];
-    size_t count = parts_of(&leg, hit, &place, parts);
+    SurfaceParts looks;
+    looks_of(&leg, hit, &looks);
     Meeting m = {.leg = &leg, .hit = hit};
     double heaviest = 0;
     *color = vec3f(0, 0, 0);
-    for (size_t i = 0; i < count; i++) {
-        m.part = &parts[i];
+    for (size_t i = 0; i < looks.count; i++) {
+        m.part = &looks.parts[i];
         read_layers(&m, 0);
         for (int k = 0; k < m.layer_count; k++)
-            *color = vec3f_madd(*color, vec3f_mul(m.layers[k].color, m.layers[k].above), m.layers[k].opaque * (float)parts[i].weight);
-        if (!(parts[i].weight > heaviest)) continue;
-        heaviest = parts[i].weight;
+            *color = vec3f_madd(*color, vec3f_mul(m.layers[k].color, m.layers[k].above), m.layers[k].opaque * (float)m.part->weight);
+        if (!(m.part->weight > heaviest)) continue;
+        heaviest = m.part->weight;
         *normal = m.layers[0].normal;
     }
 }

@@ -1,6 +1,7 @@
-#include "base/random.h"
-#include "pattern/pattern.h"
 #include "render/surface.h"
+
+#include "base/random.h"
+#include "render/surface_parts.h"
 
 static float most_of(Vec3f c) { return float_max(c.x, float_max(c.y, c.z)); }
 
@@ -23,22 +24,21 @@ void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit) {
 }
 
 /* What a surface lets through of light: of each layer filter × pigment + transmit. */
-static Vec3f filtered(const Texture *texture, const Ray *ray, const SurfaceHit *hit) {
-    enum { MOST_PARTS = 4 };
-    TexturePart parts[MOST_PARTS];
-    if (hit->look->even) parts[0].texture = texture, parts[0].weight = 1;
+static Vec3f filtered(const Ray *ray, const SurfaceHit *hit) {
     SurfacePlace place = {.point = vec3_madd(ray->origin, ray->direction, hit->t), .normal = hit->normal, .space = &hit->space,
                           .surface = {.direction = ray->direction, .uv = {hit->uv.u, hit->uv.v}}};
-    size_t count = hit->look->even ? 1 : texture_parts(texture, &place, parts, MOST_PARTS);
+    SurfaceParts looks;
+    surface_parts_find(hit, &place, &looks);
     Vec3f sum = {0, 0, 0};
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < looks.count; i++) {
+        const TexturePart *part = &looks.parts[i];
         Vec3f through = {1, 1, 1};
-        for (const Texture *layer = parts[i].texture; layer && most_of(through) > 0; layer = layer->under) {
-            Color c = texture_layer_color(&parts[i], layer, hit->normal);
+        for (const Texture *layer = part->texture; layer && most_of(through) > 0; layer = layer->under) {
+            Color c = texture_layer_color(part, layer, hit->normal);
             through = vec3f_mul(through, vec3f((float)(c.filter * c.red + c.transmit), (float)(c.filter * c.green + c.transmit),
                                                (float)(c.filter * c.blue + c.transmit)));
         }
-        sum = vec3f_madd(sum, through, (float)parts[i].weight);
+        sum = vec3f_madd(sum, through, (float)part->weight);
     }
     return sum;
 }
@@ -59,7 +59,7 @@ static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from,
         SurfaceHit hit;
         if (!hierarchy_glimpse(compiled->hierarchy, RAY_SHADOWS, ray, from, distance, &hit)) return through;
         if (hit.look->opaque) break;
-        through = vec3f_mul(through, filtered(hit.look->texture, ray, &hit));
+        through = vec3f_mul(through, filtered(ray, &hit));
         if (hit.interior && surface_enclosure(enclosures, count, &hit) >= 0)
             through = vec3f_mul(through, surface_faded(hit.interior, hit.t - begun));
         if (hit.interior && hit.interior->caustics != 0)

@@ -291,6 +291,7 @@ typedef struct MeshData {
     const struct Texture *const *textures;  /* texture_list */
     size_t texture_count;
     const uint32_t *triangle_textures;      /* index into textures for each triangle; NULL: the object's texture */
+    const uint32_t (*corner_textures)[3];   /* the same for each corner, between which they blend; NULL: one for each triangle */
     Vec3 inside_vector;                     /* counts triangles along it to tell the inside; zero: none */
     const Vec3 *height_vectors;             /* per vertex; NULL: unit normals */
     const Vec3 *w_vectors;                  /* per vertex <w0, w1, 0>; NULL: the mapping's */
@@ -367,6 +368,7 @@ struct Object {
     Span span;
     uint8_t kind; /* ObjectKind */
     bool no_shadow : 1, no_image : 1, inverse : 1, no_reflection : 1, double_illuminate : 1;
+    bool cutaway : 1; /* surfaces in it without a texture have those of what holds the place */
     uint16_t depth; /* objects within each other, this one included; at most OBJECT_DEEPEST */
     const Affine *place;    /* object space → parent's space; NULL: the same */
     const Texture *texture; /* NULL: the parent's, at last the default */

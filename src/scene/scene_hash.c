@@ -314,12 +314,14 @@ Hash128 object_hash(const Object *o) {
     hash_add_hash(&h, object_geometry_hash(o));
     add_texture(&h, o->texture);
     hash_add_u64(&h, (uint64_t)o->no_shadow | (uint64_t)o->no_image << 1 | (uint64_t)(o->rest && o->rest->hollow) << 2 |
-                         (uint64_t)o->no_reflection << 3 | (uint64_t)o->double_illuminate << 4);
+                         (uint64_t)o->no_reflection << 3 | (uint64_t)o->double_illuminate << 4 | (uint64_t)o->cutaway << 5);
     if (o->rest) add_texture(&h, o->rest->interior_texture);
     if (o->rest && o->rest->interior) hash_add_hash(&h, o->rest->interior->hash);
     if (object_has_group(o)) hash_add_hash(&h, hashed_group(o->as.group)->hash);
     if (o->kind == OBJECT_TRIANGLES && o->as.mesh->triangle_textures) {
         hash_add(&h, o->as.mesh->triangle_textures, o->as.mesh->triangle_count * sizeof(uint32_t));
+        if (o->as.mesh->corner_textures)
+            hash_add(&h, o->as.mesh->corner_textures, o->as.mesh->triangle_count * sizeof *o->as.mesh->corner_textures);
         for (size_t i = 0; i < o->as.mesh->texture_count; i++) add_texture(&h, o->as.mesh->textures[i]);
     }
     return h;

@@ -228,7 +228,7 @@ static void add_mesh(const Printer *p, const MeshData *m) {
     strbuf_addf(p->out, " vertices %zu triangles %zu", m->vertex_count, m->triangle_count);
     if (m->normals) strbuf_addf(p->out, " normals %zu", m->normal_count);
     if (m->uvs) strbuf_addf(p->out, " uvs %zu", m->uv_count);
-    if (m->triangle_textures) strbuf_addf(p->out, " textures %zu", m->texture_count);
+    if (m->triangle_textures) strbuf_addf(p->out, " textures %zu%s", m->texture_count, m->corner_textures ? " blended" : "");
     add_flag(p, "height_vectors", m->height_vectors != NULL);
     add_flag(p, "w_vectors", m->w_vectors != NULL);
 }
@@ -299,6 +299,7 @@ static void print_object(Printer *p, const Object *o) {
     add_flag(p, "inverse", o->inverse);
     add_flag(p, "no_reflection", o->no_reflection);
     add_flag(p, "double_illuminate", o->double_illuminate);
+    add_flag(p, "cutaway_textures", o->cutaway);
     add_inert(p, object_inert(o));
     end_line(p);
     p->depth++;

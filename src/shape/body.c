@@ -83,6 +83,40 @@ bool body_inside(const Body *body, Vec3 point) {
     return vec3_is_finite(point) && holds(body, point, &budget);
 }
 
+/* ---- textures of what holds a point ---- */
+
+typedef struct TextureSearch {
+    BodyTexture *out;
+    size_t count, most;
+    uint64_t budget;
+} TextureSearch;
+
+static bool has_texture(const Object *object) {
+    return object->texture || (object->kind == OBJECT_TRIANGLES && object->as.mesh->triangle_textures);
+}
+
+static void gather_textures(TextureSearch *search, const Body *body, const Object *object, Vec3 p, const BodyTexture *outer, const Transform *place) {
+    const BodyTexture own = object->texture ? (BodyTexture){object->texture, *place} : *outer;
+    if (!object_has_group(object)) {
+        if (own.texture && search->count < search->most) search->out[search->count++] = own;
+        return;
+    }
+    size_t count = object->kind == OBJECT_DIFFERENCE && body->children.count ? 1 : body->children.count;
+    for (size_t i = 0; i < count && search->count < search->most && search->budget; i++) {
+        const BodyPlace *child = &body->children.items[i];
+        if (!place_holds(child, p, &search->budget)) continue;
+        const Transform inner = transform_then(&child->transform, place);
+        gather_textures(search, child->body, object->as.group->items[child->index], transform_point_back(&child->transform, p), &own, &inner);
+    }
+}
+
+size_t body_textures(const Body *body, const Object *object, Vec3 point, BodyTexture *out, size_t most) {
+    TextureSearch search = {out, 0, most, MOST_VISITS};
+    const Transform identity = transform_identity();
+    gather_textures(&search, body, object, point, &(BodyTexture){NULL, identity}, &identity);
+    return search.count;
+}
+
 /* ---- rays ---- */
 
 /* What the sets around a surface ask of a point of it, in their own space. */
@@ -98,6 +132,7 @@ typedef struct Filter {
 typedef struct Trail {
     const struct Trail *outer;
     const Object *object;
+    const Body *body;
     const Transform *place; /* NULL: the same space */
 } Trail;
 
@@ -147,21 +182,24 @@ static Vec3 moved_normal(const Transform *place, Vec3 normal) {
     return place ? vec3_normalize(transform_normal(place, normal)) : normal;
 }
 
-static bool has_texture(const Object *object) {
-    return object->texture || (object->kind == OBJECT_TRIANGLES && object->as.mesh->triangle_textures);
-}
-
 /* What the objects around the surface add, from the inside out. */
 static void walk_trail(const Trail *trail, BodyHit *hit) {
-    hit->looked = hit->filled = NULL;
+    hit->looked = hit->filled = hit->cut_object = NULL;
+    hit->cut = NULL;
     hit->looked_place = transform_identity();
     for (; trail; trail = trail->outer) {
         if (!hit->looked && has_texture(trail->object)) hit->looked = trail->object;
+        if (!hit->looked && trail->object->cutaway) {
+            hit->cut = trail->body;
+            hit->cut_object = trail->object;
+            hit->cut_place = transform_identity();
+        }
         if (!hit->filled && trail->object->rest && trail->object->rest->interior) hit->filled = trail->object;
         if (!trail->place) continue;
         hit->normal = moved_normal(trail->place, hit->normal);
         hit->flat = moved_normal(trail->place, hit->flat);
         if (hit->looked) hit->looked_place = transform_then(&hit->looked_place, trail->place);
+        if (hit->cut) hit->cut_place = transform_then(&hit->cut_place, trail->place);
     }
 }
 
@@ -249,7 +287,7 @@ static bool visit_body(const Visit *outer, const Body *body, const Object *objec
     double near = search->t_min, far = search->hit->t;
     if (!box_tree_clip(&body->bounds, ray, &near, &far) || !meets_guards(search, body, object, ray)) return false;
     const Filter clip = {outer->filters, body, 0, *ray, WITHIN_CLIPS};
-    const Trail trail = {outer->trail, object, place};
+    const Trail trail = {outer->trail, object, body, place};
     const Visit visit = {.search = search,
                          .flipped = outer->flipped != object->inverse,
                          .filters = body->clips.count ? &clip : outer->filters,

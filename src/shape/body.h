@@ -21,6 +21,9 @@ typedef struct BodyHit {
     const Object *looked; /* the innermost object around it that has a texture; NULL: none */
     Transform looked_place; /* from that one's space to the space of the ray */
     const Object *filled; /* the innermost that has an interior; NULL: none */
+    const Body *cut;        /* of the outermost object around it with `cutaway`, where nothing on the way has a texture; or NULL */
+    const Object *cut_object;
+    Transform cut_place;    /* from that one's space to the space of the ray; unset without it */
 } BodyHit;
 
 /* NULL for sets within sets without end. `object` must live as long as the tracer. */
@@ -34,6 +37,15 @@ const void *body_data(const Body *body);
 /* The nearest crossing with t_min < t < t_max, in the object's own space (its place is the caller's to apply). `object` may be any one
  * of this shape: its looks and those within it are what the hit names. */
 bool body_meet(const Body *body, const Object *object, const Ray *ray, double t_min, double t_max, BodyHit *hit);
+/* A texture of something that holds a place, and the space it stands in. */
+typedef struct BodyTexture {
+    const Texture *texture;
+    Transform place; /* to the space of the body that was asked */
+} BodyTexture;
+
+/* The textures of all parts that hold a point of the body's own space, as POV-Ray's `cutaway_textures` gathers them (measured):
+ * what a difference takes away does not count. At most `most`; returns how many. */
+size_t body_textures(const Body *body, const Object *object, Vec3 point, BodyTexture *out, size_t most);
 /* Whether the point of the object's own space is inside. */
 bool body_inside(const Body *body, Vec3 point);
 

@@ -46,21 +46,6 @@ static const Texture *texture_in_body(const BodyHit *body, bool inside) {
     return inside && looked->rest && looked->rest->interior_texture ? looked->rest->interior_texture : looked->texture;
 }
 
-<<<<<<< HEAD
-static void find_space(const Found *found, Transform own, int from, SurfaceHit *out) {
-    out->space = own;
-    for (int i = from; i >= 0; i--) {
-        const Transform place = item_place(found->path[i]);
-        out->space = transform_then(&out->space, &place);
-    }
-}
-
-/* The innermost object with a texture gives it, and its space, which nobody asks for where the look is even. */
-static void find_look(const ClusterSet *set, const Found *found, bool places, SurfaceHit *out) {
-    int i = found->depth - 1;
-    const Item *item = found->path[i];
-    const Texture *texture = NULL;
-=======
 static void place_in_scene(const Found *found, int depth, Transform *space) {
     for (int i = depth; i >= 0; i--) {
         const Transform place = item_place(found->path[i]);
@@ -117,63 +102,45 @@ static bool share_cut(const ClusterSet *set, const Found *found, const Ray *ray,
     return count > 0;
 }
 
-/* The innermost object with a texture gives it, and its space. */
-static void find_look(const ClusterSet *set, const Found *found, const Ray *ray, SurfaceHit *out) {
-    const Item *item = found->path[found->depth - 1];
-    const Texture *texture = NULL;
+/* The innermost object with a texture gives it, and its space, which nobody asks for where the look is even. */
+static void find_look(const ClusterSet *set, const Found *found, const Ray *ray, bool places, SurfaceHit *out) {
     int i = found->depth - 1;
-    out->look = NULL;
+    const Item *item = found->path[i];
+    const Texture *texture = NULL;
+    const MeshData *blended = NULL;
     out->share_count = 0;
->>>>>>> 5773040 (cutaway_textures; textures of triangles' corners blend; fonts are found without their suffix)
     if (found->cluster) {
         MetTriangle met = met_triangle(found);
         texture = texture_of_triangle(met.mesh, met.number);
+        if (met.mesh->corner_textures) blended = met.mesh;
     } else {
         texture = texture_in_body(&found->body, out->leaving);
     }
     out->look = texture ? look_table_find(&set->looks, texture) : NULL;
     if (out->look) {
-        if (out->look->even && !places) return;
+        if (out->look->even && !places && !blended) return;
         const Transform place = item_place(item);
-<<<<<<< HEAD
-        find_space(found, found->cluster ? place : transform_then(&found->body.looked_place, &place), i - 1, out);
-=======
-        out->look = look_table_find(&set->looks, texture);
         out->space = found->cluster ? place : transform_then(&found->body.looked_place, &place);
-        i--;
-        place_in_scene(found, i, &out->space);
-        if (found->cluster) {
-            MetTriangle met = met_triangle(found);
-            if (met.mesh->corner_textures) blend_corners(set, met.mesh, met.number, found->u, found->v, out);
-        }
+        place_in_scene(found, i - 1, &out->space);
+        if (blended) blend_corners(set, blended, met_triangle(found).number, found->u, found->v, out);
         order_shares(out);
->>>>>>> 5773040 (cutaway_textures; textures of triangles' corners blend; fonts are found without their suffix)
         return;
     }
     for (; i >= 0 && !out->look; i--) {
         const Item *at = found->path[i];
         out->look = out->leaving && at->inside ? at->inside : at->look;
         if (!out->look) continue;
-<<<<<<< HEAD
-        if (!out->look->even || places) find_space(found, at->look_place ? *at->look_place : item_place(at), i - 1, out);
+        if (out->look->even && !places) return;
+        out->space = at->look_place ? *at->look_place : item_place(at);
+        place_in_scene(found, i - 1, &out->space);
+        return;
+    }
+    if (!found->cluster && found->body.cut && share_cut(set, found, ray, out)) {
+        order_shares(out);
         return;
     }
     out->look = set->default_look;
     out->space = transform_identity();
-=======
-        out->space = at->look_place ? *at->look_place : item_place(at);
-    }
-    if (!out->look && !found->cluster && found->body.cut && share_cut(set, found, ray, out)) {
-        order_shares(out);
-        return;
-    }
-    if (!out->look) {
-        out->look = set->default_look;
-        out->space = transform_identity();
-        return;
-    }
-    place_in_scene(found, i, &out->space);
->>>>>>> 5773040 (cutaway_textures; textures of triangles' corners blend; fonts are found without their suffix)
 }
 
 /* ---- interiors ---- */
@@ -268,13 +235,8 @@ void hit_finish(const ClusterSet *set, Found *found, const Ray *ray, bool places
     out->leaving = vec3_dot(flat, ray->direction) > 0;
     out->flat = out->leaving ? vec3_negate(flat) : flat;
     out->normal = vec3_dot(normal, ray->direction) > 0 ? vec3_negate(normal) : normal;
-<<<<<<< HEAD
-    find_look(set, found, places, out);
-    if (places || !out->look->even) out->uv = hit_uv(found, vec3_madd(ray->origin, ray->direction, found->t));
-=======
-    out->uv = hit_uv(found, vec3_madd(ray->origin, ray->direction, found->t));
-    find_look(set, found, ray, out);
->>>>>>> 5773040 (cutaway_textures; textures of triangles' corners blend; fonts are found without their suffix)
+    find_look(set, found, ray, places, out);
+    if (places || out->share_count || !out->look->even) out->uv = hit_uv(found, vec3_madd(ray->origin, ray->direction, found->t));
     find_filling(found, out);
     out->both_sides = out->solid->double_illuminate;
     for (int i = 0; i < found->depth; i++) out->both_sides |= found->path[i]->both_sides;

@@ -166,7 +166,7 @@ static void memory_runs_out_anywhere_without_harm(void **state) {
     VtsOptions o = options_of_size(40, 30);
     int refused = 0, done = 0;
     remove(((const Bench *)*state)->output);
-    for (size_t limit = 1 << 16; limit < (size_t)1 << 28; limit += limit / 2) {
+    for (size_t limit = 1 << 16; limit < (size_t)1 << 29; limit += limit / 2) {
         o.memory_limit = limit;
         bench_write(*state, meadow);
         const Bench *b = *state;

@@ -247,7 +247,7 @@ static void make_host(ParserHost *host, Source *s);
 static const Node *slow_head(Source *outer, Frame *f, uint32_t at, uint32_t *next) {
     Source inner;
     Parser p;
-    ParserHost host;
+    ParserHost host = {0};
     source_init(&inner, outer->ev, &p, &host, f, at);
     p.block = outer->parser->block;
     p.depth = outer->parser->depth;
@@ -328,7 +328,7 @@ static void begin_call(Source *s, Frame *from, const Macro *macro, Span name_spa
     Eval *ev = s->ev;
     Source inner;
     Parser p;
-    ParserHost host;
+    ParserHost host = {0};
     NodeList arguments = {0};
     source_init(&inner, ev, &p, &host, from, from->at);
     inner.at_start = false;

@@ -14,6 +14,14 @@ static void read_ior(Reader *reader, const Word *word, void *target) {
     ((Interior *)target)->ior = ior;
 }
 
+/* Kept, and light is not yet parted into its colours. */
+static void read_dispersion(Reader *reader, const Word *word, void *target) {
+    Interior *interior = target;
+    if (!word_arguments(reader, word, 1, 1) || !word_float(reader, word, 0, &interior->dispersion)) return;
+    if (!(interior->dispersion > 0)) reader_error(reader, word->arguments[0].span, "'%s' must be greater than 0, found %g", word->text, interior->dispersion);
+    else if (interior->dispersion != 1) inert_add(reader->context, &interior->inert, word->text, word->span);
+}
+
 static void read_samples(Reader *reader, const Word *word, void *target) {
     enum { MOST_DISPERSION_SAMPLES = 1000 };
     int samples;
@@ -24,7 +32,7 @@ static void read_samples(Reader *reader, const Word *word, void *target) {
 static const WordRule rules[] = {
     {"ior", WORD_CUSTOM, 0, read_ior, false},
     {"caustics", WORD_FLOAT, FIELD(caustics), NULL, false},
-    {"dispersion", WORD_POSITIVE, FIELD(dispersion), NULL, false},
+    {"dispersion", WORD_CUSTOM, 0, read_dispersion, false},
     {"dispersion_samples", WORD_CUSTOM, 0, read_samples, false},
     {"fade_distance", WORD_FLOAT, FIELD(fade_distance), NULL, false},
     {"fade_power", WORD_FLOAT, FIELD(fade_power), NULL, false},

@@ -74,7 +74,9 @@ static void read_looks_like(Reader *reader, const Word *word, void *target) {
 }
 
 static void read_projected(Reader *reader, const Word *word, void *target) {
-    ((LightDraft *)target)->light.projected_through = read_like(reader, word);
+    Light *light = &((LightDraft *)target)->light;
+    light->projected_through = read_like(reader, word);
+    inert_add(reader->context, &light->inert, word->text, word->span);
 }
 
 #define FIELD(name) offsetof(LightDraft, light.name)
@@ -97,7 +99,7 @@ static const WordRule rules[] = {
     {"jitter", WORD_MARK, FIELD(jitter), NULL, false},
     {"circular", WORD_MARK, FIELD(circular), NULL, false},
     {"orient", WORD_FLAG, FIELD(orient), NULL, false},
-    {"area_illumination", WORD_FLAG, FIELD(area_illumination), NULL, false},
+    INERT("area_illumination"),
     {"looks_like", WORD_CUSTOM, 0, read_looks_like, false},
     {"projected_through", WORD_CUSTOM, 0, read_projected, false},
     INERT("goniometric"),

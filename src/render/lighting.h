@@ -13,8 +13,7 @@ typedef struct LightRay {
 /* From its middle: what a light without an area sends, and what the highlights and tones of all lights are calculated with. */
 LightRay light_ray(const Light *light, Vec3 point);
 
-/* Whether its shadows are soft: then a shadow is the mean over places of the light, and the tone that of light_ray() unless
- * light->area_illumination. */
+/* Whether its shadows are soft: then a shadow is the mean over places of the light, and the tone that of light_ray(). */
 bool light_is_area(const Light *light);
 /* The place of the light at (u, v) of the unit square as it is seen from the point: evenly spread (u, v) give POV-Ray's mean. The middle
  * for a light without an area. */

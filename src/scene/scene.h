@@ -572,7 +572,7 @@ struct Light {
     double radius, falloff, tightness; /* spot, degrees; 30, 45, 0; cylinder: lengths */
     Vec3 axis_u, axis_v;   /* area_light: its sides */
     int size_u, size_v;    /* rows of lights along both; 0: no area */
-    bool jitter, circular, orient, area_illumination;
+    bool jitter, circular, orient;
     const Object *looks_like, *projected_through; /* in the scene; or NULL */
     const LightGroup *group; /* shines on nothing else; NULL: on all */
     const InertNote *inert;

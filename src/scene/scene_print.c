@@ -485,7 +485,6 @@ static void print_light(Printer *p, const Light *light) {
         add_flag(p, "jitter", light->jitter);
         add_flag(p, "circular", light->circular);
         add_flag(p, "orient", light->orient);
-        add_flag(p, "area_illumination", light->area_illumination);
     }
     add_flag(p, "parallel", light->parallel && light->kind != LIGHT_PARALLEL);
     add_flag(p, "shadowless", light->shadowless);

@@ -80,11 +80,7 @@ def main():
         rows = [difference(scene, options, size, options.work or scratch) for scene in scenes]
     rows.sort(key=lambda row: -(9 if row[1] is None else row[1]))
     text = '\n'.join(table(rows)) + '\n'
-    if options.output:
-        with open(options.output, 'w', encoding='utf-8') as out:
-            out.write(text)
-    else:
-        print(text, end='')
+    programs.put(text, options.output)
 
 
 if __name__ == '__main__':

@@ -62,3 +62,12 @@ def vts(scene, out, size, options=(), program=VTS, threads=1, timeout=60):
         if not fetched(scratch, '.pfm', os.path.abspath(out)) and done.status == 0:
             done.status = 1
     return done
+
+
+def put(text, path):
+    """Writes a table to the file, or to the terminal where none is named."""
+    if path:
+        with open(path, 'w', encoding='utf-8') as out:
+            out.write(text)
+    else:
+        print(text, end='')

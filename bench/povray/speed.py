@@ -131,11 +131,7 @@ def main():
         return
     rows = [row for row in (bench.row(scene) for scene in scenes) if row]
     text = '\n'.join(table(rows, options.size)) + '\n'
-    if options.output:
-        with open(options.output, 'w', encoding='utf-8') as out:
-            out.write(text)
-    else:
-        print(text, end='')
+    programs.put(text, options.output)
 
 
 if __name__ == '__main__':

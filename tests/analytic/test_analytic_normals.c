@@ -67,11 +67,9 @@ static void predict(Vec3 light, double mean[NORMAL_RULES]) {
     for (int k = 0; k < NORMAL_RULES; k++) mean[k] = sum[k] / weight;
 }
 
-static Picture draw(const Bench *b, const char *setting, bool reference, Vec3 light, bool lit) {
-    static char text[4096];
+static Picture draw_text(const Bench *b, const char *text, int samples, bool reference) {
     VtsOptions o = options_of_size(64, 64);
-    o.reference_samples = 16;
-    snprintf(text, sizeof text, scene_text, setting, light.x, light.y, light.z, lit ? 0.0 : 1.0, lit ? DIFFUSE : 0.0);
+    o.reference_samples = samples;
     bench_write(b, text);
     VtsSession *session = vts_session_create(&o, NULL);
     assert_non_null(session);
@@ -80,6 +78,13 @@ static Picture draw(const Bench *b, const char *setting, bool reference, Vec3 li
     assert_int_equal(status, VTS_OK);
     vts_session_destroy(session);
     return picture_read(b->output);
+}
+
+static Picture draw(const Bench *b, const char *setting, bool reference, Vec3 light, bool lit) {
+    static char text[4096];
+    const int samples = 16;
+    snprintf(text, sizeof text, scene_text, setting, light.x, light.y, light.z, lit ? 0.0 : 1.0, lit ? DIFFUSE : 0.0);
+    return draw_text(b, text, samples, reference);
 }
 
 /* Where matter that glows covers pixels, what the lit one is to it: its light. */
@@ -135,17 +140,9 @@ static const char ball_text[] =
 
 static Picture draw_ball(const Bench *b, bool explicitly, bool reference) {
     static char text[4096];
-    VtsOptions o = options_of_size(64, 64);
-    o.reference_samples = 4;
+    const int samples = 4;
     snprintf(text, sizeof text, ball_text, explicitly);
-    bench_write(b, text);
-    VtsSession *session = vts_session_create(&o, NULL);
-    assert_non_null(session);
-    VtsStatus status = reference ? vts_reference(session, b->scene, b->output) : vts_render(session, b->scene, b->output);
-    if (status != VTS_OK) fputs(vts_diagnostics(session), stdout);
-    assert_int_equal(status, VTS_OK);
-    vts_session_destroy(session);
-    return picture_read(b->output);
+    return draw_text(b, text, samples, reference);
 }
 
 static void balls_shine_as_round_ones(void **state) {

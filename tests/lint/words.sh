@@ -58,7 +58,7 @@ library_names() {
   for file in stdlib/*.inc; do
     grep -qx "## $(basename "$file")" doc/reference/stdlib.md || continue
     sed -nE 's/^ *#macro +([A-Za-z0-9_]+).*/\1/p; s/^#declare +([A-Za-z0-9_]+) *= *function.*/\1/p' "$file" |
-      grep -vE '^(_|Arrays|Math|Trans|Shapes|Skies|Textures)_'
+      grep -vE '^(_|Arrays|Math|Trans|Shapes|Skies|Grass|Flowers|Fur|Ground|Materials|Wind|Textures)_'
   done
 }
 table_words doc/reference/stdlib.md > "$folder/library"

@@ -93,7 +93,6 @@ static const char *what_happens(const BuildContext *context, const char *word) {
         {"area_light", "is drawn as a point light"},
         {"mesh_camera", "is drawn as a perspective camera"},
         {"tiling wang", "is drawn as 'tiling plain'"},
-        {"wind_field", "is not modelled yet: nothing moves"},
     };
     for (size_t i = 0; i < VTS_ARRAY_COUNT(effects); i++)
         if (strcmp(effects[i].word, word) == 0) return effects[i].text;
@@ -370,7 +369,8 @@ const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context, double
                      .rainbow_count = draft->rainbows.count,
                      .default_texture = draft->first_default,
                      .settings = draft->settings,
-                     .clock = clock};
+                     .clock = clock,
+                     .time = clock};
     scene->settings.assumed_gamma = build_assumed_gamma(context);
     return scene;
 }

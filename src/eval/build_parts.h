@@ -60,7 +60,7 @@ const Finish *finish_over(const BuildContext *context, const Finish *base, const
 BlockBuilder build_interior; /* build_interior.c */
 
 /* ---- build_texture.c ---- */
-BlockBuilder build_texture, build_material, build_inert_value;
+BlockBuilder build_texture, build_material, build_wind_field;
 /* Reads a texture's items from the reader's position on; NULL after a report. */
 const Texture *texture_read(Reader *reader);
 /* interior_texture { … } over those before it, in the space that `place` maps from. */

@@ -100,7 +100,8 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
             (SkinTexel){.span = value->span, .texel = value->value.as.texel, .density = 1};
         return true;
     case VALUE_WIND_FIELD:
-        inert_add(reader->context, &draft->skin.inert, "wind_field", value->span);
+        if (draft->skin.wind) reader_error(reader, value->span, "'wind_field' stands twice in 'skin'");
+        draft->skin.wind = value->value.as.wind_field;
         return true;
     case VALUE_OBJECT: {
         Diagnostic *d = reader_error(reader, value->span, "a skin lies on a surface");

@@ -79,7 +79,7 @@ static const struct BlockWord {
     {"texel", build_texel},
     {"surface", build_surface},
     {"skin", build_skin},
-    {"wind_field", build_inert_value},
+    {"wind_field", build_wind_field},
     {"layer", NULL},
     {"phases", NULL},
     {"count", NULL},

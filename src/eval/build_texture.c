@@ -155,17 +155,6 @@ void read_interior_texture(Reader *reader, const Word *word, const Texture **tex
     *texture = texture_over(reader->context, texture_placed(reader->context, made, &back), *texture);
 }
 
-/* ---- wind_field: a note of what is not drawn ---- */
-
-bool build_inert_value(BuildContext *context, const EvalBlock *block, Value *out) {
-    const InertNote *note = NULL;
-    Reader reader = reader_begin(context, block);
-    if (!grammar_read(&reader, block->word->text)) return false;
-    if (block->count) inert_add(context, &note, block->word->text, block->word_span);
-    *out = (Value){.kind = VALUE_WIND_FIELD, .as.node = note};
-    return true;
-}
-
 /* ---- material ---- */
 
 static bool on_material_value(Reader *reader, const Argument *value, void *target) {

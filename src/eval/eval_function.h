@@ -23,6 +23,8 @@ bool known_function_takes(Eval *ev, const Node *call, const KnownFunction *funct
 /* lsystem_string(), lsystem_count() (eval_plant.c). */
 Value eval_lsystem_string(Eval *ev, const Node *call);
 Value eval_lsystem_count(Eval *ev, const Node *call);
+/* wind_at() (build_wind.c). */
+Value eval_wind_at(Eval *ev, const Node *call);
 
 /* A function that is nothing but one external. */
 Value external_function(Eval *ev, const Node *node, const TapeExternal *external);

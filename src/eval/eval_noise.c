@@ -135,6 +135,7 @@ static const KnownFunction known_functions[] = {
     {"fbm", 7, true, compile_fbm, NULL},
     {"lsystem_string", 1, false, NULL, eval_lsystem_string},
     {"lsystem_count", 2, false, NULL, eval_lsystem_count},
+    {"wind_at", 3, false, NULL, eval_wind_at},
 };
 
 const KnownFunction *known_function_find(Name name) {

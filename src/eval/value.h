@@ -71,6 +71,7 @@ typedef struct Value {
         const TexelDef *texel;
         const Surface *surface;
         const Skin *skin;
+        const WindField *wind_field;
         const EvalBlock *block;
         const void *node;
     } as;

@@ -3,6 +3,7 @@
 
 #include "base/random.h"
 #include "base/stopwatch.h"
+#include "grow/wind.h"
 #include "pattern/pattern.h"
 #include "render/skin_fold.h"
 #include "render/skin_rim.h"
@@ -181,7 +182,7 @@ static Vec3 noise_at(Vec3 foot, const NoiseJitter *jitter, uint32_t seed) {
 /* Streams of the noises, so that one jitter does not repeat in another. */
 enum { STREAM_COORDINATES = 0x11, STREAM_HEIGHT = 0x22, STREAM_DIRECTION = 0x33 };
 
-static SkinVertex make_vertex(const Skin *skin, const SurfaceMesh *mesh, size_t i, double top) {
+static SkinVertex make_vertex(const Skin *skin, const SurfaceMesh *mesh, size_t i, double top, double time) {
     const SkinMapping *mapping = &skin->mapping;
     const SkinJitter *jitter = &skin->jitter;
     Vec3 foot = mesh->vertices[i], normal = mesh->normals[i];
@@ -212,7 +213,9 @@ static SkinVertex make_vertex(const Skin *skin, const SurfaceMesh *mesh, size_t 
         tape_eval_once(mapping->w_function, in, w);
         out.w_foot = w[0], out.w_tip = w[1];
     }
-    out.height = vec3_scale(direction, length * top);
+    out.height = vec3_scale(direction, length);
+    if (skin->wind) out.height = wind_bend(out.height, wind_force(skin->wind, foot, time), skin->wind->stiffness);
+    out.height = vec3_scale(out.height, top);
     out.w_tip = out.w_foot + (out.w_tip - out.w_foot) * top;
     return out;
 }
@@ -285,9 +288,9 @@ static bool sheets_overlap(const CompiledSkin *skin) {
     return false;
 }
 
-static void make_cells(const Skin *skin, const SurfaceMesh *mesh, Arena *arena, CompiledSkin *out, DiagList *diags) {
+static void make_cells(const Skin *skin, const SurfaceMesh *mesh, double time, Arena *arena, CompiledSkin *out, DiagList *diags) {
     SkinVertex *vertex = arena_new_array(arena, SkinVertex, mesh->vertex_count);
-    for (size_t i = 0; i < mesh->vertex_count; i++) vertex[i] = make_vertex(skin, mesh, i, out->top);
+    for (size_t i = 0; i < mesh->vertex_count; i++) vertex[i] = make_vertex(skin, mesh, i, out->top, time);
     double repeat_u, repeat_v;
     repeats(&skin->mapping, mesh, &repeat_u, &repeat_v);
     out->cells = arena_new_array(arena, SkinCell, mesh->cell_count);
@@ -382,6 +385,15 @@ static double tallest_copy(const Skin *skin) {
     return jitter->present && scaled ? 1 + jitter->scale / 2 : 1;
 }
 
+/* The longest cell that still shows what changes along the surface: a quarter of the shortest wave. */
+static double longest_cell(const Skin *skin) {
+    const NoiseJitter *noise[] = {&skin->jitter.coordinates, &skin->jitter.height, &skin->jitter.direction};
+    double shortest = skin->wind ? wind_wavelength(skin->wind) : HUGE_VAL;
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(noise); i++)
+        if (noise[i]->amplitude != 0) shortest = fmin(shortest, noise[i]->scale);
+    return isfinite(shortest) ? shortest / 4 : 0;
+}
+
 bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, CompiledSkin *out) {
     SurfaceMesh mesh;
     ShapeRefusal refusal;
@@ -390,12 +402,12 @@ bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, Co
         diag_error(diags, skin->texels[MOST_PLACED_TEXELS].span, "a skin holds at most %d superimposed texels", MOST_PLACED_TEXELS);
         return false;
     }
-    SurfaceMeshOptions mesh_options = {.tolerance = 0.02 * skin->mapping.height};
+    SurfaceMeshOptions mesh_options = {.tolerance = 0.02 * skin->mapping.height, .longest_edge = longest_cell(skin)};
     if (!surface_mesh_build(skin->surface, &mesh_options, compiled->arena, &mesh, &refusal)) {
         diag_error(diags, refusal.span, "this surface cannot carry a skin: %s", refusal.reason);
         return false;
     }
-    make_cells(skin, &mesh, compiled->arena, out, diags);
+    make_cells(skin, &mesh, compiled->scene->time, compiled->arena, out, diags);
     out->texels = arena_new_array(compiled->arena, PlacedTexel, skin->texel_count);
     for (size_t i = 0; i < skin->texel_count; i++) {
         place_texel(skin, i, compiled, out);

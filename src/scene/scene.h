@@ -516,6 +516,20 @@ typedef struct SkinJitter {
     uint32_t seed;
 } SkinJitter;
 
+/* See grow/wind.h for the formula. */
+typedef struct WindField {
+    Span span;
+    Hash128 hash;
+    Vec3 direction;              /* unit */
+    double speed, strength;      /* scene units a second; 1 */
+    double gust_wavelength, gust_amplitude, gust_sharpness;
+    double turbulence_amplitude, turbulence_scale;
+    int turbulence_octaves;
+    uint32_t turbulence_seed;
+    double stiffness;            /* of what is blown at; 1 */
+    const Tape *function;        /* (x, y, z, t) → 3; NULL */
+} WindField;
+
 typedef struct Skin {
     Span span;
     Hash128 hash;
@@ -524,6 +538,7 @@ typedef struct Skin {
     size_t texel_count;
     SkinMapping mapping;
     SkinJitter jitter;
+    const WindField *wind;  /* bends the height vectors; NULL */
     const Texture *texture; /* over the layers' own; NULL */
     const InertNote *inert;
 } Skin;
@@ -645,6 +660,7 @@ typedef struct Scene {
     const Texture *default_texture;
     GlobalSettings settings;
     double clock;
+    double time;                      /* seconds: what winds run by */
     const NamedTexel *named_texels; /* by name */
     size_t named_texel_count;
 } Scene;

@@ -16,6 +16,7 @@ enum {
     KIND_TEXEL,
     KIND_SURFACE,
     KIND_SKIN,
+    KIND_WIND,
     KIND_NORMAL
 };
 
@@ -401,6 +402,16 @@ static void add_jitter(Hash128 *h, const SkinJitter *j) {
     hash_add_color(h, c->tint_b);
 }
 
+void wind_rehash(WindField *w) {
+    Hash128 h = hash_begin(KIND_WIND);
+    const double numbers[] = {w->speed, w->strength, w->gust_wavelength, w->gust_amplitude, w->gust_sharpness, w->turbulence_amplitude,
+                              w->turbulence_scale, w->turbulence_octaves, w->turbulence_seed, w->stiffness};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(numbers); i++) hash_add_double(&h, numbers[i]);
+    hash_add_vec3(&h, w->direction);
+    add_tape(&h, w->function);
+    w->hash = h;
+}
+
 void skin_rehash(Skin *skin) {
     Hash128 h = hash_begin(KIND_SKIN);
     hash_add_hash(&h, skin->surface->hash);
@@ -411,6 +422,8 @@ void skin_rehash(Skin *skin) {
     }
     add_mapping(&h, &skin->mapping);
     add_jitter(&h, &skin->jitter);
+    hash_add_u64(&h, skin->wind != NULL);
+    if (skin->wind) hash_add_hash(&h, skin->wind->hash);
     add_texture(&h, skin->texture);
     skin->hash = h;
 }

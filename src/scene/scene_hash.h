@@ -26,6 +26,7 @@ void object_group_settle(ObjectGroup *group);
 void layer_rehash(TexelLayer *layer);
 void texel_rehash(TexelDef *texel);
 void surface_rehash(Surface *surface);
+void wind_rehash(WindField *wind);
 void skin_rehash(Skin *skin);
 
 /* Shape and transform of an object without its looks. */

@@ -424,6 +424,22 @@ static void print_jitter(Printer *p, const SkinJitter *j) {
     end_line(p);
 }
 
+static void print_wind(Printer *p, const WindField *w) {
+    if (!w) return;
+    begin_line(p, "wind_field");
+    add_vector(p, "direction", w->direction);
+    add_number(p, "speed", w->speed);
+    add_number(p, "strength", w->strength);
+    if (w->gust_amplitude != 0)
+        strbuf_addf(p->out, " gust wavelength %g amplitude %g sharpness %g", w->gust_wavelength, w->gust_amplitude, w->gust_sharpness);
+    if (w->turbulence_amplitude != 0)
+        strbuf_addf(p->out, " turbulence amplitude %g scale %g octaves %d seed %u", w->turbulence_amplitude, w->turbulence_scale,
+                    w->turbulence_octaves, w->turbulence_seed);
+    add_number(p, "stiffness", w->stiffness);
+    add_flag(p, "function", w->function != NULL);
+    end_line(p);
+}
+
 static void print_skin(Printer *p, const Skin *skin) {
     begin_line(p, "skin");
     add_inert(p, skin->inert);
@@ -442,6 +458,7 @@ static void print_skin(Printer *p, const Skin *skin) {
     }
     print_mapping(p, &skin->mapping);
     print_jitter(p, &skin->jitter);
+    print_wind(p, skin->wind);
     print_texture(p, skin->texture);
     p->depth--;
 }

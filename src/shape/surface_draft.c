@@ -3,7 +3,7 @@
 #include "shape/surface_uv.h"
 
 /* Limits of `subdivide auto` under a deform. */
-enum { MOST_PASSES = 3, MOST_SPLITS = 32, MOST_CELLS = 2000000, SAMPLES = 4 };
+enum { MOST_PASSES = 3, MOST_SPLITS = 32, MOST_CELLS = 2000000, MOST_FINE_CELLS = 100000, SAMPLES = 4 };
 
 /* ---- patches ---- */
 
@@ -155,6 +155,28 @@ static void deform_draft(const Tape *tape, Arena *arena, SurfaceDraft *draft) {
     }
 }
 
+/* ---- cells no longer than asked ---- */
+
+static double longest_edge(const SurfaceDraft *draft) {
+    double longest = 0;
+    for (size_t i = 0; i < draft->cell_count; i++) {
+        const DraftCell *cell = &draft->cells[i];
+        for (int k = 0; k < cell->corner_count; k++) {
+            Vec3 a = draft->vertices.items[cell->vertex[k]].position;
+            Vec3 b = draft->vertices.items[cell->vertex[(k + 1) % cell->corner_count]].position;
+            longest = fmax(longest, vec3_length(vec3_sub(b, a)));
+        }
+    }
+    return longest;
+}
+
+static int parts_for_edges(const Surface *surface, const SurfaceDraft *draft, double longest) {
+    if (!(longest > 0) || surface->subdivide > 0 || draft->cell_count == 0) return 1;
+    double wanted = ceil(longest_edge(draft) * tessellate_stretch(&surface->transform.linear) / longest);
+    double most = floor(sqrt((double)MOST_FINE_CELLS / (double)draft->cell_count));
+    return (int)fmax(1, fmin(wanted, most));
+}
+
 /* ---- all of it ---- */
 
 static bool draft_parts(const Surface *surface, double tolerance, int parts, Arena *arena, SurfaceDraft *out,
@@ -200,6 +222,8 @@ bool surface_draft_build(const Surface *surface, const SurfaceMeshOptions *optio
         if (more == 1) break;
         parts *= more;
     }
+    int finer = parts_for_edges(surface, out, options->longest_edge);
+    if (finer > 1 && !draft_parts(surface, tolerance, parts * finer, arena, out, refusal)) return false;
     if (surface->deform) deform_draft(surface->deform, arena, out);
     transform_draft(&surface->transform, arena, out);
     *refusal = (ShapeRefusal){surface->span, "a point of the surface is not a finite number"};

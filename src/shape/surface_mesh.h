@@ -48,6 +48,7 @@ typedef struct SurfaceMesh {
 typedef struct SurfaceMeshOptions {
     double
         tolerance; /* > 0: largest distance of curved solids and deformed faces from the cells, scene units, for `subdivide` auto */
+    double longest_edge; /* > 0: cells of `subdivide` auto are cut until none is longer, or there are too many; scene units */
 } SurfaceMeshOptions;
 
 /* Builds the mesh in scene space in `arena`: tessellation, subdivision, deform, the surface's transform, in this order.

@@ -13,7 +13,7 @@ syn keyword vtsFunction cos cosh cube datetime defined degrees dimension_size di
 syn keyword vtsFunction inside int internal ln log lsystem_count lsystem_string max max_extent min min_extent mod perlin
 syn keyword vtsFunction pow prod radians rand seed select sin sinh sparse_convolution sqr sqrt str strcmp strlen strlwr
 syn keyword vtsFunction strupr substr sum tan tanh trace val vaxis_rotate vcross vdot vlength vnormalize vrotate vstr
-syn keyword vtsFunction vturbulence worley
+syn keyword vtsFunction vturbulence wind_at worley
 syn keyword vtsConstant clock clock_delta clock_on false final_clock final_frame frame_number image_height image_width
 syn keyword vtsConstant initial_clock initial_frame no now off on pi t true u v version x y yes z
 syn keyword vtsColor color colour rgb rgbf rgbft rgbt srgb srgbf srgbft srgbt

@@ -1,0 +1,110 @@
+/* Wind against its formula in long double, and what must hold whatever blows. */
+#include "base/random.h"
+#include "grow/wind.h"
+#include "tape/noise.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+
+#include <cmocka.h>
+
+static double draw(uint64_t i, uint32_t k, double low, double high) { return low + (high - low) * random_unit(random_hash(0x57494e44, i, k, 0)); }
+
+static WindField some_wind(uint64_t i) {
+    return (WindField){.direction = vec3_normalize(vec3(draw(i, 0, -1, 1), draw(i, 1, -0.3, 0.3), draw(i, 2, -1, 1))),
+                       .speed = draw(i, 3, -20, 20), .strength = draw(i, 4, 0, 3), .gust_wavelength = draw(i, 5, 0.1, 50),
+                       .gust_amplitude = draw(i, 6, 0, 1), .gust_sharpness = draw(i, 7, 0.2, 6), .turbulence_amplitude = draw(i, 8, 0, 1),
+                       .turbulence_scale = draw(i, 9, 0.1, 30), .turbulence_octaves = 1 + (int)(i % 5), .turbulence_seed = (uint32_t)i,
+                       .stiffness = draw(i, 10, 0.1, 10)};
+}
+
+static Vec3 some_place(uint64_t i, uint32_t k) { return vec3(draw(i, k, -100, 100), draw(i, k + 1, -5, 5), draw(i, k + 2, -100, 100)); }
+
+static void gusts_follow_the_formula(void **state) {
+    (void)state;
+    for (uint64_t i = 0; i < 10000; i++) {
+        WindField w = some_wind(i);
+        w.turbulence_amplitude = 0;
+        Vec3 p = some_place(i, 20), d = w.direction;
+        double t = draw(i, 30, 0, 60);
+        long double s = (long double)p.x * d.x + (long double)p.y * d.y + (long double)p.z * d.z - (long double)w.speed * t;
+        long double wave = (1 + sinl(2 * 3.14159265358979323846264338327950288L * s / w.gust_wavelength)) / 2;
+        long double along = w.strength * (1 + w.gust_amplitude * (2 * powl(wave, w.gust_sharpness) - 1));
+        Vec3 f = wind_force(&w, p, t);
+        long double most = fabsl(f.x - along * d.x) + fabsl(f.y - along * d.y) + fabsl(f.z - along * d.z);
+        assert_true(most < 1e-9L); /* s/λ up to 1e4 turns */
+    }
+}
+
+static void turbulence_is_a_sum_of_octaves_that_the_wind_carries(void **state) {
+    (void)state;
+    for (uint64_t i = 0; i < 2000; i++) {
+        WindField w = some_wind(i), calm = w;
+        calm.turbulence_amplitude = 0;
+        Vec3 p = some_place(i, 20);
+        double t = draw(i, 30, 0, 60);
+        Vec3 carried = vec3_madd(p, w.direction, -w.speed * t), sum = vec3_splat(0);
+        for (int k = 0; k < w.turbulence_octaves; k++) {
+            double frequency = pow(2, k) / w.turbulence_scale;
+            Vec3 n = noise_perlin3(vec3_scale(carried, frequency), w.turbulence_seed + (uint32_t)k);
+            sum = vec3_add(sum, vec3_scale(n, pow(0.5, k)));
+        }
+        Vec3 expected = vec3_add(wind_force(&calm, p, t), vec3_scale(sum, w.strength * w.turbulence_amplitude));
+        assert_true(vec3_length(vec3_sub(wind_force(&w, p, t), expected)) < 1e-9);
+        /* The same air later is further along the wind. */
+        Vec3 later = wind_force(&w, vec3_madd(p, w.direction, w.speed * 2.5), t + 2.5);
+        assert_true(vec3_length(vec3_sub(later, wind_force(&w, p, t))) < 1e-7);
+    }
+}
+
+static void bending_keeps_the_length_and_turns_towards_the_force(void **state) {
+    (void)state;
+    for (uint64_t i = 0; i < 10000; i++) {
+        Vec3 h = vec3_scale(some_place(i, 40), pow(10, draw(i, 50, -6, 4))), force = some_place(i, 60);
+        double stiffness = pow(10, draw(i, 51, -3, 3)), length = vec3_length(h);
+        Vec3 bent = wind_bend(h, force, stiffness);
+        assert_true(fabs(vec3_length(bent) - length) <= 1e-12 * length);
+        assert_true(vec3_dot(bent, force) >= vec3_dot(h, force) - 1e-12 * length * vec3_length(force));
+    }
+    Vec3 h = vec3(0, 2, 0), across = wind_bend(h, vec3(1, 0, 0), 1);
+    assert_true(fabs(across.x - sqrt(2)) < 1e-15 && fabs(across.y - sqrt(2)) < 1e-15); /* 45 degrees */
+    assert_memory_equal(&h, &(Vec3[]){wind_bend(h, vec3(0, -1, 0), 1)}, sizeof h); /* nothing is left of it */
+    assert_memory_equal(&h, &(Vec3[]){wind_bend(h, vec3(0, 0, 0), 1)}, sizeof h);
+    Vec3 none = wind_bend(vec3_splat(0), vec3(1, 0, 0), 1);
+    assert_true(vec3_length(none) == 0);
+}
+
+static void force_is_continuous_in_time(void **state) {
+    (void)state;
+    for (uint64_t i = 0; i < 2000; i++) {
+        WindField w = some_wind(i);
+        w.gust_sharpness = fmax(1, w.gust_sharpness);
+        Vec3 p = some_place(i, 20);
+        double t = draw(i, 30, 0, 60), step = 1e-7;
+        /* Gusts rise by at most 2π·sharpness·|speed|/λ a second, an octave of Perlin's noise by about 2 each length of its own. */
+        double steepest = w.strength * fabs(w.speed) * (2 * VTS_PI * w.gust_amplitude * w.gust_sharpness / w.gust_wavelength +
+                                                        6 * w.turbulence_amplitude * w.turbulence_octaves / w.turbulence_scale);
+        assert_true(vec3_length(vec3_sub(wind_force(&w, p, t + step), wind_force(&w, p, t))) <= steepest * step + 1e-10);
+    }
+}
+
+static void the_shortest_wave_is_known(void **state) {
+    (void)state;
+    WindField w = {.strength = 1, .gust_wavelength = 12, .gust_amplitude = 0.5, .turbulence_amplitude = 0.2, .turbulence_scale = 16, .turbulence_octaves = 3};
+    assert_true(wind_wavelength(&w) == 4);
+    w.turbulence_amplitude = 0;
+    assert_true(wind_wavelength(&w) == 12);
+    w.gust_amplitude = 0;
+    assert_true(isinf(wind_wavelength(&w)));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gusts_follow_the_formula),
+        cmocka_unit_test(turbulence_is_a_sum_of_octaves_that_the_wind_carries),
+        cmocka_unit_test(bending_keeps_the_length_and_turns_towards_the_force),
+        cmocka_unit_test(force_is_continuous_in_time),
+        cmocka_unit_test(the_shortest_wave_is_known),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,331 @@
+#include "terrain/ground_mesh.h"
+
+#include "terrain/ground_nodes.h"
+
+enum { MOST_PASSES = 6 };
+
+typedef struct Refinement {
+    const GroundSource *source;
+    const GroundErrors *errors;
+    const GroundDetail *detail;
+    GroundNodes nodes;
+    uint32_t right, bottom, last; /* of the map, and of the square of all triangles; in parts */
+} Refinement;
+
+/* Nodes: the ends of the longest side, and the right angle. */
+typedef struct Triangle {
+    uint32_t a, b, apex;
+} Triangle;
+
+static const GroundNode *node(const Refinement *r, uint32_t index) { return &r->nodes.items[index]; }
+
+static uint32_t distance(uint32_t a, uint32_t b) { return a > b ? a - b : b - a; }
+
+/* ---- which are halved ---- */
+
+/* A node that is to be a corner needs those at the right angles of the triangles that it halves. */
+static void activate(Refinement *r, uint32_t x, uint32_t y);
+
+static void need(Refinement *r, int64_t x, int64_t y) {
+    if (x >= 0 && y >= 0 && x <= r->last && y <= r->last) activate(r, (uint32_t)x, (uint32_t)y);
+}
+
+static void need_parents(Refinement *r, int64_t x, int64_t y) {
+    int64_t bits = x | y, s = bits & -bits;
+    bool odd_x = x & s, odd_y = y & s;
+    if (!odd_y) need(r, x, y - s), need(r, x, y + s);
+    else if (!odd_x) need(r, x - s, y), need(r, x + s, y);
+    else {
+        /* The middle of a square: its diagonal is longest between corners of an even sum, the right angles are the others. */
+        int64_t even = ((x - s) / (2 * s) + (y - s) / (2 * s)) % 2 == 0;
+        need(r, x - s, even ? y + s : y - s);
+        need(r, x + s, even ? y - s : y + s);
+    }
+}
+
+static void activate(Refinement *r, uint32_t x, uint32_t y) {
+    uint32_t index = ground_node_find(&r->nodes, x, y);
+    if (index != GROUND_NO_NODE) return;
+    index = ground_node_add(&r->nodes, x, y);
+    r->nodes.items[index].corner = true;
+    need_parents(r, x, y);
+}
+
+/* The square of posts, or the part of one below them, that the triangle lies in. */
+typedef struct Around {
+    int level, column, row;
+    bool diagonal; /* the triangle is half of it; else a quarter, on one of its sides */
+} Around;
+
+static int log2_of(uint32_t power) {
+    int n = 0;
+    while (power >>= 1) n++;
+    return n;
+}
+
+static Around around(const Refinement *r, const Triangle *t) {
+    const GroundNode *a = node(r, t->a), *b = node(r, t->b), *c = node(r, t->apex);
+    uint32_t side = distance(a->x, b->x);
+    if (distance(a->y, b->y) > side) side = distance(a->y, b->y);
+    uint32_t x = a->x < b->x ? a->x : b->x, y = a->y < b->y ? a->y : b->y;
+    bool diagonal = a->x != b->x && a->y != b->y;
+    /* Of a triangle on a side the right angle is the middle of its square. */
+    if (a->x == b->x && c->x < x) x -= side;
+    if (a->y == b->y && c->y < y) y -= side;
+    return (Around){log2_of(side) - GROUND_PART_BITS, (int)(x / side), (int)(y / side), diagonal};
+}
+
+/* Below the posts the ground is bilinear: its twist falls by four with each level. */
+static double error_between_posts(const Refinement *r, const Around *at) {
+    int shift = -at->level, column = at->column >> shift, row = at->row >> shift;
+    double error = ground_cell_error(r->source, column, row);
+    return isnan(error) ? 0 : ldexp(error, -2 * (shift + !at->diagonal));
+}
+
+static bool is_empty(const Refinement *r, const Around *at) {
+    return at->level >= 1 ? ground_is_hole(r->errors, at->level, at->column, at->row)
+                          : isnan(ground_cell_error(r->source, at->column >> -at->level, at->row >> -at->level));
+}
+
+/* A triangle on the side of a square: what its first halving moves, and what its two quarters of the square have. */
+static double error_on_side(const Refinement *r, const Triangle *t, const Around *at) {
+    const GroundNode *a = node(r, t->a), *b = node(r, t->b), *c = node(r, t->apex);
+    double column = (a->x + b->x) / 2 / (double)GROUND_PARTS, row = (a->y + b->y) / 2 / (double)GROUND_PARTS;
+    double middle = ground_source_beyond(r->source, column, row);
+    double own = fabs(middle - 0.5 * (a->height + b->height)), error = 0;
+    uint32_t half = (uint32_t)GROUND_PARTS << (at->level - 1);
+    for (int k = 0; k < 2; k++) {
+        const GroundNode *end = k ? b : a;
+        int x = (int)((end->x < c->x ? end->x : c->x) / half), y = (int)((end->y < c->y ? end->y : c->y) / half);
+        const Around quarter = {at->level - 1, x, y, true};
+        if (is_empty(r, &quarter)) return HUGE_VAL;
+        error = fmax(error, at->level == 1 ? error_between_posts(r, &quarter) : ground_error(r->errors, at->level - 1, x, y));
+    }
+    return (isfinite(own) ? own : 0) + error;
+}
+
+static double triangle_error(const Refinement *r, const Triangle *t, const Around *at) {
+    if (at->level < 1) return error_between_posts(r, at);
+    double whole = ground_error(r->errors, at->level, at->column, at->row);
+    return at->diagonal ? whole : fmin(whole, error_on_side(r, t, at));
+}
+
+/* Some triangles straddle the map's border; those beyond do not count. */
+static bool is_outside(const Refinement *r, const Triangle *t) {
+    const GroundNode *n[3] = {node(r, t->a), node(r, t->b), node(r, t->apex)};
+    return (n[0]->x >= r->right && n[1]->x >= r->right && n[2]->x >= r->right) ||
+           (n[0]->y >= r->bottom && n[1]->y >= r->bottom && n[2]->y >= r->bottom);
+}
+
+static bool wants_halving(const Refinement *r, const Triangle *t) {
+    Around at = around(r, t);
+    if (is_empty(r, &at)) return false;
+    if (r->detail->every_post) return at.level >= 1;
+    if (at.level <= 1 - GROUND_PART_BITS) return false;
+    const GroundNode *n[3] = {node(r, t->a), node(r, t->b), node(r, t->apex)};
+    Vec3 centre = vec3_scale(vec3_add(vec3_add(n[0]->place, n[1]->place), n[2]->place), 1.0 / 3);
+    double length = r->source->spacing * ldexp(at.diagonal ? sqrt(2) : 1, at.level), radius = 0;
+    double error = triangle_error(r, t, &at) + r->source->bend * length * length, allowed, side;
+    for (int i = 0; i < 3; i++) radius = fmax(radius, vec3_length(vec3_sub(n[i]->place, centre)));
+    r->detail->allow(r->detail->context, centre, radius + error, &allowed, &side);
+    return error > allowed || (length > side && at.level >= 1);
+}
+
+static bool middle_of(const Refinement *r, const Triangle *t, uint32_t *x, uint32_t *y) {
+    const GroundNode *a = node(r, t->a), *b = node(r, t->b);
+    *x = a->x / 2 + b->x / 2 + (a->x & b->x & 1);
+    *y = a->y / 2 + b->y / 2 + (a->y & b->y & 1);
+    return !((a->x ^ b->x) & 1) && !((a->y ^ b->y) & 1);
+}
+
+/* The node at which the triangle is halved, or GROUND_NO_NODE. */
+static uint32_t halved_at(const Refinement *r, const Triangle *t) {
+    uint32_t x, y;
+    if (!middle_of(r, t, &x, &y)) return GROUND_NO_NODE;
+    uint32_t index = ground_node_find(&r->nodes, x, y);
+    return index != GROUND_NO_NODE && node(r, index)->corner ? index : GROUND_NO_NODE;
+}
+
+static bool too_many(const Refinement *r) { return r->detail->most_vertices && r->nodes.count > r->detail->most_vertices; }
+
+/* No deeper than twice the levels. */
+static void refine(Refinement *r, Triangle t) {
+    if (is_outside(r, &t) || too_many(r)) return;
+    uint32_t middle = halved_at(r, &t), x, y;
+    if (middle == GROUND_NO_NODE) {
+        if (!middle_of(r, &t, &x, &y) || !wants_halving(r, &t)) return;
+        activate(r, x, y);
+        middle = ground_node_find(&r->nodes, x, y);
+    }
+    refine(r, (Triangle){t.apex, t.a, middle});
+    refine(r, (Triangle){t.b, t.apex, middle});
+}
+
+/* ---- leaves become triangles of the mesh ---- */
+
+typedef struct Output {
+    Refinement *r;
+    Arena *scratch;
+    struct { Vec3 *items; size_t count, capacity; } vertices;
+    struct { uint32_t (*items)[3]; size_t count, capacity; } triangles;
+} Output;
+
+/* A corner of what the border leaves of a triangle. */
+typedef struct Corner {
+    int64_t x, y;
+    double height;
+} Corner;
+
+typedef struct Polygon {
+    Corner corner[5];
+    int count;
+} Polygon;
+
+/* Sides of triangles run along rows, columns or diagonals: where a border cuts them are whole parts. */
+static Corner cut(const Corner *a, const Corner *b, bool column, int64_t limit) {
+    int64_t from = column ? a->x : a->y, to = column ? b->x : b->y;
+    double t = (double)(limit - from) / (double)(to - from);
+    int64_t x = a->x + (b->x - a->x) * (limit - from) / (to - from), y = a->y + (b->y - a->y) * (limit - from) / (to - from);
+    return (Corner){x, y, a->height + (b->height - a->height) * t};
+}
+
+static Polygon clip(const Polygon *in, bool column, int64_t limit) {
+    Polygon out = {.count = 0};
+    for (int i = 0; i < in->count; i++) {
+        const Corner *a = &in->corner[i], *b = &in->corner[(i + 1) % in->count];
+        bool a_in = (column ? a->x : a->y) <= limit, b_in = (column ? b->x : b->y) <= limit;
+        if (a_in) out.corner[out.count++] = *a;
+        if (a_in != b_in && (column ? a->x : a->y) != limit && (column ? b->x : b->y) != limit)
+            out.corner[out.count++] = a_in ? cut(a, b, column, limit) : cut(b, a, column, limit);
+    }
+    return out;
+}
+
+static uint32_t vertex_of(Output *out, const Corner *corner) {
+    GroundNodes *nodes = &out->r->nodes;
+    uint32_t index = ground_node_find(nodes, (uint32_t)corner->x, (uint32_t)corner->y);
+    if (index == GROUND_NO_NODE) index = ground_node_add_at(nodes, (uint32_t)corner->x, (uint32_t)corner->y, corner->height);
+    GroundNode *n = &nodes->items[index];
+    if (n->vertex != GROUND_NO_NODE) return n->vertex;
+    n->vertex = (uint32_t)out->vertices.count;
+    *list_push(out->scratch, &out->vertices) = n->place;
+    return n->vertex;
+}
+
+static int64_t doubled_area(const Corner *a, const Corner *b, const Corner *c) {
+    return (b->x - a->x) * (c->y - a->y) - (c->x - a->x) * (b->y - a->y);
+}
+
+static void emit(Output *out, const Triangle *t) {
+    const Refinement *r = out->r;
+    const uint32_t index[3] = {t->a, t->b, t->apex};
+    Polygon polygon = {.count = 3};
+    bool cuts = false;
+    const Around at = around(r, t);
+    if (is_empty(r, &at)) return;
+    for (int i = 0; i < 3; i++) {
+        const GroundNode *n = node(r, index[i]);
+        if (isnan(n->height)) return;
+        polygon.corner[i] = (Corner){n->x, n->y, n->height};
+        cuts |= n->x > r->right || n->y > r->bottom;
+    }
+    if (cuts) polygon = clip(&polygon, true, r->right);
+    if (cuts) polygon = clip(&polygon, false, r->bottom);
+    for (int i = 2; i < polygon.count; i++) {
+        const Corner *a = &polygon.corner[0], *b = &polygon.corner[i - 1], *c = &polygon.corner[i];
+        if (doubled_area(a, b, c) == 0) continue;
+        uint32_t v0 = vertex_of(out, a), v1 = vertex_of(out, b), v2 = vertex_of(out, c);
+        uint32_t *triangle = *list_push(out->scratch, &out->triangles);
+        triangle[0] = v0, triangle[1] = v1, triangle[2] = v2;
+    }
+}
+
+static void emit_leaves(Output *out, Triangle t) {
+    if (is_outside(out->r, &t)) return;
+    uint32_t middle = halved_at(out->r, &t);
+    if (middle == GROUND_NO_NODE) {
+        emit(out, &t);
+        return;
+    }
+    emit_leaves(out, (Triangle){t.apex, t.a, middle});
+    emit_leaves(out, (Triangle){t.b, t.apex, middle});
+}
+
+/* ---- all of it ---- */
+
+/* 1 or -1: whether the normals of triangles as they wind look up. All do if one does: neither maps nor projections fold. */
+static double upwards(const Output *out, const Vec3 *normals) {
+    const GroundSource *s = out->r->source;
+    for (size_t i = 0; i < out->r->nodes.count; i++) {
+        const GroundNode *n = &out->r->nodes.items[i];
+        if (n->vertex == GROUND_NO_NODE) continue;
+        double column = fmin((double)n->x / GROUND_PARTS, s->columns - 1), row = fmin((double)n->y / GROUND_PARTS, s->rows - 1);
+        double up = vec3_dot(normals[n->vertex], vec3_sub(s->place(s->map, column, row, n->height + 1), n->place));
+        if (up != 0) return up > 0 ? 1 : -1;
+    }
+    return 1;
+}
+
+static const Vec3 *smooth_normals(const Output *out, Arena *arena) {
+    size_t count = out->vertices.count;
+    const Vec3 *p = out->vertices.items;
+    Vec3 *normals = arena_new_array(arena, Vec3, count);
+    for (size_t i = 0; i < out->triangles.count; i++) {
+        const uint32_t *t = out->triangles.items[i];
+        Vec3 n = vec3_cross(vec3_sub(p[t[1]], p[t[0]]), vec3_sub(p[t[2]], p[t[0]]));
+        for (int k = 0; k < 3; k++) normals[t[k]] = vec3_add(normals[t[k]], n);
+    }
+    double sign = upwards(out, normals);
+    for (size_t i = 0; i < count; i++) {
+        double length = vec3_length(normals[i]);
+        normals[i] = length > 0 ? vec3_scale(normals[i], sign / length) : vec3(0, 1, 0);
+    }
+    return normals;
+}
+
+static const Vec3 *places_as_uv(const Vec3 *places, size_t count, Arena *arena) {
+    Vec3 *uvs = arena_new_array(arena, Vec3, count);
+    for (size_t i = 0; i < count; i++) uvs[i] = vec3(places[i].x, places[i].z, 0);
+    return uvs;
+}
+
+static void keep_mesh(const Output *out, Arena *arena, MeshData *mesh) {
+    size_t count = out->vertices.count;
+    *mesh = (MeshData){.vertex_count = count, .normal_count = count, .uv_count = count, .triangle_count = out->triangles.count};
+    if (!count) return;
+    mesh->vertices = arena_copy(arena, out->vertices.items, count * sizeof(Vec3));
+    mesh->triangles = arena_copy(arena, out->triangles.items, out->triangles.count * sizeof *out->triangles.items);
+    mesh->normals = smooth_normals(out, arena);
+    mesh->uvs = places_as_uv(mesh->vertices, count, arena);
+}
+
+static void refine_all(Refinement *r, const Triangle roots[2]) {
+    for (int pass = 0; pass < MOST_PASSES; pass++) {
+        size_t before = r->nodes.count;
+        for (int i = 0; i < 2; i++) refine(r, roots[i]);
+        if (r->nodes.count == before || too_many(r)) return;
+    }
+}
+
+bool ground_mesh_build(const GroundSource *source, const GroundErrors *errors, const GroundDetail *detail, Arena *scratch, Arena *arena,
+                       MeshData *mesh) {
+    Refinement r = {.source = source, .errors = errors, .detail = detail, .last = (uint32_t)GROUND_PARTS << errors->levels};
+    r.right = (uint32_t)(source->columns - 1) << GROUND_PART_BITS;
+    r.bottom = (uint32_t)(source->rows - 1) << GROUND_PART_BITS;
+    *mesh = (MeshData){0};
+    ArenaMark mark = arena_mark(scratch);
+    ground_nodes_init(&r.nodes, source, scratch);
+    uint32_t corner[4];
+    for (uint32_t i = 0; i < 4; i++) {
+        corner[i] = ground_node_add(&r.nodes, (i & 1) * r.last, (i >> 1) * r.last);
+        r.nodes.items[corner[i]].corner = true;
+    }
+    const Triangle roots[2] = {{corner[0], corner[3], corner[1]}, {corner[3], corner[0], corner[2]}};
+    refine_all(&r, roots);
+    bool fits = !too_many(&r);
+    Output out = {.r = &r, .scratch = scratch};
+    for (int i = 0; i < 2 && fits; i++) emit_leaves(&out, roots[i]);
+    if (fits) keep_mesh(&out, arena, mesh);
+    arena_reset_to(scratch, mark);
+    return fits;
+}

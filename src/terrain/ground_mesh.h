@@ -1,0 +1,25 @@
+/* The ground as triangles, as many as are needed to be seen right and no more.
+ *
+ * A 4-8 mesh: right triangles, halved from the right angle to the middle of the longest side, and with them the neighbour across that
+ * side, so that edges always meet whole (no cracks, no skirts). Below the posts halving goes on along the bilinear ground between them. */
+#ifndef VTS_TERRAIN_GROUND_MESH_H
+#define VTS_TERRAIN_GROUND_MESH_H
+
+#include "scene/scene.h"
+#include "terrain/ground_errors.h"
+
+typedef struct GroundDetail {
+    /* How far triangles about `centre`, none of them further than `radius`, may be from the ground, and how long their sides may be, in
+     * metres; in the frame of the source's places. */
+    void (*allow)(const void *context, Vec3 centre, double radius, double *error, double *side);
+    const void *context;
+    bool every_post;      /* all posts, and nothing between them */
+    size_t most_vertices; /* 0: no limit */
+} GroundDetail;
+
+/* Builds the mesh in `arena`; its texture coordinates are x and z. Normals are those of the ground, averaged over the triangles around.
+ * False when there are more vertices than allowed; *out is then empty. `scratch` is reset to where it was. */
+bool ground_mesh_build(const GroundSource *source, const GroundErrors *errors, const GroundDetail *detail, Arena *scratch, Arena *arena,
+                       MeshData *out);
+
+#endif

@@ -17,3 +17,11 @@ endif()
 # OpenImageIO through its .pc file: Debian's exported CMake target names an include folder and a program of packages that
 # the library's own does not depend on, and CMake refuses both.
 pkg_check_modules(OPENIMAGEIO REQUIRED IMPORTED_TARGET OpenImageIO)
+
+# libgeotiff has neither a .pc file nor, on Debian, a config file; it reads TIFF through libtiff and looks codes up with PROJ.
+pkg_check_modules(TIFF REQUIRED IMPORTED_TARGET libtiff-4)
+pkg_check_modules(PROJ REQUIRED IMPORTED_TARGET proj)
+find_path(GEOTIFF_INCLUDE_DIR geotiff.h PATH_SUFFIXES geotiff libgeotiff REQUIRED)
+find_library(GEOTIFF_LIBRARY geotiff REQUIRED)
+add_library(GeoTIFF::GeoTIFF UNKNOWN IMPORTED)
+set_target_properties(GeoTIFF::GeoTIFF PROPERTIES IMPORTED_LOCATION ${GEOTIFF_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${GEOTIFF_INCLUDE_DIR})

@@ -1,8 +1,10 @@
 # vts_module(NAME [DEPENDS folders…] [LIBRARIES external…]): declares the static library of src/NAME.
-# The sources are all .c files of the folder, so that adding a file needs no edit here.
+# The sources are all .c files of the folder, so that adding a file needs no edit here; shims of foreign libraries, which are built
+# apart, are none of them.
 function(vts_module name)
   cmake_parse_arguments(ARG "" "" "DEPENDS;LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/${name}/*.c)
+  list(FILTER sources EXCLUDE REGEX "_shim\\.c$")
   list(APPEND sources ${CMAKE_SOURCE_DIR}/cmake/empty.c)
   add_library(vts_${name} STATIC ${sources})
   target_include_directories(vts_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src)

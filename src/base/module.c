@@ -1,7 +1,6 @@
 #include "base/module.h"
 
-#include "base/strbuf.h"
-
+#include <dlfcn.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -42,4 +41,36 @@ bool module_place(int place, const char *name, char path[MODULE_PATH_SIZE]) {
     if (known) memcpy(path, text.data, text.size + 1);
     strbuf_free(&text);
     return known && access(path, R_OK) == 0;
+}
+
+static int version_of(const void *table) {
+    int version;
+    memcpy(&version, table, sizeof version);
+    return version;
+}
+
+static const void *load_from(const char *path, const char *entry, int version, StrBuf *why) {
+    void *module = dlopen(path, RTLD_LAZY | RTLD_LOCAL | RTLD_NODELETE);
+    if (!module) {
+        const char *reason = dlerror();
+        strbuf_addf(why, "; %s", reason ? reason : path);
+        return NULL;
+    }
+    /* ISO C has no cast from object to function pointer; POSIX defines this copy. */
+    const void *(*function)(void) = NULL;
+    void *symbol = dlsym(module, entry);
+    if (symbol) memcpy(&function, &symbol, sizeof function);
+    const void *table = function ? function() : NULL;
+    bool fits = table && version_of(table) == version;
+    if (!fits) strbuf_addf(why, "; '%s' is of another version", path);
+    dlclose(module);
+    return fits ? table : NULL;
+}
+
+const void *module_load(const char *name, const char *entry, int version, StrBuf *why) {
+    const void *table = NULL;
+    char path[MODULE_PATH_SIZE];
+    for (int place = 0; place < MODULE_PLACES && !table; place++)
+        if (module_place(place, name, path)) table = load_from(path, entry, version, why);
+    return table;
 }

@@ -2,12 +2,17 @@
 #ifndef VTS_BASE_MODULE_H
 #define VTS_BASE_MODULE_H
 
-#include "base/common.h"
+#include "base/strbuf.h"
 
 enum { MODULE_PLACES = 5, MODULE_PATH_SIZE = 4096 };
 
 /* The path of the file `name` in the place-th of MODULE_PLACES folders: the one that $VTS_MODULE_DIR names, the running program's,
  * ../lib…/vts from there, where it was built, where it is installed. False where that folder is not known or has no such file. */
 bool module_place(int place, const char *name, char path[MODULE_PATH_SIZE]);
+
+/* What the function `entry` (of no arguments) of the shared library `name` gives: a table of functions that begins with an int, its
+ * version. NULL, with the reasons in `why`, where no such library is found in those folders that loads and has this version. It stays
+ * once loaded, so that nobody needs to remember it: cheap after the first time; thread-safe. */
+const void *module_load(const char *name, const char *entry, int version, StrBuf *why);
 
 #endif

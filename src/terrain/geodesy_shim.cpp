@@ -2,6 +2,7 @@
 #include "terrain/geodesy_shim.h"
 
 #include <GeographicLib/AlbersEqualArea.hpp>
+#include <GeographicLib/Ellipsoid.hpp>
 #include <GeographicLib/Geocentric.hpp>
 #include <GeographicLib/Geodesic.hpp>
 #include <GeographicLib/LambertConformalConic.hpp>
@@ -10,11 +11,13 @@
 #include <GeographicLib/UTMUPS.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <new>
 #include <type_traits>
 #include <vector>
 
 using GeographicLib::AlbersEqualArea;
+using GeographicLib::Ellipsoid;
 using GeographicLib::Geocentric;
 using GeographicLib::Geodesic;
 using GeographicLib::LambertConformalConic;
@@ -109,8 +112,16 @@ bool geodesy_map_init(GeodesyMap *map, GeodesyMapKind kind, double axis, double 
     switch (kind) {
     case GEODESY_TRANSVERSE_MERCATOR: place<TransverseMercator>(map, axis, flattening, scale); return true;
     case GEODESY_LAMBERT_CONFORMAL: place<LambertConformalConic>(map, axis, flattening, parallels[0], parallels[1], scale); return true;
-    case GEODESY_ALBERS: place<AlbersEqualArea>(map, axis, flattening, parallels[0], parallels[1], scale); return true;
-    case GEODESY_POLAR_STEREOGRAPHIC: place<PolarStereographic>(map, axis, flattening, scale); return true;
+    case GEODESY_ALBERS: {
+        double sign = parallels[0] + parallels[1] < 0 ? -1 : 1;
+        place<AlbersEqualArea>(map, axis, flattening, sign * parallels[0], sign * parallels[1], scale);
+        return true;
+    }
+    case GEODESY_POLAR_STEREOGRAPHIC:
+        place<PolarStereographic>(map, axis, flattening, scale > 0 ? scale : 1);
+        if (!(scale > 0)) map_of<PolarStereographic>(map).SetScale(std::abs(parallels[0]), 1);
+        return true;
+    case GEODESY_AUTHALIC: place<Ellipsoid>(map, axis, flattening); return true;
     }
     return false;
 } catch (...) {
@@ -123,7 +134,10 @@ bool geodesy_map_forward(const GeodesyMap *map, GeodesyMapKind kind, bool north,
     switch (kind) {
     case GEODESY_TRANSVERSE_MERCATOR: map_of<TransverseMercator>(map).Forward(meridian, latitude, longitude, to[0], to[1]); break;
     case GEODESY_LAMBERT_CONFORMAL: map_of<LambertConformalConic>(map).Forward(meridian, latitude, longitude, to[0], to[1]); break;
-    case GEODESY_ALBERS: map_of<AlbersEqualArea>(map).Forward(meridian, latitude, longitude, to[0], to[1]); break;
+    case GEODESY_ALBERS: /* GeographicLib 2.1 errs on cones about the south pole: they are mirrored */
+        map_of<AlbersEqualArea>(map).Forward(meridian, north ? latitude : -latitude, longitude, to[0], to[1]);
+        if (!north) to[1] = -to[1];
+        break;
     default: map_of<PolarStereographic>(map).Forward(north, latitude, longitude - meridian, to[0], to[1]); break;
     }
     if (!all_finite(to, 2)) return false;
@@ -139,7 +153,10 @@ bool geodesy_map_reverse(const GeodesyMap *map, GeodesyMapKind kind, bool north,
     switch (kind) {
     case GEODESY_TRANSVERSE_MERCATOR: map_of<TransverseMercator>(map).Reverse(meridian, x, y, to[0], to[1]); break;
     case GEODESY_LAMBERT_CONFORMAL: map_of<LambertConformalConic>(map).Reverse(meridian, x, y, to[0], to[1]); break;
-    case GEODESY_ALBERS: map_of<AlbersEqualArea>(map).Reverse(meridian, x, y, to[0], to[1]); break;
+    case GEODESY_ALBERS:
+        map_of<AlbersEqualArea>(map).Reverse(meridian, x, north ? y : -y, to[0], to[1]);
+        if (!north) to[0] = -to[0];
+        break;
     default:
         map_of<PolarStereographic>(map).Reverse(north, x, y, to[0], to[1]);
         to[1] += meridian;
@@ -151,3 +168,9 @@ bool geodesy_map_reverse(const GeodesyMap *map, GeodesyMapKind kind, bool north,
 } catch (...) {
     return false;
 }
+
+double geodesy_authalic(const GeodesyMap *map, double latitude) { return map_of<Ellipsoid>(map).AuthalicLatitude(latitude); }
+
+double geodesy_authalic_back(const GeodesyMap *map, double latitude) { return map_of<Ellipsoid>(map).InverseAuthalicLatitude(latitude); }
+
+double geodesy_authalic_radius(const GeodesyMap *map) { return std::sqrt(map_of<Ellipsoid>(map).Area() / (4 * VTS_PI)); }

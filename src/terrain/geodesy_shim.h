@@ -32,15 +32,22 @@ typedef enum GeodesyMapKind {
     GEODESY_TRANSVERSE_MERCATOR,
     GEODESY_LAMBERT_CONFORMAL, /* first and second parallel; scale on them */
     GEODESY_ALBERS,            /* likewise */
-    GEODESY_POLAR_STEREOGRAPHIC, /* scale at the pole */
+    GEODESY_POLAR_STEREOGRAPHIC, /* scale at the pole or, where that is 0, true scale at the first parallel */
+    GEODESY_AUTHALIC,            /* no map: authalic latitudes, see below */
 } GeodesyMapKind;
 
-/* Ellipsoid: semi-major axis and flattening. `parallels` are read for the conics only. False where no such map exists. */
+/* Ellipsoid: semi-major axis and flattening. False where no such map exists. */
 bool geodesy_map_init(GeodesyMap *map, GeodesyMapKind kind, double axis, double flattening, const double parallels[2], double scale);
 /* From latitude and longitude to x east of the `meridian`, y north: of the equator for transverse Mercator, of the latitude where the
- * cone's scale is least for conics, of the pole itself (`north`: which one) for polar maps. */
+ * cone's scale is least for conics, of the pole itself for polar maps. `north`: which pole that is; for Albers' cones, whether the sum of
+ * the parallels is 0 or more. */
 bool geodesy_map_forward(const GeodesyMap *map, GeodesyMapKind kind, bool north, double meridian, double latitude, double longitude, double out[2]);
 bool geodesy_map_reverse(const GeodesyMap *map, GeodesyMapKind kind, bool north, double meridian, double x, double y, double out[2]);
+
+/* The latitude on the sphere of the same area, by a map of kind GEODESY_AUTHALIC; the way back; that sphere's radius. */
+double geodesy_authalic(const GeodesyMap *map, double latitude);
+double geodesy_authalic_back(const GeodesyMap *map, double latitude);
+double geodesy_authalic_radius(const GeodesyMap *map);
 
 #ifdef __cplusplus
 }

@@ -17,7 +17,7 @@ typedef enum ProjectionKind {
     PROJECTION_MERCATOR,
     PROJECTION_WEB_MERCATOR,
     PROJECTION_LAMBERT_AZIMUTHAL, /* equal areas */
-    PROJECTION_EQUIRECTANGULAR,
+    PROJECTION_EQUIRECTANGULAR,   /* of a sphere with the ellipsoid's axis */
 } ProjectionKind;
 
 typedef struct ProjectionParameters {
@@ -25,17 +25,18 @@ typedef struct ProjectionParameters {
     double axis, flattening;     /* of the ellipsoid; axis 0: WGS84 */
     double unit;                 /* metres (geographic systems: degrees) of one unit; 0: 1 */
     double prime_meridian;       /* degrees east of Greenwich; longitudes below are counted from it */
-    double latitude, longitude;  /* of the projection's origin; polar: latitude 90 or -90 */
-    double parallels[2];         /* conics; the one of true scale of polar, Mercator and equirectangular maps, where scale is 0 */
-    double scale;                /* on the central meridian, at the parallel, at the pole; 0: 1 */
+    double latitude, longitude;  /* of the projection's origin; polar maps: 90 or -90, and the meridian that points down (up) from there */
+    double parallels[2];         /* of conics; the first: of true scale, for polar (where scale is 0), Mercator and equirectangular maps */
+    double scale;                /* on the central meridian, at the parallels, at the pole; 0: 1 */
     double false_east, false_north; /* metres */
 } ProjectionParameters;
 
 typedef struct Projection {
     ProjectionParameters parameters;
-    double shift[2]; /* metres: added to what the map gives, so that the origin is at the false easting and northing */
-    double constants[8]; /* of the kinds that are computed here */
-    GeodesyMap map;      /* of the others */
+    double meridian;   /* of the origin, from Greenwich */
+    double shift[2];   /* metres: added to what the map gives, so that the origin has the false easting and northing */
+    double constants[2]; /* of Lambert's azimuthal map: radius of the sphere, stretch to the east */
+    GeodesyMap map;
 } Projection;
 
 /* False, with a line of text in `error`, where the parameters make no map. */

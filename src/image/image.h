@@ -2,7 +2,7 @@
  *
  * In memory a picture is floats: named channels, interleaved, rows from the top. Colours are linear light and
  * multiplied by their alpha; files that store them otherwise (sRGB, unassociated alpha) are converted on the way.
- * PFM, PNM and PNG are read and written here; every other format goes through OpenImageIO, which is loaded when the first
+ * PFM and PNM are read and written here; every other format goes through OpenImageIO, which is loaded when the first
  * such picture is opened (see oiio_module.h).
  *
  * Errors: functions that can fail return false and append one line of text, without full stop and line end, to
@@ -75,7 +75,7 @@ ImageFormat image_format_of(const char *path);
  * nothing: for telling users before hours of rendering. */
 bool image_can_write(const char *path, StrBuf *error);
 
-/* Reads a picture into an uninitialised Image. The format is told by the file's content for PFM, PNM and PNG, else by
+/* Reads a picture into an uninitialised Image. The format is told by the file's content for PFM and PNM, else by
  * OpenImageIO. The first part of a file with several. */
 bool image_load(Image *image, const char *path, ImageReading reading, MemoryBudget *budget, StrBuf *error);
 

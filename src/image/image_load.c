@@ -1,7 +1,6 @@
 #include "image/image.h"
 
 #include "image/oiio_module.h"
-#include "image/png_file.h"
 #include "image/pnm.h"
 #include "image/srgb.h"
 #include "image/whole_file.h"
@@ -102,16 +101,6 @@ static bool load_with_oiio(Image *image, const char *path, ImageReading reading,
     return done;
 }
 
-static bool load_png(Image *image, const unsigned char *data, size_t size, const char *path, ImageReading reading, MemoryBudget *budget,
-                     StrBuf *error) {
-    OiioHeader header;
-    if (!png_file_decode(image, data, size, path, budget, &header, error)) return false;
-    image->stored_as = header.sample;
-    image->stored_linear = header.linear;
-    if (reading == IMAGE_AS_COLOUR) to_colour(image, &header);
-    return true;
-}
-
 bool image_load(Image *image, const char *path, ImageReading reading, MemoryBudget *budget, StrBuf *error) {
     *image = (Image){0};
     unsigned char magic[4];
@@ -121,14 +110,12 @@ bool image_load(Image *image, const char *path, ImageReading reading, MemoryBudg
     FILE *stream = fopen(path, "rb");
     size_t got = stream ? fread(magic, 1, sizeof magic, stream) : 0;
     if (stream) fclose(stream);
-    bool png = stream && png_file_recognizes(magic, got);
-    if (stream && got > 0 && !png && !pnm_recognizes(magic, got))
+    if (stream && got > 0 && !pnm_recognizes(magic, got))
         return load_with_oiio(image, path, reading, budget, error);
     size_t size;
     unsigned char *data = whole_file_read(path, &size, error);
     if (!data) return false;
-    bool done = png                        ? load_png(image, data, size, path, reading, budget, error)
-                : pnm_recognizes(data, size) ? pnm_decode(image, data, size, path, reading, budget, error)
+    bool done = pnm_recognizes(data, size) ? pnm_decode(image, data, size, path, reading, budget, error)
                                            : fail(error, path, "it is empty");
     free(data);
     return done;

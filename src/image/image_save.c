@@ -1,7 +1,6 @@
 #include "image/image.h"
 
 #include "image/oiio_module.h"
-#include "image/png_file.h"
 #include "image/pnm.h"
 #include "image/srgb.h"
 #include "image/whole_file.h"
@@ -169,14 +168,6 @@ static bool encode_and_write(const OiioPicture *picture, const char *path, StrBu
     return done;
 }
 
-static bool encode_png(const OiioPicture *picture, const char *path, StrBuf *error) {
-    char why[OIIO_ERROR_SIZE];
-    StrBuf file = {0};
-    bool done = png_file_encode(picture, &file, why) ? whole_file_replace(path, file.data, file.size, error) : fail(error, path, why);
-    strbuf_free(&file);
-    return done;
-}
-
 static bool is_colour_name(const char *name) { return strlen(name) == 1 && strchr("RGBAY", *name); }
 
 /* Past the largest half there is only infinity; a bright pixel stays finite. */
@@ -244,8 +235,7 @@ static bool save_codes(const Image *image, const char *path, const char *format,
                            true,
                            image->attributes,
                            image->attribute_count};
-    bool png = image_format_of(path) == IMAGE_FORMAT_PNG;
-    bool done = (png ? encode_png : encode_and_write)(&picture, path, error);
+    bool done = encode_and_write(&picture, path, error);
     free(codes);
     return done;
 }

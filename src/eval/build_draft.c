@@ -92,7 +92,6 @@ static const char *what_happens(const BuildContext *context, const char *word) {
     } effects[] = {
         {"area_light", "is drawn as a point light"},
         {"mesh_camera", "is drawn as a perspective camera"},
-        {"tiling wang", "is drawn as 'tiling plain'"},
     };
     for (size_t i = 0; i < VTS_ARRAY_COUNT(effects); i++)
         if (strcmp(effects[i].word, word) == 0) return effects[i].text;

@@ -146,6 +146,11 @@ static void read_share(Reader *reader, const Word *word, void *target) {
                      instance->density);
 }
 
+static void read_rotate(Reader *reader, const Word *word, void *target) {
+    InstanceJitter *instance = target;
+    instance->turned = word_arguments(reader, word, 1, 1) && word_float(reader, word, 0, &instance->rotate);
+}
+
 static void read_tint(Reader *reader, const Word *word, void *target) {
     InstanceJitter *instance = target;
     instance->tinted = word_arguments(reader, word, 2, 2) && word_color(reader, word, 0, &instance->tint_a) &&
@@ -154,7 +159,7 @@ static void read_tint(Reader *reader, const Word *word, void *target) {
 
 static const WordRule instance_rules[] = {
     {"displace", WORD_FLOAT, offsetof(InstanceJitter, displace), NULL, true},
-    {"rotate", WORD_FLOAT, offsetof(InstanceJitter, rotate), NULL, true},
+    {"rotate", WORD_CUSTOM, 0, read_rotate, true},
     {"scale", WORD_FLOAT, offsetof(InstanceJitter, scale), NULL, true},
     {"mirror", WORD_FLAG, offsetof(InstanceJitter, mirror), NULL, true},
     {"density", WORD_CUSTOM, 0, read_share, true},

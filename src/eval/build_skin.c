@@ -67,7 +67,7 @@ static void read_tiling(Reader *reader, const Word *word, void *target) {
     Word next;
     if (word->count == 0 && reader_take_word(reader, "plain", &next)) return;
     if (word->count == 0 && reader_take_word(reader, "wang", &next))
-        inert_add(reader->context, &((SkinDraft *)target)->skin.inert, "tiling wang", word->span);
+        ((SkinDraft *)target)->skin.wang = true;
     else
         reader_expect_word(reader, word, "plain or wang");
 }

@@ -34,6 +34,7 @@ typedef struct CompiledScene {
     size_t skin_count;
     const BoxTree *skin_tree; /* over the bounds of the skins */
     ExactSkins *exact;    /* the skins' geometry, for the reference; else NULL */
+    struct WangKept *wang; /* texels taken apart */
     BuiltTexel **texels;  /* every texel built, for the report */
     size_t texel_count;
     MarchSettings march, shadow_march;
@@ -69,6 +70,11 @@ bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, Co
 void skin_ask_voxels(CompiledSkin *skin, const CompileOptions *options, const CompiledScene *compiled);
 /* When the texels are built: what only they tell, and the hierarchy over the cells. False when Embree is out of memory. */
 bool skin_finish(CompiledSkin *skin, const CompileOptions *options, CompiledScene *compiled);
+/* Lays a family down as the next of the skin's texels, if there is anything in it: its seed, share and look, those of texel `index` of the scene's skin.
+ * How copies lie is left to the caller. skin_build.c */
+PlacedTexel *skin_place_family(CompiledSkin *skin, size_t index, const TexelDef *const *defs, size_t count, CompiledScene *compiled);
+/* The same by wang.h, for families of texels that are cyclic; false, after a warning, for others. skin_wang.c */
+bool skin_place_wang(CompiledSkin *skin, size_t index, const TexelDef *const *defs, size_t count, CompiledScene *compiled, DiagList *diags);
 /* The texel of a definition, made known at the first time; looks alone. */
 BuiltTexel *texel_ask(const TexelDef *def, CompiledScene *compiled);
 /* Its voxels, as fine as was asked for; or its exact geometry, for the reference. */

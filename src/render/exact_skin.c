@@ -216,7 +216,7 @@ static void shoot_copy(Shot *shot, const TexelCopy *copy, const Curve *curve, do
 static void shoot_tiles(Shot *shot, const Curve *curve, double s0) {
     const double hair = 1e-7;
     const PlacedTexel *placed = shot->placed;
-    unsigned repeat = placed->cyclic ? TEXEL_CYCLIC_Y : 0;
+    unsigned repeat = placed->cyclic || placed->turns ? TEXEL_CYCLIC_Y : 0;
     Box3 hull = curve_hull(curve);
     int64_t u0 = (int64_t)floor(hull.min.x + hair), u1 = (int64_t)floor(hull.max.x - hair);
     int64_t v0 = (int64_t)floor(hull.min.y + hair), v1 = (int64_t)floor(hull.max.y - hair);

@@ -13,6 +13,7 @@
 #include "render/beam_texel.h"
 #include "render/exact_texel.h"
 #include "render/look.h"
+#include "render/wang.h"
 #include "scene/scene.h"
 #include "shape/box_tree.h"
 #include "shape/surface_mesh.h"
@@ -64,10 +65,11 @@ typedef struct BuiltTexel {
     const BeamTexel *beam;    /* its triangles, for beams; NULL where there are none */
 } BuiltTexel;
 
-/* One `texel { … }` of a skin. */
+/* One `texel { … }` of a skin, or one part of it if the skin is tiled by wang.h. */
 typedef struct PlacedTexel {
     BuiltTexel *const *family; /* one, or those of `choose` */
     size_t family_size;
+    size_t blanks;       /* of wang: members that hold nothing here */
     Vec3f finest_extent; /* of the member with the smallest voxels, which sets the step */
     float finest_voxel;
     int levels;
@@ -76,6 +78,10 @@ typedef struct PlacedTexel {
     const Look *look;    /* over the layers' own; NULL */
     uint64_t seed;
     InstanceJitter jitter; /* all zero for cyclic texels but for the tint */
+    const WangBorders *borders; /* of wang: of the members that must fit; NULL: any do */
+    int turns;           /* of wang: 4 ways to lie, by quarters, 2 or 1; 0: not tiled so */
+    bool flips;          /* of wang: or mirrored */
+    double shift_u, shift_v; /* of wang: of the grid of tiles, 0 or 1/2 */
     bool alike;          /* every tile holds the same: one copy, cyclic, without tint or gaps */
     int reach;           /* how many tiles away a copy may still cover a point: 0 when copies stay in their tile */
     double overhang;     /* how far one may reach out of its tile, in tiles */
@@ -169,7 +175,7 @@ bool texel_copy_of(const PlacedTexel *placed, int64_t iu, int64_t iv, TexelCopy 
  * there is none there. */
 bool texel_copy_near(const PlacedTexel *placed, int64_t iu, int64_t iv, int k, TexelCopy *copy);
 /* Whether a cell shows anything of the texel: those of the rim only what may leave its tile. */
-static inline bool skin_cell_bears(const SkinCell *cell, const PlacedTexel *placed) { return placed->family_size && (!cell->rim || placed->reach); }
+static inline bool skin_cell_bears(const SkinCell *cell, const PlacedTexel *placed) { return placed->family_size && (!cell->rim || placed->overhang > 0); }
 /* The same two for what stands on a skin: without copies beyond its border. */
 bool skin_copy_of(const CompiledSkin *skin, const SkinCell *cell, const PlacedTexel *placed, int64_t iu, int64_t iv, TexelCopy *copy);
 bool skin_copy_near(const CompiledSkin *skin, const SkinCell *cell, const PlacedTexel *placed, int64_t iu, int64_t iv, int k, TexelCopy *copy);

@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-enum { LEAST_RESOLUTION = 8, LARGEST_AUTO_RESOLUTION = 512 };
+enum { LEAST_RESOLUTION = 8, LARGEST_AUTO_RESOLUTION = 512, MOST_SUPERIMPOSED = 8 };
 
 /* ---- texels ---- */
 
@@ -346,32 +346,43 @@ static double copy_overhang(const InstanceJitter *jitter) {
     return double_clamp(jitter->displace / 2 + half * largest - 0.5, 0, MOST_REACH);
 }
 
-static void place_texel(const Skin *skin, size_t index, CompiledScene *compiled, CompiledSkin *out) {
-    const SkinTexel *in = &skin->texels[index];
-    PlacedTexel *placed = &out->texels[index];
-    size_t family = in->texel->choice_count ? in->texel->choice_count : 1;
-    BuiltTexel **members = arena_new_array(compiled->arena, BuiltTexel *, family);
-    *placed = (PlacedTexel){.family = members, .density = in->density, .finest_voxel = INFINITY};
-    placed->seed = random_hash(skin->jitter.seed, index, 0, 0);
-    for (size_t k = 0; k < family; k++) {
-        const TexelDef *def = in->texel->choice_count ? in->texel->choices[k] : in->texel;
-        BuiltTexel *texel = texel_ask(def, compiled);
+static const Look *look_over(const Skin *skin, const SkinTexel *in, CompiledScene *compiled) {
+    const Texture *texture = in->texture ? in->texture : skin->texture;
+    if (!texture) return NULL;
+    Look *look = arena_new(compiled->arena, Look);
+    *look = look_from_texture(texture, &compiled->scene->settings);
+    return look;
+}
+
+PlacedTexel *skin_place_family(CompiledSkin *skin, size_t index, const TexelDef *const *defs, size_t count, CompiledScene *compiled) {
+    const SkinTexel *in = &skin->def->texels[index];
+    PlacedTexel *placed = &skin->texels[skin->texel_count];
+    BuiltTexel **members = arena_new_array(compiled->arena, BuiltTexel *, count);
+    *placed = (PlacedTexel){.family = members, .density = in->density, .finest_voxel = INFINITY, .look = look_over(skin->def, in, compiled)};
+    placed->seed = random_hash(skin->def->jitter.seed, index, 0, 0);
+    for (size_t k = 0; k < count; k++) {
+        BuiltTexel *texel = texel_ask(defs[k], compiled);
         if (texel->matter_count == 0) continue;
         members[placed->family_size++] = texel;
-        placed->cyclic |= (def->cyclic & (TEXEL_CYCLIC_X | TEXEL_CYCLIC_Z)) != 0;
-        texel->finest_seen = int_max(texel->finest_seen, (int)needed_resolution(out, &compiled->view, texel->extent, (double)compiled->march.voxel_width, 0));
+        placed->cyclic |= (defs[k]->cyclic & (TEXEL_CYCLIC_X | TEXEL_CYCLIC_Z)) != 0;
+        texel->finest_seen = int_max(texel->finest_seen, (int)needed_resolution(skin, &compiled->view, texel->extent, (double)compiled->march.voxel_width, 0));
     }
-    placed->jitter = skin->jitter.instance;
+    placed->jitter = skin->def->jitter.instance;
+    if (placed->family_size) skin->texel_count++;
+    return placed;
+}
+
+static void place_texel(size_t index, CompiledScene *compiled, DiagList *diags, CompiledSkin *out) {
+    const TexelDef *texel = out->def->texels[index].texel;
+    const TexelDef *const *family = texel->choice_count ? texel->choices : &texel;
+    size_t count = texel->choice_count ? texel->choice_count : 1;
+    if (out->def->wang && skin_place_wang(out, index, family, count, compiled, diags)) return;
+    PlacedTexel *placed = skin_place_family(out, index, family, count, compiled);
     placed->overhang = placed->cyclic || !placed->jitter.present ? 0 : copy_overhang(&placed->jitter);
     placed->reach = (int)ceil(placed->overhang - 1e-9);
+    if (!placed->reach) placed->overhang = 0;
     placed->alike = placed->cyclic && placed->family_size == 1 && placed->density >= 1 &&
                     !(placed->jitter.present && placed->jitter.tinted);
-    const Texture *texture = in->texture ? in->texture : skin->texture;
-    if (texture) {
-        Look *look = arena_new(compiled->arena, Look);
-        *look = look_from_texture(texture, &compiled->scene->settings);
-        placed->look = look;
-    }
 }
 
 static double tallest_copy(const Skin *skin) {
@@ -398,8 +409,8 @@ bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, Co
     SurfaceMesh mesh;
     ShapeRefusal refusal;
     *out = (CompiledSkin){.def = skin, .top = tallest_copy(skin)};
-    if (skin->texel_count > MOST_PLACED_TEXELS) {
-        diag_error(diags, skin->texels[MOST_PLACED_TEXELS].span, "a skin holds at most %d superimposed texels", MOST_PLACED_TEXELS);
+    if (skin->texel_count > MOST_SUPERIMPOSED) {
+        diag_error(diags, skin->texels[MOST_SUPERIMPOSED].span, "a skin holds at most %d superimposed texels", MOST_SUPERIMPOSED);
         return false;
     }
     SurfaceMeshOptions mesh_options = {.tolerance = 0.02 * skin->mapping.height, .longest_edge = longest_cell(skin)};
@@ -408,11 +419,8 @@ bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, Co
         return false;
     }
     make_cells(skin, &mesh, compiled->scene->time, compiled->arena, out, diags);
-    out->texels = arena_new_array(compiled->arena, PlacedTexel, skin->texel_count);
-    for (size_t i = 0; i < skin->texel_count; i++) {
-        place_texel(skin, i, compiled, out);
-        if (out->texels[i].family_size) out->texel_count = i + 1;
-    }
+    out->texels = arena_new_array(compiled->arena, PlacedTexel, skin->texel_count * (skin->wang ? WANG_GRIDS + 1 : 1));
+    for (size_t i = 0; i < skin->texel_count; i++) place_texel(i, compiled, diags, out);
     skin_rim_add(out, &mesh, compiled->arena);
     out->overlaps = sheets_overlap(out);
     return true;

@@ -24,6 +24,7 @@ void skin_march_init_confined(SkinMarch *m, const CompiledSkin *skin, Arena *are
     m->skin = skin;
     m->tiles_kept = skin->cell_count == 1 ? 1 : TILES_KEPT; /* thousands of them may stand in a scene */
     m->tiles = arena_new_array(arena, TileCopies, skin->texel_count * (size_t)m->tiles_kept);
+    m->span.fits = arena_new_array(arena, VoxelFit, skin->texel_count);
     for (size_t i = 0; i < skin->texel_count; i++) {
         size_t around = (size_t)(2 * skin->texels[i].reach + 1) * (size_t)(2 * skin->texels[i].reach + 1);
         for (int k = 0; k < m->tiles_kept; k++) m->tiles[i * (size_t)m->tiles_kept + (size_t)k].copies = arena_new_array(arena, CopyOnWay, around);

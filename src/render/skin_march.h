@@ -4,7 +4,7 @@
 
 #include "render/skin_walk.h"
 
-enum { MOST_MATTER_HITS = 12, MOST_PLACED_TEXELS = 8 };
+enum { MOST_MATTER_HITS = 12 };
 
 typedef struct TraceCounters {
     uint64_t camera_rays, shadow_rays, steps, voxels_visited;
@@ -91,7 +91,7 @@ typedef struct MarchSpan {
     Vec3 c0, c1, c2;   /* (u, v, w') = c0 + c1·s + c2·s², s = t − t0 */
     TexturePlace place; /* in the middle: gradients for shading and opacity */
     SkinPoint middle;
-    VoxelFit fits[MOST_PLACED_TEXELS];
+    VoxelFit *fits;    /* of each texel of the skin */
     double straight;   /* from any t of the span, the length over which the path stays near its tangent */
     double step;       /* length of a step in t */
     float voxel_world; /* side of the finest voxels wanted along the cone, scene units */

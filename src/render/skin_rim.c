@@ -405,8 +405,9 @@ static bool find_tiles(Rim *rim) {
 void skin_rim_add(CompiledSkin *skin, const SurfaceMesh *mesh, Arena *arena) {
     Rim rim = {.skin = skin, .arena = arena};
     for (size_t i = 0; i < skin->texel_count; i++) {
+        if (!(skin->texels[i].overhang > 0)) continue;
         rim.around = int_max(rim.around, skin->texels[i].reach);
-        if (skin->texels[i].reach) rim.reach = fmax(rim.reach, 0.5 + skin->texels[i].overhang);
+        rim.reach = fmax(rim.reach, 0.5 + skin->texels[i].overhang);
     }
     if (!rim.around) return;
     find_border(&rim, mesh);

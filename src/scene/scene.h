@@ -502,7 +502,7 @@ typedef struct InstanceJitter {
     double displace;      /* tiles, ± half */
     double rotate;        /* degrees about the height vector, ± half */
     double scale;         /* relative, ± half */
-    bool mirror;
+    bool mirror, turned;  /* turned: `rotate` was given */
     double density;       /* share of the tiles that keep their copy; 1 */
     bool tinted;
     Color tint_a, tint_b; /* filters; each copy gets one between */
@@ -539,6 +539,7 @@ typedef struct Skin {
     SkinMapping mapping;
     SkinJitter jitter;
     const WindField *wind;  /* bends the height vectors; NULL */
+    bool wang;              /* tiling: cyclic texels are laid without period; else side by side */
     const Texture *texture; /* over the layers' own; NULL */
     const InertNote *inert;
 } Skin;

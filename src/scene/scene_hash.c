@@ -397,7 +397,7 @@ static void add_jitter(Hash128 *h, const SkinJitter *j) {
     const double numbers[] = {c->displace, c->rotate, c->scale, c->density};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(numbers); i++) hash_add_double(h, numbers[i]);
     hash_add_u64(h, (uint64_t)c->present | (uint64_t)c->mirror << 1 | (uint64_t)c->tinted << 2 |
-                        (uint64_t)j->seed << 8);
+                        (uint64_t)c->turned << 3 | (uint64_t)j->seed << 8);
     hash_add_color(h, c->tint_a);
     hash_add_color(h, c->tint_b);
 }
@@ -424,6 +424,7 @@ void skin_rehash(Skin *skin) {
     add_jitter(&h, &skin->jitter);
     hash_add_u64(&h, skin->wind != NULL);
     if (skin->wind) hash_add_hash(&h, skin->wind->hash);
+    hash_add_u64(&h, skin->wang);
     add_texture(&h, skin->texture);
     skin->hash = h;
 }

@@ -442,6 +442,7 @@ static void print_wind(Printer *p, const WindField *w) {
 
 static void print_skin(Printer *p, const Skin *skin) {
     begin_line(p, "skin");
+    if (skin->wang) strbuf_adds(p->out, " tiling wang");
     add_inert(p, skin->inert);
     end_line(p);
     p->depth++;

@@ -191,8 +191,8 @@ const WangBorders *wang_borders(const TexelDef *const *defs, size_t count, size_
     if (rows == 1 && columns == 1) return NULL;
     if (all_pairs(borders, rows, columns, all)) return borders;
     const TexelDef *a = defs[size_min(least.a, count - 1)], *b = defs[size_min(least.b, count - 1)];
-    Diagnostic *d = diag_warning(diags, skin->span, "'tiling wang' cuts %.0f %% of what crosses the border between '%s' and '%s': it is too large to be moved whole, and differs there",
-                                 100 * least.share, a->name, b->name);
+    Diagnostic *d = diag_warning(diags, skin->span, "'tiling wang' cuts %.0f %% of what crosses the border between '%s' and '%s', the family's numbers %zu and %zu: it is too large to be moved whole, and differs there",
+                                 100 * least.share, a->name, b->name, least.a + 1, least.b + 1);
     if (d) diag_hint(diags, d, "let what crosses the border be the same in all of the family, or consist of objects smaller than half a tile");
     return NULL;
 }

@@ -130,6 +130,12 @@ Sym3f sym3f_congruence(const Sym3f *s, const Mat3 *m);
 Transform transform_identity(void);
 Transform transform_of(const Affine *affine);
 bool transform_is_identity(const Transform *t);
+/* The same, in line: for asking often. */
+static inline bool transform_is_unit(const Transform *t) {
+    const Vec3 *c = t->linear.c;
+    return c[0].x == 1 && c[1].y == 1 && c[2].z == 1 && c[0].y == 0 && c[0].z == 0 && c[1].x == 0 && c[1].z == 0 && c[2].x == 0 &&
+           c[2].y == 0 && t->offset.x == 0 && t->offset.y == 0 && t->offset.z == 0;
+}
 Transform transform_translate(Vec3 by);
 Transform transform_scale(Vec3 by);
 Transform transform_rotate(Vec3 degrees);          /* about x, then y, then z */

@@ -13,6 +13,7 @@ Spot spot_make(Vec3 point, Vec3 normal, double footprint) {
 }
 
 Spot spot_back(const Spot *spot, const Transform *t) {
+    if (transform_is_unit(t)) return *spot;
     Spot back = {.p = transform_point_back(t, spot->p), .outer = spot->outer, .normal = spot->normal, .surface = spot->surface};
     for (int k = 0; k < 3; k++) back.axes[k] = transform_vector_back(t, spot->axes[k]);
     if (spot->blur > 0) /* by the mean scale of the axes' directions */

@@ -71,17 +71,19 @@ static void collect(PartList *list, const TexturePart *part) {
 }
 
 static Spot spot_of_place(const SurfacePlace *place) {
-    Spot spot = spot_make(place->point, place->normal, place->footprint);
-    if (vec3_length_squared(place->axes[0]) + vec3_length_squared(place->axes[1]) > 0) {
-        spot.axes[0] = place->axes[0], spot.axes[1] = place->axes[1];
-        spot.axes[2] = vec3(0, 0, 0);
-    }
+    bool known = vec3_length_squared(place->axes[0]) + vec3_length_squared(place->axes[1]) > 0;
+    Spot spot = spot_make(place->point, place->normal, known ? 0 : place->footprint);
+    if (known) spot.axes[0] = place->axes[0], spot.axes[1] = place->axes[1];
     spot.surface = &place->surface;
     return spot;
 }
 
 size_t texture_parts(const Texture *texture, const SurfacePlace *place, TexturePart *out, size_t most) {
     static const Mat3 identity = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    if (!texture->map) {
+        *out = (TexturePart){texture, 1, spot_of_place(place), place->space, identity};
+        return 1;
+    }
     PartList list = {.items = out, .most = most};
     TexturePart whole = {texture, 1, spot_of_place(place), place->space, identity};
     collect(&list, &whole);

@@ -35,7 +35,8 @@ static Vec3f past_surfaces(BeamTracer *tr, const Sight *sight, const Light *ligh
     double clear = (double)vec3f_length(sight->bias);
     if (tr->compiled->clear_shadows) {
         SurfaceTracer surfaces = {.compiled = tr->compiled, .counters = &tr->counters, .seed = tr->seed};
-        const Leg leg = surface_leg(&tr->cones[sight->pixel]);
+        Leg leg;
+        surface_leg(&tr->cones[sight->pixel], &leg);
         return surface_shadow(&surfaces, light, way, &leg, shadow.origin, clear, random_mix(tr->seed + point));
     }
     tr->counters.shadow_rays++;
@@ -198,7 +199,8 @@ void beam_add_beyond(BeamTracer *tr) {
             tr->volumes.seed = random_hash((uint64_t)(tr->x0 + sight->pixel % tr->columns), (uint64_t)(tr->y0 + sight->pixel / tr->columns),
                                            3 + (uint64_t)(tr->before + i), tr->seed);
             SurfaceTracer surfaces = tracer_of_surfaces(&tr->volumes);
-            Leg leg = surface_leg(&cone);
+            Leg leg;
+            surface_leg(&cone, &leg);
             Vec3f one = surface_beyond(&surfaces, &leg, &hit);
             sum = vec3f_add(sum, one);
             if (((uint32_t)i - first) & 1) odd = vec3f_add(odd, one);

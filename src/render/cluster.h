@@ -22,6 +22,7 @@ typedef struct Item {
     bool both_sides;             /* lights shine on both */
     uint8_t hidden;              /* bit 1 << RayPurpose: rays that pass */
     Affine back;                 /* cluster → its own space */
+    const Transform *place;      /* its own space → cluster, kept where its texture asks for it with every hit; or NULL */
 } Item;
 
 typedef struct ItemList {
@@ -86,6 +87,7 @@ const Look *look_table_find(const LookTable *table, const Texture *texture);
 Box3 item_box(const Item *item);
 /* Its own space → the cluster. */
 static inline Transform item_place(const Item *item) {
+    if (item->place) return *item->place;
     const Transform back = transform_of(&item->back);
     return transform_inverse(&back);
 }

@@ -143,9 +143,13 @@ Box3 item_box(const Item *item) {
     return is_finite_box(box) ? box3_transform(&place, box) : shape_bounds_infinite();
 }
 
-static void add_item(Builder *b, Cluster *cluster, const Item *item) {
+static void add_item(Builder *b, Cluster *cluster, Item *item) {
     if (box3_is_empty(item_box(item))) return;
     b->set->part_count++;
+    if ((item->look && !item->look->even) || item->body) {
+        const Transform place = item_place(item);
+        item->place = arena_copy(b->arena, &place, sizeof place);
+    }
     *list_push(b->arena, &cluster->items) = *item;
     if (item->cluster) cluster->depth = int_max(cluster->depth, 1 + item->cluster->depth);
 }

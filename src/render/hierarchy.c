@@ -37,12 +37,17 @@ static void keep_path(const Query *query, const Item *item) {
     for (const Query *q = query; q->copy; q = q->outer) query->found->path[--depth] = q->copy;
 }
 
+/* Places are not set: nothing within it has a look. */
 static bool meet_plain(const Object *object, const Ray *ray, double t_min, double t_max, BodyHit *hit) {
     ShapeHit met;
     if (!shape_meet(object, ray, t_min, t_max, &met)) return false;
-    *hit = (BodyHit){.t = met.t, .normal = object->inverse ? vec3_negate(met.normal) : met.normal, .leaf = object, .data = object,
-                     .place = met.point, .tag = {.part = met.part}};
-    hit->flat = hit->normal;
+    hit->t = met.t;
+    hit->normal = hit->flat = object->inverse ? vec3_negate(met.normal) : met.normal;
+    hit->leaf = hit->data = object;
+    hit->place = met.point;
+    hit->tag = (SolidTag){.part = met.part};
+    hit->looked = hit->filled = hit->cut_object = NULL;
+    hit->cut = NULL;
     return true;
 }
 
@@ -60,14 +65,16 @@ static bool meet_item(const Query *query, const Item *item) {
     if (item->hidden >> query->purpose & 1) return false;
     if (item->cluster) return meet_copy(query, item);
     const Ray ray = item_ray(item, &query->ray);
-    BodyHit hit;
-    bool met = item->body ? body_meet(item->body, item->object, &ray, query->t_min, found->t, &hit)
-                          : meet_plain(item->object, &ray, query->t_min, found->t, &hit);
-    if (!met || !(hit.t < found->t)) return false;
-    found->t = hit.t;
-    found->body = hit;
-    found->normal = mat3_apply_transposed(&item->back.linear, hit.normal);
-    found->flat = mat3_apply_transposed(&item->back.linear, hit.flat);
+    if (query->any)
+        return item->body ? body_crosses(item->body, item->object, &ray, query->t_min, found->t)
+                          : shape_crosses(item->object, &ray, query->t_min, found->t);
+    BodyHit *hit = &found->body;
+    bool met = item->body ? body_meet(item->body, item->object, &ray, query->t_min, found->t, hit)
+                          : meet_plain(item->object, &ray, query->t_min, found->t, hit);
+    if (!met) return false;
+    found->t = hit->t;
+    found->normal = mat3_apply_transposed(&item->back.linear, hit->normal);
+    found->flat = mat3_apply_transposed(&item->back.linear, hit->flat);
     found->cluster = NULL;
     keep_path(query, item);
     return true;

@@ -237,7 +237,8 @@ static float record_visibility(Tracer *tr, const Light *light, const Cone *cone,
         if (hierarchy_occluded(scene->hierarchy, &explicit_ray, r->tolerance, ray.distance)) return 0;
     } else { /* of what is clear on the way the mean of the colours */
         SurfaceTracer surfaces = {.compiled = scene, .counters = &tr->counters, .seed = tr->seed};
-        const Leg leg = surface_leg(cone);
+        Leg leg;
+        surface_leg(cone, &leg);
         Vec3f passed = surface_shadow(&surfaces, light, &ray, &leg, point, r->tolerance, tr->seed);
         clear = (passed.x + passed.y + passed.z) / 3;
         if (!(clear > 0)) return 0;
@@ -343,14 +344,21 @@ SurfaceTracer tracer_of_surfaces(Tracer *tr) {
 Radiance trace_cone(Tracer *tr, const Cone *cone, const SurfaceHit *hit, float *reaching) {
     const Scene *scene = tr->compiled->scene;
     float transmittance = 1;
-    Radiance out = {matter_before(tr, cone, hit ? hit->t : VTS_INFINITY, &transmittance), 1 - transmittance};
+    Radiance out = {{0, 0, 0}, 0};
+    if (tr->compiled->skin_count || tr->matter) {
+        out.color = matter_before(tr, cone, hit ? hit->t : VTS_INFINITY, &transmittance);
+        out.alpha = 1 - transmittance;
+    } else {
+        tr->counters.camera_rays++;
+    }
     *reaching = transmittance;
     if (transmittance <= 0) return out;
     Air air = air_between(scene, &(Ray){cone->origin, cone->direction}, hit ? hit->t : VTS_INFINITY);
     Vec3f behind;
     if (hit) {
         SurfaceTracer surfaces = tracer_of_surfaces(tr);
-        Leg leg = surface_leg(cone);
+        Leg leg;
+        surface_leg(cone, &leg);
         leg.weight = transmittance;
         behind = surface_radiance(&surfaces, &leg, hit);
         out.alpha = 1;

@@ -105,7 +105,8 @@ static Vec3f lit(const Sample *s, const Light *light, const LightRay *to_light, 
     Sample own = *s;
     SurfaceTracer tracer = tracer_of(&own);
     const Cone cone = ray_cone(s);
-    const Leg leg = surface_leg(&cone);
+    Leg leg;
+    surface_leg(&cone, &leg);
     const Ray from = leaving(s, facet, to_light->direction);
     return surface_shadow(&tracer, light, to_light, &leg, from.origin, facet->bias, random_mix(s->random + 3));
 }
@@ -160,7 +161,8 @@ static Radiance trace_sample(Sample *s) {
     if (met && facet.object) {
         SurfaceTracer tracer = tracer_of(s);
         const Cone cone = ray_cone(s);
-        const Leg leg = surface_leg(&cone);
+        Leg leg;
+        surface_leg(&cone, &leg);
         light = surface_radiance(&tracer, &leg, &surface);
     } else {
         light = met ? shade(s, &facet) : sky_radiance(scene, s->ray.direction, 0);

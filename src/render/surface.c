@@ -5,6 +5,8 @@
 #include "render/footprint.h"
 #include "render/surface_parts.h"
 
+#include <string.h>
+
 enum { MOST_LAYERS = 12, DEEPEST_LEGS = 256, MOST_STRAIGHT = 4096 };
 /* Rays begin so far from their surface: some steps of the hierarchy's floats, and of doubles. */
 static double clearance(const SurfaceTracer *tracer, Vec3 point, double t) {
@@ -20,14 +22,27 @@ static Vec3f follow(SurfaceTracer *tracer, Leg *leg, const SurfaceHit *first, bo
 static float most_of(Vec3f c) { return float_max(c.x, float_max(c.y, c.z)); }
 static float grey_of(Vec3f c) { return 0.297f * c.x + 0.589f * c.y + 0.114f * c.z; }
 
-Leg surface_leg(const Cone *cone) { return (Leg){.cone = *cone, .clear = 1e-9, .purpose = RAY_SEES, .weight = 1, .wave = -1}; }
+/* Of the enclosures, which are many bytes, only those that count are ever set or copied. */
+static void leg_copy(Leg *to, const Leg *from) {
+    memcpy(to, from, offsetof(Leg, enclosures) + (size_t)from->enclosure_count * sizeof *from->enclosures);
+}
+
+void surface_leg(const Cone *cone, Leg *leg) {
+    leg->cone = *cone;
+    leg->clear = 1e-9;
+    leg->purpose = RAY_SEES;
+    leg->level = 0;
+    leg->weight = 1;
+    leg->wave = -1;
+    leg->enclosure_count = 0;
+}
 
 /* A place where a leg has met a surface. */
 typedef struct Meeting {
     const Leg *leg;
     const SurfaceHit *hit;
     Vec3 point;
-    double width, clear;     /* of the cone there; how near to it nothing is met */
+    double clear;            /* how near to it nothing is met */
     uint64_t seed;
     const TexturePart *part; /* of its texture, that is being looked at */
     bool lit_already;        /* its own light and that of lights is taken care of elsewhere */
@@ -134,18 +149,18 @@ static double curvature_of(const SurfaceTracer *tracer, Meeting *m) {
     return m->curvature;
 }
 
-static Leg leg_from(const SurfaceTracer *tracer, Meeting *m, Vec3 direction, double bend, float share) {
-    Leg leg = *m->leg;
+static void leg_from(const SurfaceTracer *tracer, Meeting *m, Vec3 direction, double bend, float share, Leg *leg) {
+    leg_copy(leg, m->leg);
     double side = vec3_dot(direction, m->hit->flat) > 0 ? m->clear : -m->clear;
     Vec3 from = vec3_madd(m->point, m->hit->flat, side);
-    leg.cone = footprint_leave(&m->leg->cone, m->hit->t, from, direction, curvature_of(tracer, m), bend);
-    leg.clear = m->clear;
-    leg.weight *= share;
-    return leg;
+    leg->cone = footprint_leave(&m->leg->cone, m->hit->t, from, direction, curvature_of(tracer, m), bend);
+    leg->clear = m->clear;
+    leg->weight *= share;
 }
 
 static Vec3f mirrored_light(SurfaceTracer *tracer, Meeting *m, Vec3 normal, float share) {
-    Leg leg = leg_from(tracer, m, surface_mirrored(m->leg->cone.direction, normal, m->hit->flat), 2, share);
+    Leg leg;
+    leg_from(tracer, m, surface_mirrored(m->leg->cone.direction, normal, m->hit->flat), 2, share, &leg);
     leg.purpose = RAY_MIRRORS;
     return follow(tracer, &leg, NULL, false);
 }
@@ -183,7 +198,8 @@ static Vec3f bent_light(SurfaceTracer *tracer, Meeting *m, double ratio, bool *a
         return mirrored_light(tracer, m, normal, most_of(m->through));
     }
     double bend = vec3_dot(direction, normal) - vec3_dot(m->leg->cone.direction, normal) / ratio; /* n cos i - cos t */
-    Leg leg = leg_from(tracer, m, direction, bend, most_of(m->through));
+    Leg leg;
+    leg_from(tracer, m, direction, bend, most_of(m->through), &leg);
     surface_cross(leg.enclosures, &leg.enclosure_count, m->hit);
     return follow(tracer, &leg, NULL, false);
 }
@@ -204,28 +220,30 @@ static Outcome see_part(SurfaceTracer *tracer, Meeting *m) {
     return out;
 }
 
-static SurfacePlace place_of(const Leg *leg, const SurfaceHit *hit) {
-    double facing = fmax(0.05, fabs(vec3_dot(hit->normal, leg->cone.direction)));
-    SurfacePlace place = {.point = cone_point(&leg->cone, hit->t), .normal = hit->normal, .space = &hit->space,
-                          .footprint = cone_diameter(&leg->cone, hit->t) / facing,
-                          .surface = {.direction = leg->cone.direction, .uv = {hit->uv.u, hit->uv.v}}};
-    footprint_axes(&leg->cone, hit->t, hit->normal, place.axes);
-    return place;
+static void set_place(const Leg *leg, const SurfaceHit *hit, SurfacePlace *place) {
+    double facing = double_max(0.05, fabs(vec3_dot(hit->normal, leg->cone.direction)));
+    *place = (SurfacePlace){.point = cone_point(&leg->cone, hit->t), .normal = hit->normal, .space = &hit->space,
+                            .footprint = cone_diameter(&leg->cone, hit->t) / facing,
+                            .surface = {.direction = leg->cone.direction, .uv = {hit->uv.u, hit->uv.v}}};
+    footprint_axes(&leg->cone, hit->t, hit->normal, place->axes);
 }
 
-/* A texture that is even has no use for its place. */
 static void looks_of(const Leg *leg, const SurfaceHit *hit, SurfaceParts *looks) {
-    SurfacePlace place = {.space = &hit->space};
-    if (hit->share_count || !hit->look->even) place = place_of(leg, hit);
-    surface_parts_find(hit, &place, looks);
+    if (surface_parts_ask_place(hit)) set_place(leg, hit, &looks->places[0]);
+    surface_parts_find(hit, looks);
 }
 
 static Outcome see_surface(SurfaceTracer *tracer, const Leg *leg, const SurfaceHit *hit, bool lit_already) {
     SurfaceParts looks;
     looks_of(leg, hit, &looks);
-    Meeting m = {.leg = leg, .hit = hit, .point = cone_point(&leg->cone, hit->t), .width = cone_diameter(&leg->cone, hit->t), .lit_already = lit_already,
-                 .clear = clearance(tracer, cone_point(&leg->cone, hit->t), hit->t), .curvature = (double)NAN,
-                 .seed = random_mix(tracer->seed + (uint64_t)leg->level)};
+    Meeting m; /* its layers are many bytes, and are set where they are read */
+    m.leg = leg;
+    m.hit = hit;
+    m.point = cone_point(&leg->cone, hit->t);
+    m.clear = clearance(tracer, m.point, hit->t);
+    m.seed = random_mix(tracer->seed + (uint64_t)leg->level);
+    m.lit_already = lit_already;
+    m.curvature = (double)NAN;
     Outcome out = {{0, 0, 0}, {0, 0, 0}};
     for (size_t i = 0; i < looks.count; i++) {
         m.part = &looks.parts[i];
@@ -237,10 +255,13 @@ static Outcome see_surface(SurfaceTracer *tracer, const Leg *leg, const SurfaceH
 }
 
 void surface_glance(const Cone *cone, const SurfaceHit *hit, Vec3f *color, Vec3 *normal) {
-    Leg leg = surface_leg(cone);
+    Leg leg;
     SurfaceParts looks;
+    Meeting m;
+    surface_leg(cone, &leg);
     looks_of(&leg, hit, &looks);
-    Meeting m = {.leg = &leg, .hit = hit};
+    m.leg = &leg;
+    m.hit = hit;
     double heaviest = 0;
     *color = vec3f(0, 0, 0);
     for (size_t i = 0; i < looks.count; i++) {
@@ -278,41 +299,43 @@ static Vec3f follow(SurfaceTracer *tracer, Leg *leg, const SurfaceHit *first, bo
     const GlobalSettings *settings = &compiled->scene->settings;
     Vec3f sum = {0, 0, 0}, through = {1, 1, 1};
     int deepest = int_min(settings->max_trace_level, DEEPEST_LEGS);
+    SurfaceHit met;
     for (int i = 0; i < MOST_STRAIGHT; i++) {
-        SurfaceHit hit;
-        if (first) {
-            hit = *first;
-        } else {
+        const SurfaceHit *hit = first;
+        if (!first) {
+            hit = &met;
             if (leg->level >= deepest || leg->weight < (float)settings->adc_bailout) return sum;
             const Ray ray = {leg->cone.origin, leg->cone.direction};
-            bool found = hierarchy_glimpse(compiled->hierarchy, leg->purpose, &ray, leg->clear, VTS_INFINITY, &hit);
+            bool found = hierarchy_glimpse(compiled->hierarchy, leg->purpose, &ray, leg->clear, VTS_INFINITY, &met);
             tracer->counters->camera_rays++;
             if (i == 0) leg->level++; /* but where it goes on straight */
-            if (!gather_before(tracer, leg, found ? hit.t : VTS_INFINITY, &sum, &through)) return sum;
+            if (!gather_before(tracer, leg, found ? met.t : VTS_INFINITY, &sum, &through)) return sum;
             if (!found) return vec3f_add(sum, vec3f_mul(through, sky_radiance(compiled->scene, ray.direction, leg->cone.spread)));
         }
-        Outcome seen = see_surface(tracer, leg, &hit, first && lit_already);
+        Outcome seen = see_surface(tracer, leg, hit, first && lit_already);
         first = NULL;
         sum = vec3f_add(sum, vec3f_mul(through, seen.light));
         if (seen.straight.x == 0 && seen.straight.y == 0 && seen.straight.z == 0) return sum;
         through = vec3f_mul(through, seen.straight);
-        Vec3 point = cone_point(&leg->cone, hit.t);
-        leg->clear = clearance(tracer, point, hit.t);
-        leg->cone = (Cone){point, leg->cone.direction, cone_diameter(&leg->cone, hit.t), leg->cone.spread};
+        Vec3 point = cone_point(&leg->cone, hit->t);
+        leg->clear = clearance(tracer, point, hit->t);
+        leg->cone = (Cone){point, leg->cone.direction, cone_diameter(&leg->cone, hit->t), leg->cone.spread};
         leg->weight *= most_of(seen.straight);
-        surface_cross(leg->enclosures, &leg->enclosure_count, &hit);
+        surface_cross(leg->enclosures, &leg->enclosure_count, hit);
     }
     return sum;
 }
 
 Vec3f surface_radiance(SurfaceTracer *tracer, const Leg *first, const SurfaceHit *hit) {
-    Leg leg = *first;
+    Leg leg;
+    leg_copy(&leg, first);
     leg.level = 1;
     return follow(tracer, &leg, hit, false);
 }
 
 Vec3f surface_beyond(SurfaceTracer *tracer, const Leg *first, const SurfaceHit *hit) {
-    Leg leg = *first;
+    Leg leg;
+    leg_copy(&leg, first);
     leg.level = 1;
     return follow(tracer, &leg, hit, true);
 }

@@ -22,6 +22,7 @@ typedef struct Leg {
     float weight;       /* the most that its light makes in the eye */
     int wave;           /* which colour of a dispersed ray; -1: all */
     int enclosure_count;
+    /* The last field: only those that count are set. */
     Enclosure enclosures[MOST_ENCLOSURES];
 } Leg;
 
@@ -38,7 +39,7 @@ typedef struct SurfaceTracer {
 } SurfaceTracer;
 
 /* The first leg of a line of sight. */
-Leg surface_leg(const Cone *cone);
+void surface_leg(const Cone *cone, Leg *leg);
 
 /* What comes from the surface that the leg has met back along it: its own light, and what it mirrors and lets through. Without the air
  * and matter before it. */

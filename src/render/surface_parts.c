@@ -16,12 +16,11 @@ static void add_look(const Look *look, double weight, SurfaceParts *out, const S
     out->count += count;
 }
 
-void surface_parts_find(const SurfaceHit *hit, const SurfacePlace *place, SurfaceParts *out) {
+void surface_parts_find(const SurfaceHit *hit, SurfaceParts *out) {
     out->count = 0;
-    out->places[0] = *place;
     add_look(hit->look, own_weight(hit), out, &out->places[0]);
     for (int i = 0; i < hit->share_count; i++) {
-        out->places[i + 1] = *place;
+        out->places[i + 1] = out->places[0];
         out->places[i + 1].space = &hit->shares[i].space;
         add_look(hit->shares[i].look, hit->shares[i].weight, out, &out->places[i + 1]);
     }

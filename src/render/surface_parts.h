@@ -9,13 +9,16 @@
 enum { SURFACE_LOOK_PARTS = 4, SURFACE_PARTS = SURFACE_LOOK_PARTS * (1 + LOOK_SHARES) };
 
 typedef struct SurfaceParts {
-    SurfacePlace places[1 + LOOK_SHARES]; /* what the parts point to */
+    SurfacePlace places[1 + LOOK_SHARES]; /* what the parts point to; the first is the caller's to set */
     TexturePart parts[SURFACE_PARTS];
     size_t count;
 } SurfaceParts;
 
-/* texture_parts() of all looks of the hit, with weights that add up to 1; only `count` and what it counts is set. `place` and `hit` must
- * outlive `out`, which must not move. */
-void surface_parts_find(const SurfaceHit *hit, const SurfacePlace *place, SurfaceParts *out);
+/* Whether the place makes a difference: else out->places[0] need not be set. */
+static inline bool surface_parts_ask_place(const SurfaceHit *hit) { return hit->share_count > 0 || !hit->look->even; }
+
+/* texture_parts() of all looks of the hit, with weights that add up to 1; only `count` and what it counts is set. `hit` must outlive `out`,
+ * which must not move. */
+void surface_parts_find(const SurfaceHit *hit, SurfaceParts *out);
 
 #endif

@@ -25,10 +25,11 @@ void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit) {
 
 /* What a surface lets through of light: of each layer filter × pigment + transmit. */
 static Vec3f filtered(const Ray *ray, const SurfaceHit *hit) {
-    SurfacePlace place = {.point = vec3_madd(ray->origin, ray->direction, hit->t), .normal = hit->normal, .space = &hit->space,
-                          .surface = {.direction = ray->direction, .uv = {hit->uv.u, hit->uv.v}}};
     SurfaceParts looks;
-    surface_parts_find(hit, &place, &looks);
+    if (surface_parts_ask_place(hit))
+        looks.places[0] = (SurfacePlace){.point = vec3_madd(ray->origin, ray->direction, hit->t), .normal = hit->normal, .space = &hit->space,
+                                         .surface = {.direction = ray->direction, .uv = {hit->uv.u, hit->uv.v}}};
+    surface_parts_find(hit, &looks);
     Vec3f sum = {0, 0, 0};
     for (size_t i = 0; i < looks.count; i++) {
         const TexturePart *part = &looks.parts[i];

@@ -139,6 +139,7 @@ typedef struct Trail {
 typedef struct Search {
     double t_min;
     BodyHit *hit; /* the nearest so far: its t */
+    bool any;     /* whatever is met will do, and nothing is asked about it */
     uint64_t budget;
 } Search;
 
@@ -208,7 +209,7 @@ static bool visit_leaf(const Visit *visit, const Body *body, const Ray *ray) {
     if (!body->data) return false;
     LeafSink sink = {.base = {visit->search->t_min, hit->t, take_crossing}, .filters = visit->filters, .budget = &visit->search->budget};
     body->ops->cross(body->data, ray, &sink.base);
-    if (!sink.taken) return false;
+    if (!sink.taken || visit->search->any) return sink.taken;
     hit->t = sink.base.t_max;
     hit->leaf = visit->trail->object;
     hit->data = body->data;
@@ -247,6 +248,7 @@ static void visit_child(SetVisit *set, uint32_t child) {
 
 static void visit_item(void *context, uint32_t item) {
     SetVisit *set = context;
+    if (set->found && set->visit.search->any) return;
     visit_child(set, item + set->body->tree_first);
 }
 
@@ -260,8 +262,8 @@ static bool visit_set(const Visit *visit, const Body *body, const Ray *ray) {
                     .filtered = common || visit->flipped || body->object->kind == OBJECT_MERGE,
                     .filter = {visit->filters, body, 0, *ray, common ? WITHIN_SIBLINGS : OUTSIDE_SIBLINGS}};
     size_t plain = body->tree ? body->tree_first : body->children.count;
-    for (uint32_t i = 0; i < plain; i++) visit_child(&set, i);
-    if (body->tree) box_tree_ray(body->tree, ray, visit->search->t_min, &visit->search->hit->t, visit_item, &set);
+    for (uint32_t i = 0; i < plain && !(set.found && visit->search->any); i++) visit_child(&set, i);
+    if (body->tree && !(set.found && visit->search->any)) box_tree_ray(body->tree, ray, visit->search->t_min, &visit->search->hit->t, visit_item, &set);
     return set.found;
 }
 
@@ -303,8 +305,16 @@ static bool visit_place(const Visit *visit, const BodyPlace *placed, const Objec
 }
 
 bool body_meet(const Body *body, const Object *object, const Ray *ray, double t_min, double t_max, BodyHit *hit) {
-    *hit = (BodyHit){.t = t_max};
+    hit->t = t_max;
     Search search = {.t_min = t_min, .hit = hit, .budget = MOST_VISITS};
+    const Visit visit = {.search = &search};
+    return visit_body(&visit, body, object, NULL, ray);
+}
+
+bool body_crosses(const Body *body, const Object *object, const Ray *ray, double t_min, double t_max) {
+    BodyHit nearest;
+    nearest.t = t_max;
+    Search search = {.t_min = t_min, .hit = &nearest, .any = true, .budget = MOST_VISITS};
     const Visit visit = {.search = &search};
     return visit_body(&visit, body, object, NULL, ray);
 }

@@ -35,8 +35,10 @@ Box3 body_bounds(const Body *body);
 const void *body_data(const Body *body);
 
 /* The nearest crossing with t_min < t < t_max, in the object's own space (its place is the caller's to apply). `object` may be any one
- * of this shape: its looks and those within it are what the hit names. */
+ * of this shape: its looks and those within it are what the hit names. Of *hit all but `t` is left as it is when there is none. */
 bool body_meet(const Body *body, const Object *object, const Ray *ray, double t_min, double t_max, BodyHit *hit);
+/* Whether there is one. */
+bool body_crosses(const Body *body, const Object *object, const Ray *ray, double t_min, double t_max);
 /* A texture of something that holds a place, and the space it stands in. */
 typedef struct BodyTexture {
     const Texture *texture;

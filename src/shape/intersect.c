@@ -391,6 +391,14 @@ bool shape_meet(const Object *object, const Ray *ray, double t_min, double t_max
     return false;
 }
 
+bool shape_crosses(const Object *object, const Ray *ray, double t_min, double t_max) {
+    ShapeCrossing crossings[SHAPE_MOST_CROSSINGS];
+    int count = shape_crossings(object, ray, crossings);
+    for (int i = 0; i < count; i++)
+        if (crossings[i].t > t_min && crossings[i].t < t_max) return true;
+    return false;
+}
+
 bool shape_intersect(const Object *object, const Ray *ray, double t_min, double t_max, ShapeHit *hit) {
     if (!shape_meet(object, ray, t_min, t_max, hit)) return false;
     hit->point = vec3_madd(ray->origin, ray->direction, hit->t); /* where finish() begins */

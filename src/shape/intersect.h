@@ -29,7 +29,9 @@ enum { SHAPE_MOST_CROSSINGS = 4 };
  * at a t of some roundings of the distance from the solid's middle: a t_min above that passes it by. Rays that touch in one
  * point may hit or miss; a solid without any extent is missed. */
 bool shape_intersect(const Object *object, const Ray *ray, double t_min, double t_max, ShapeHit *hit);
-/* The same, but `uv` is left as it is. */
+/* Whether there is one. */
+bool shape_crosses(const Object *object, const Ray *ray, double t_min, double t_max);
+/* The same as shape_intersect(), but `uv` is left as it is. */
 bool shape_meet(const Object *object, const Ray *ray, double t_min, double t_max, ShapeHit *hit);
 
 /* All crossings of the whole line, ascending; returns their number. For a solid the line is inside between crossings

@@ -6,7 +6,7 @@
  *            big-endian doubles i·0.12345;
  *   random   the Mersenne twister MT19937 with its default seed 5489. */
 #include "tape/noise.h"
-#include "tape/noise_lattice.h"
+#include "tape/noise_interval.h"
 #include "tape/tape_rows.h"
 
 #include "tape/noise_pov_tables.inc"
@@ -95,6 +95,15 @@ void row_POV_NOISE(double *restrict out, const double *restrict a, const double 
         lattice_rows(out + l, a + l, b + l, c + l, size_min(LATTICE_LANES, lanes - l), find_near, curve_at,
                      raw_noise);
     for (size_t l = 0; l < lanes; l++) out[l] = corrected(out[l]);
+}
+
+/* A corner's value and gradient are within ±1 each: half the value, and the distances along the axes, at most 3/2 on average. */
+static const double MOST_RAW = 3.5;
+
+Interval interval_POV_NOISE(Interval a, Interval b, Interval c) {
+    Interval raw = lattice_over_box(find_near, curve_at, MOST_RAW, (Interval[3]){a, b, c});
+    if (interval_is_never(raw)) return raw;
+    return (Interval){fmax(0, corrected(raw.low) - 0x1p-46), fmin(1, corrected(raw.high) + 0x1p-46), raw.nan};
 }
 
 Vec3 noise_pov_vector(Vec3 p) {

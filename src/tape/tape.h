@@ -20,6 +20,8 @@ typedef enum TapeOp {
 #define TAPE_CALL_MAX   16        /* inputs and outputs of an external */
 #define TAPE_LOOP_LIMIT 16777216. /* passes of one sum() or prod(); a longer loop gives NaN */
 
+struct Interval; /* tape/interval.h */
+
 typedef uint32_t TapeRef; /* a value of the tape under construction */
 typedef struct Tape Tape;
 typedef struct TapeBuilder TapeBuilder;
@@ -33,6 +35,8 @@ typedef struct TapeExternal {
     Hash128 hash;     /* of the content */
     int depth;        /* 0, or how deep its evaluation nests that of others */
     double work;      /* an evaluation in steps of a tape; 0: as one */
+    /* Intervals that hold the outputs for all inputs from theirs; NULL: nothing is known but values at points. */
+    void (*bound)(const void *data, const struct Interval *in, struct Interval *out);
 } TapeExternal;
 
 /* The printed form of an operation, and how many operands it takes (0: structure, not for tape_unary() and its like). */

@@ -1,0 +1,12 @@
+/* What lattice noises and their intervals share. */
+#ifndef VTS_TAPE_NOISE_INTERVAL_H
+#define VTS_TAPE_NOISE_INTERVAL_H
+
+#include "tape/interval.h"
+#include "tape/noise_lattice.h"
+
+/* All values of a lattice noise in a box of places; `curve` rises on [0, 1], `most` bounds the noise's absolute value
+ * everywhere. Boxes over more than a few cells get that bound. */
+Interval lattice_over_box(LatticeFind *find, LatticeCurve *curve, double most, const Interval box[3]);
+
+#endif

@@ -12,11 +12,14 @@ typedef enum GeoHeights {
 } GeoHeights;
 
 typedef struct Georeference {
-    bool placed; /* the fields down to `area` mean something */
+    bool placed;         /* the map lies somewhere: all down to `area` means something */
+    bool has_projection; /* `projection` does, at least */
     Projection projection;
-    double x[3], y[3]; /* x = x[0] + x[1] column + x[2] row, in the projection's units; y likewise */
-    double middle;     /* longitude of the map's middle: longitudes are taken near it, so that no map is torn at 180 degrees */
-    bool area;         /* pixels are areas: the map reaches half a sample beyond its outer ones */
+    double x[3], y[3];   /* x = x[0] + x[1] column + x[2] row, in the projection's units; y likewise */
+    GeoPlace middle;     /* of the map: longitudes are taken near it, so that no map is torn at 180 degrees */
+    double middle_x;     /* the same in the projection */
+    double period;       /* of x around the globe, 0: it has none */
+    bool area;           /* pixels are areas: the map reaches half a sample beyond its outer ones */
     /* height = (sample · scale + offset) · unit */
     double scale, offset;
     double unit; /* metres */
@@ -28,13 +31,17 @@ typedef struct Georeference {
 
 /* No place; heights are samples. */
 void georeference_init(Georeference *reference);
-/* Places a map by the corners of its outer edges (area) or by its outer samples (point), in the projection's units. False where the map
- * has no extent, or one sample only and points. */
+/* Places a map by the corners of its outer edges (area) or by its outer samples (point), in the projection's units. In longitude and
+ * latitude an east that is not beyond west is taken once more around the globe. False where the map has no extent. */
 bool georeference_from_corners(Georeference *reference, const Projection *projection, const double west_south[2], const double east_north[2],
                                int columns, int rows, bool area);
-/* Places it by x[3] and y[3] as above; sets `middle`. False where these are not finite or fold the map into a line. */
+/* Places it by x[3] and y[3] as above. False where these are not finite or fold the map into a line, or where its middle is nowhere on
+ * the globe. */
 bool georeference_from_affine(Georeference *reference, const Projection *projection, const double x[3], const double y[3], int columns, int rows,
                               bool area);
+
+/* Whether such a map lies within longitudes from -360 to 360 and latitudes from -90 to 90: what files are taken to mean that do not say. */
+bool georeference_looks_like_degrees(const double x[3], const double y[3], int columns, int rows);
 
 /* The place of a sample, or between samples; its height is set to 0. */
 bool georeference_to_geo(const Georeference *reference, double column, double row, GeoPlace *out);
@@ -49,7 +56,7 @@ typedef struct TiffFacts {
 typedef enum GeoreferenceStatus {
     GEOREFERENCE_OK,
     GEOREFERENCE_UNREADABLE, /* no TIFF, cut short, the module is missing */
-    GEOREFERENCE_REFUSED,    /* a TIFF whose place cannot be used: its datum, its projection; facts and samples can */
+    GEOREFERENCE_REFUSED,    /* a TIFF whose place cannot be used: its datum, its projection; the rest is filled in */
 } GeoreferenceStatus;
 /* Reads the tags of the first picture of a TIFF (`facts` may be NULL). Otherwise than OK: with a line of text in `error`. */
 GeoreferenceStatus georeference_read_tiff(const char *path, Georeference *reference, TiffFacts *facts, StrBuf *error);

@@ -184,6 +184,38 @@ static int short_key(GTIF *keys, geokey_t key) {
     return GTIFKeyGetSHORT(keys, key, &value, 0, 1) == 1 ? value : 0;
 }
 
+/* What the lists know of a vertical system: the length of its unit, negative where it counts downwards. */
+static double vertical_metres(PJ_CONTEXT *proj, int code) {
+    char text[16];
+    const char *direction = NULL;
+    double metres = 0;
+    snprintf(text, sizeof text, "%d", code);
+    PJ *system = proj_create_from_database(proj, "EPSG", text, PJ_CATEGORY_CRS, 0, NULL);
+    PJ *axes = system && proj_get_type(system) == PJ_TYPE_VERTICAL_CRS ? proj_crs_get_coordinate_system(proj, system) : NULL;
+    if (axes && proj_cs_get_axis_info(proj, axes, 0, NULL, NULL, &direction, &metres, NULL, NULL, NULL) && direction && strcmp(direction, "down") == 0) metres = -metres;
+    if (axes) proj_destroy(axes);
+    if (system) proj_destroy(system);
+    return metres;
+}
+
+static bool has_heights(PJ_CONTEXT *proj, int geographic) {
+    char text[16];
+    snprintf(text, sizeof text, "%d", geographic);
+    PJ *system = proj_create_from_database(proj, "EPSG", text, PJ_CATEGORY_CRS, 0, NULL);
+    bool heights = system && proj_get_type(system) == PJ_TYPE_GEOGRAPHIC_3D_CRS;
+    if (system) proj_destroy(system);
+    return heights;
+}
+
+static void read_heights(GTIF *keys, PJ_CONTEXT *proj, GeotiffFile *file) {
+    double metres = 0;
+    file->vertical = short_key(keys, VerticalCSTypeGeoKey);
+    int unit = short_key(keys, VerticalUnitsGeoKey);
+    if (file->vertical > 0 && file->vertical != KvUserDefined) file->vertical_metres = vertical_metres(proj, file->vertical);
+    else file->above_ellipsoid = has_heights(proj, short_key(keys, GeographicTypeGeoKey));
+    if (unit && GTIFGetUOMLengthInfoEx(proj, unit, NULL, &metres)) file->vertical_metres = file->vertical_metres < 0 ? -metres : metres;
+}
+
 static void read_keys(TIFF *tiff, GeotiffFile *file) {
     GTIF *keys = GTIFNewEx(tiff, silent_keys, NULL);
     PJ_CONTEXT *proj = keys ? silent_proj() : NULL;
@@ -194,11 +226,7 @@ static void read_keys(TIFF *tiff, GeotiffFile *file) {
         file->has_keys = count > 0;
         if (file->has_keys) read_system(keys, proj, &file->system);
         file->point = short_key(keys, GTRasterTypeGeoKey) == RasterPixelIsPoint;
-        file->vertical = short_key(keys, VerticalCSTypeGeoKey);
-        file->vertical_datum = short_key(keys, VerticalDatumGeoKey);
-        file->vertical_unit = short_key(keys, VerticalUnitsGeoKey);
-        double metres = 0;
-        if (file->vertical_unit && GTIFGetUOMLengthInfoEx(proj, file->vertical_unit, NULL, &metres)) file->vertical_metres = metres;
+        read_heights(keys, proj, file);
     }
     if (keys) GTIFFree(keys);
     if (proj) proj_context_destroy(proj);

@@ -41,9 +41,9 @@ typedef struct GeotiffFile {
     bool has_keys;
     GeotiffSystem system;
     bool point;       /* pixels are points */
-    int vertical;     /* code of the vertical system; 0: not given */
-    int vertical_datum, vertical_unit;
-    double vertical_metres; /* of one vertical unit; 0: not given */
+    bool above_ellipsoid; /* the geographic system has heights of its own */
+    int vertical;           /* code of the vertical system; 0: not given */
+    double vertical_metres; /* of one vertical unit, negative for depths; 0: not given */
     bool has_scale, has_matrix;
     double scale[2];
     double matrix[6];       /* x = m0 column + m1 row + m2, y likewise */

@@ -4,6 +4,7 @@
 #include "image/picture.h"
 #include "shape/extent.h"
 #include "shape/mesh_file.h"
+#include "terrain/sun.h"
 #include "volume/grid_file.h"
 
 #include <string.h>
@@ -109,6 +110,48 @@ static bool density_grid(void *context, Arena *arena, const char *path, const Ev
     return grid_load(path, request->raw ? &raw : NULL, arena, out, error);
 }
 
+/* ---- places on the globe ---- */
+
+static GeoPlace place_of(Vec3 v) { return (GeoPlace){v.x, v.y, v.z}; }
+
+static bool sun_answer(const GeoFrame *frame, GeoPlace place, const char *time, Vec3 *answer, StrBuf *error) {
+    double days;
+    Vec3 there;
+    if (!sun_parse_time(time, &days, error)) return false;
+    return sun_direction(place, days, &there) && geo_direction_to_scene(frame, place, there, answer);
+}
+
+static bool geo_answer(const GeoFrame *frame, const EvalGeoRequest *request, Vec3 *answer, StrBuf *error) {
+    GeoPlace place, a = place_of(request->a);
+    GeodesicLine line;
+    UtmPlace utm;
+    switch (request->question) {
+    case EVAL_GEO_TO_SCENE: return geo_to_scene(frame, a, answer);
+    case EVAL_GEO_FROM_SCENE:
+        if (!scene_to_geo(frame, request->a, &place)) return false;
+        *answer = vec3(place.latitude, place.longitude, place.height);
+        return true;
+    case EVAL_GEODESIC:
+        if (!geodesic_inverse(a, place_of(request->b), &line)) return false;
+        *answer = vec3(line.distance, line.azimuth, line.azimuth_back);
+        return true;
+    case EVAL_UTM:
+        if (!utm_from_geo(a, &utm)) return false;
+        *answer = vec3(utm.easting, utm.northing, utm.north ? utm.zone : -utm.zone);
+        return true;
+    case EVAL_SUN_DIRECTION: return sun_answer(frame, a, request->time, answer, error);
+    }
+    return false;
+}
+
+static bool geo(void *context, const GeoOrigin *origin, const EvalGeoRequest *request, Vec3 *answer, StrBuf *error) {
+    GeoFrame frame;
+    (void)context;
+    if (geo_frame_init(&frame, place_of(origin->place), origin->flat) && geo_answer(&frame, request, answer, error)) return true;
+    if (error->size == 0) strbuf_adds(error, "this is no place on the globe");
+    return false;
+}
+
 EvalGeometry hooks_geometry(Arena *arena, TexelCache *texels) {
     Hooks *hooks = arena_new(arena, Hooks);
     *hooks = (Hooks){.tracer = shape_tracer_create(arena), .texels = texels, .memory = arena->budget};
@@ -123,5 +166,6 @@ EvalGeometry hooks_geometry(Arena *arena, TexelCache *texels) {
         .mesh_file = mesh_file,
         .picture_file = picture_file,
         .density_grid = density_grid,
+        .geo = geo,
     };
 }

@@ -371,5 +371,6 @@ const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context, double
                      .clock = clock,
                      .time = clock};
     scene->settings.assumed_gamma = build_assumed_gamma(context);
+    scene->settings.geo_origin = context->geo_origin;
     return scene;
 }

@@ -130,6 +130,11 @@ typedef struct LightFinder {
 const Object *lights_find(LightFinder *finder, const Object *object);
 BlockBuilder build_sky_sphere, build_fog, build_rainbow; /* build_sky.c */
 bool background_read(BuildContext *context, const EvalBlock *block, Color *out);
+/* geo_origin of global_settings (eval_geo.c). */
+void settings_read_origin(Reader *reader, const Word *word, void *target);
+/* Gives the scene its origin on the globe. False after a report, where it has another already; what a terrain without an `origin` of its
+ * own does is to ask context->geo_origin.set first. */
+bool geo_origin_set(BuildContext *context, const GeoOrigin *origin);
 bool settings_read(BuildContext *context, const EvalBlock *block,
                    GlobalSettings *settings); /* build_settings.c */
 BlockBuilder build_texel;                     /* build_texel.c */

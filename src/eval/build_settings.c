@@ -116,7 +116,7 @@ static const WordRule rules[] = {
     KNOB("filtering"),
     KNOB("detail"),
     {"sky_light", WORD_FLAG, FIELD(sky_light), NULL, false},
-    INERT("geo_origin"),
+    {"geo_origin", WORD_CUSTOM, 0, settings_read_origin, true},
     INERT("radiosity"),
     INERT("photons"),
     INERT("subsurface"),

@@ -46,6 +46,20 @@ typedef struct EvalMeshFile {
     size_t count; /* at least 1 */
 } EvalMeshFile;
 
+typedef enum EvalGeoQuestion {
+    EVAL_GEO_TO_SCENE,   /* a: latitude, longitude (degrees), height */
+    EVAL_GEO_FROM_SCENE, /* a: point of the scene */
+    EVAL_GEODESIC,       /* a and b: places; answer: distance, azimuth at a, azimuth back at b */
+    EVAL_UTM,            /* a: place; answer: easting, northing, zone (negative: south; 0: UPS, near the poles) */
+    EVAL_SUN_DIRECTION,  /* a: place; time; answer: unit vector of the scene */
+} EvalGeoQuestion;
+
+typedef struct EvalGeoRequest {
+    EvalGeoQuestion question;
+    Vec3 a, b;
+    const char *time; /* ISO 8601 */
+} EvalGeoRequest;
+
 /* What the evaluator cannot know by itself, supplied by whoever links the folders that can. */
 typedef struct EvalGeometry {
     void *context;
@@ -65,6 +79,8 @@ typedef struct EvalGeometry {
     bool (*picture_file)(void *context, Arena *arena, ImageMap *image, StrBuf *error);
     /* A pattern as a function of place: 3 inputs, 1 output; otherwise the same. */
     bool (*pattern_function)(void *context, Arena *arena, const Pigment *pattern, TapeExternal *out);
+    /* Geography, with the scene's origin on the globe. False with a line of text in `error`. */
+    bool (*geo)(void *context, const GeoOrigin *origin, const EvalGeoRequest *request, Vec3 *answer, StrBuf *error);
 } EvalGeometry;
 
 typedef struct EvalOptions {

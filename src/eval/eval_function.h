@@ -25,6 +25,12 @@ Value eval_lsystem_string(Eval *ev, const Node *call);
 Value eval_lsystem_count(Eval *ev, const Node *call);
 /* wind_at() (build_wind.c). */
 Value eval_wind_at(Eval *ev, const Node *call);
+/* eval_geo.c */
+Value eval_geo(Eval *ev, const Node *call);
+Value eval_geo_inverse(Eval *ev, const Node *call);
+Value eval_geodesic(Eval *ev, const Node *call);
+Value eval_utm(Eval *ev, const Node *call);
+Value eval_sun_direction(Eval *ev, const Node *call);
 
 /* A function that is nothing but one external. */
 Value external_function(Eval *ev, const Node *node, const TapeExternal *external);

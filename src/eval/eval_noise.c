@@ -136,6 +136,11 @@ static const KnownFunction known_functions[] = {
     {"lsystem_string", 1, false, NULL, eval_lsystem_string},
     {"lsystem_count", 2, false, NULL, eval_lsystem_count},
     {"wind_at", 3, false, NULL, eval_wind_at},
+    {"geo", 1, false, NULL, eval_geo},
+    {"geo_inverse", 1, false, NULL, eval_geo_inverse},
+    {"geodesic", 2, false, NULL, eval_geodesic},
+    {"utm", 1, false, NULL, eval_utm},
+    {"sun_direction", 2, false, NULL, eval_sun_direction},
 };
 
 const KnownFunction *known_function_find(Name name) {

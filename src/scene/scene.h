@@ -618,6 +618,14 @@ typedef struct Rainbow {
     const Pigment *colors;     /* from the inner rim, x = 0, to the outer, x = 1 */
 } Rainbow;
 
+/* The scene's place on the globe: x is east, y up, z north there. */
+typedef struct GeoOrigin {
+    Span span;
+    bool set;
+    bool flat;  /* places lie on the map that keeps distances and directions from the origin, heights straight up; else on the round earth */
+    Vec3 place; /* latitude, longitude (degrees), height above the ellipsoid WGS84 */
+} GeoOrigin;
+
 typedef struct GlobalSettings {
     double max_error;      /* 0: not given */
     Color ambient_light;   /* 1 */
@@ -633,6 +641,7 @@ typedef struct GlobalSettings {
     const char *filtering;     /* NULL: linear */
     const char *detail;        /* NULL: auto */
     bool sky_light;            /* ambient light of matter in skins comes from the sky that it sees */
+    GeoOrigin geo_origin;      /* geo_origin, else the first terrain's */
 } GlobalSettings;
 
 /* A texel that a name stands for when the scene's text ends: "Grass", "Trees[2]". */

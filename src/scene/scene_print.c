@@ -528,6 +528,8 @@ static void print_settings(Printer *p, const GlobalSettings *s) {
     for (size_t i = 0; i < VTS_ARRAY_COUNT(texts); i++)
         if (texts[i][1]) strbuf_addf(p->out, " %s %s", texts[i][0], texts[i][1]);
     add_flag(p, "sky_light", s->sky_light);
+    if (s->geo_origin.set) strbuf_addf(p->out, " geo_origin <%.10g,%.10g,%g>", s->geo_origin.place.x, s->geo_origin.place.y, s->geo_origin.place.z);
+    add_flag(p, "flat", s->geo_origin.flat);
     end_line(p);
 }
 

@@ -9,11 +9,11 @@ syn case match
 syn iskeyword @,48-57,_
 
 syn keyword vtsFunction abs acos acosh asc asin asinh atan atan2 atanh bitwise_and bitwise_or bitwise_xor ceil chr concat
-syn keyword vtsFunction cos cosh cube datetime defined degrees dimension_size dimensions div exp fbm file_exists floor
-syn keyword vtsFunction inside int internal ln log lsystem_count lsystem_string max max_extent min min_extent mod perlin
-syn keyword vtsFunction pow prod radians rand seed select sin sinh sparse_convolution sqr sqrt str strcmp strlen strlwr
-syn keyword vtsFunction strupr substr sum tan tanh trace val vaxis_rotate vcross vdot vlength vnormalize vrotate vstr
-syn keyword vtsFunction vturbulence wind_at worley
+syn keyword vtsFunction cos cosh cube datetime defined degrees dimension_size dimensions div exp fbm file_exists floor geo
+syn keyword vtsFunction geo_inverse geodesic inside int internal ln log lsystem_count lsystem_string max max_extent min
+syn keyword vtsFunction min_extent mod perlin pow prod radians rand seed select sin sinh sparse_convolution sqr sqrt str
+syn keyword vtsFunction strcmp strlen strlwr strupr substr sum sun_direction tan tanh trace utm val vaxis_rotate vcross
+syn keyword vtsFunction vdot vlength vnormalize vrotate vstr vturbulence wind_at worley
 syn keyword vtsConstant clock clock_delta clock_on false final_clock final_frame frame_number image_height image_width
 syn keyword vtsConstant initial_clock initial_frame no now off on pi t true u v version x y yes z
 syn keyword vtsColor color colour rgb rgbf rgbft rgbt srgb srgbf srgbft srgbt

@@ -9,7 +9,8 @@ typedef struct Frame {
     const CompiledScene *compiled;
     const RenderOptions *options;
     BeamTracer **beams; /* one for each worker; NULL: no skin is near, */
-    Sampler **samplers; /* and these see the picture */
+    Sampler **samplers; /* and these see the picture, */
+    Middles *middles;   /* and share these; NULL: they do not */
     AovSum *aovs;       /* of the tile that each worker sees; or NULL */
 } Frame;
 
@@ -57,6 +58,14 @@ static void make_workers(Frame *frame, int workers) {
     for (int i = 0; i < workers; i++) frame->samplers[i] = sampler_create(compiled, &plan, arena);
 }
 
+/* After all that takes memory from arenas, which may not return. */
+static void share_middles(Frame *frame, int workers) {
+    const int *region = frame->options->region;
+    if (!frame->samplers || frame->options->aovs) return;
+    frame->middles = middles_create(region[0] / FILM_TILE, region[1] / FILM_TILE, (region[2] - 1) / FILM_TILE + 1, (region[3] - 1) / FILM_TILE + 1);
+    for (int i = 0; i < workers; i++) sampler_share(frame->samplers[i], frame->middles);
+}
+
 static void count_workers(const Frame *frame, int workers, RenderStats *stats) {
     double squares = 0;
     uint64_t pixels = 0;
@@ -84,9 +93,11 @@ bool render_picture(const CompiledScene *compiled, const RenderOptions *options,
     int workers = pool_threads(options->pool);
     Frame frame = {.compiled = compiled, .options = options};
     make_workers(&frame, workers);
+    share_middles(&frame, workers);
     bool done = film_expose(options, compiled->scene->settings.assumed_gamma, "render", see_tile, &frame, memory, out, error);
     *stats = (RenderStats){.error_estimate = -1};
     count_workers(&frame, workers, stats);
+    middles_destroy(frame.middles);
     arena_reset_to(compiled->arena, mark);
     return done;
 }

@@ -27,13 +27,14 @@ typedef struct Cell {
     Radiance sum;      /* over its samples */
     Vec3f shown, late; /* sums of clamped light: of all samples, of the last half */
     float squares;     /* of its channels */
-    Vec3f first;
+    Vec3f mean;        /* of `shown` */
     float contrast;    /* of the first sample with those around: squared error to be expected of it */
     int count, late_count;
     bool refinable;
     uint32_t object;   /* that the middle sees, from 1; 0: none */
     Vec3f normal;      /* of it */
-    Radiance middle;   /* the first sample */
+    Radiance middle;   /* the first sample, */
+    Vec3f first;       /* clamped */
     double error;      /* expected squared error now */
 } Cell;
 
@@ -52,6 +53,7 @@ typedef struct Candidate {
 struct Sampler {
     const CompiledScene *compiled;
     SamplePlan plan;
+    Middles *middles; /* or NULL */
     Tracer tracer;
     Cell cells[CELLS];
     bool shares;  /* light is a matter of the surface alone: neither skins nor a lens */
@@ -71,6 +73,8 @@ Sampler *sampler_create(const CompiledScene *compiled, const SamplePlan *plan, A
     tracer_init(&sp->tracer, compiled, arena);
     return sp;
 }
+
+void sampler_share(Sampler *sp, Middles *middles) { sp->middles = middles; }
 
 void sampler_count(const Sampler *sp, TraceCounters *counters, SamplerTally *tally) {
     trace_counters_add(counters, &sp->tracer.counters);
@@ -160,58 +164,91 @@ static bool share_light(const Sampler *sp, const Cell *cell, double x, double y,
     return true;
 }
 
-/* Adds the sample at (x, y) of the pixel (px, py), `width` pixels wide. Whether the pixel's error can be that of edges is found at its first. */
-static void add_sample(Sampler *sp, Cell *cell, int px, int py, double x, double y, double width) {
+/* A sample's place on the picture and its number in the pixel. */
+typedef struct Aim {
+    int px, py, number;
+    double x, y, width; /* in the pixel, in pixels */
+} Aim;
+
+typedef struct Sighting {
+    bool found;
+    SurfaceHit hit; /* where something was found */
+    float reaching; /* the share that explicit surfaces have */
+    Radiance seen;
+} Sighting;
+
+/* `cell`: with what is known of the pixel and those around, where that may do; or NULL. */
+static void see(Sampler *sp, const Aim *aim, const Cell *cell, Sighting *out) {
     Tracer *tracer = &sp->tracer;
-    SurfaceHit hit;
-    float reaching = 1;
     Cone cone;
-    uint64_t pixel = random_hash((uint64_t)px, (uint64_t)py, sp->plan.seed, 0);
-    tracer->draw = (Draw){pixel, (uint32_t)cell->count};
-    tracer->seed = cell->count ? random_mix(pixel + (uint64_t)cell->count) : pixel;
-    bool ray = view_sample(&sp->compiled->view, &tracer->draw, px + x, py + y, width, &cone);
-    AovSum *aovs = aovs_of(sp, px, py);
+    uint64_t pixel = random_hash((uint64_t)aim->px, (uint64_t)aim->py, sp->plan.seed, 0);
+    tracer->draw = (Draw){pixel, (uint32_t)aim->number};
+    tracer->seed = aim->number ? random_mix(pixel + (uint64_t)aim->number) : pixel;
+    bool ray = view_sample(&sp->compiled->view, &tracer->draw, aim->px + aim->x, aim->py + aim->y, aim->width, &cone);
+    AovSum *aovs = aovs_of(sp, aim->px, aim->py);
     MatterAov matter = {.share = 0};
     tracer->matter = aovs ? &matter : NULL;
-    bool found = ray && find_surface(sp->compiled, &cone, aovs, &hit);
-    Radiance seen = {{0, 0, 0}, 0};
-    if (cell->count > 0 && ray && share_light(sp, cell, x, y, found ? &hit : NULL, &seen)) tracer->counters.camera_rays++;
-    else if (ray) seen = trace_cone(tracer, &cone, found ? &hit : NULL, &reaching);
-    Vec3f light = shown(seen.color);
-    if (aovs) {
-        AovSample surface = found ? aov_of_surface(&cone, &hit, reaching) : (AovSample){.share = 0};
-        AovSample voxels = matter_sum_end(&matter, &cone);
-        aov_add(aovs, &voxels, 1);
-        aov_add(aovs, &surface, 1);
-        aovs->samples++;
-    }
-    if (cell->count == 0) {
-        cell->first = light;
-        cell->middle = seen;
-        cell->object = found ? hit.object + 1 : 0;
-        cell->normal = found ? vec3f_from(hit.normal) : vec3f(0, 0, 0);
-        cell->refinable = view_has_lens(&sp->compiled->view) || reaching >= ALL_EXPLICIT || (reaching >= EDGE_WORTH && surfaces_vary(sp->compiled, px + x, py + y, found, &hit));
-    }
+    out->found = ray && find_surface(sp->compiled, &cone, aovs, &out->hit);
+    out->reaching = 1;
+    out->seen = (Radiance){{0, 0, 0}, 0};
+    const SurfaceHit *hit = out->found ? &out->hit : NULL;
+    if (cell && ray && share_light(sp, cell, aim->x, aim->y, hit, &out->seen)) tracer->counters.camera_rays++;
+    else if (ray) out->seen = trace_cone(tracer, &cone, hit, &out->reaching);
+    if (!aovs) return;
+    AovSample surface = hit ? aov_of_surface(&cone, hit, out->reaching) : (AovSample){.share = 0};
+    AovSample voxels = matter_sum_end(&matter, &cone);
+    aov_add(aovs, &voxels, 1);
+    aov_add(aovs, &surface, 1);
+    aovs->samples++;
+}
+
+static void add_light(Cell *cell, const Radiance *seen) {
+    Vec3f light = shown(seen->color);
     cell->count++;
-    cell->sum.color = vec3f_add(cell->sum.color, seen.color);
-    cell->sum.alpha += seen.alpha;
+    cell->sum.color = vec3f_add(cell->sum.color, seen->color);
+    cell->sum.alpha += seen->alpha;
     cell->shown = vec3f_add(cell->shown, light);
     cell->squares += vec3f_dot(light, light);
     cell->late = vec3f_add(cell->late, light);
     cell->late_count++;
 }
 
+/* The first sample, by which it is found whether the pixel's error can be that of edges. */
+static void see_first(Sampler *sp, const Aim *aim, Middle *out) {
+    Sighting s;
+    see(sp, aim, NULL, &s);
+    out->seen = s.seen;
+    out->object = s.found ? s.hit.object + 1 : 0;
+    out->normal = s.found ? vec3f_from(s.hit.normal) : vec3f(0, 0, 0);
+    out->refinable = view_has_lens(&sp->compiled->view) || s.reaching >= ALL_EXPLICIT ||
+                     (s.reaching >= EDGE_WORTH && surfaces_vary(sp->compiled, aim->px + aim->x, aim->py + aim->y, s.found, &s.hit));
+}
+
+static void begin_cell(Cell *cell, const Middle *m) {
+    Vec3f light = shown(m->seen.color);
+    *cell = (Cell){.first = light, .middle = m->seen, .object = m->object, .normal = m->normal, .refinable = m->refinable};
+    add_light(cell, &m->seen);
+    cell->mean = light;
+}
+
+/* The first sample of each pixel lies in its middle: of light that changes evenly it is the mean. */
+static void see_middle(Sampler *sp, int px, int py, Middle *out) { see_first(sp, &(Aim){px, py, 0, 0.5, 0.5, 1}, out); }
+
 static void place_of(const Sampler *sp, int cell, int *px, int *py) {
     *px = sp->x0 + cell % EDGE - 1;
     *py = sp->y0 + cell / EDGE - 1;
 }
 
-/* The first sample of each pixel lies in its middle: of light that changes evenly it is the mean. */
-static void see_middle(Sampler *sp, int index) {
-    int px, py;
-    place_of(sp, index, &px, &py);
-    sp->cells[index] = (Cell){.count = 0};
-    add_sample(sp, &sp->cells[index], px, py, 0.5, 0.5, 1);
+static void add_sample(Sampler *sp, Cell *cell, const Aim *aim) {
+    if (cell->count == 0) {
+        Middle first;
+        see_first(sp, aim, &first);
+        begin_cell(cell, &first);
+        return;
+    }
+    Sighting s;
+    see(sp, aim, cell, &s);
+    add_light(cell, &s.seen);
 }
 
 /* Samples up to `count` of them, laid by lot. */
@@ -227,8 +264,9 @@ static void see_more(Sampler *sp, int index, int count) {
         draw_pair(&draw, DRAW_PIXEL, &x, &y);
         if (sp->plan.fixed == 1) x = y = 0.5;
         if (k == half) cell->late = vec3f(0, 0, 0), cell->late_count = 0;
-        add_sample(sp, cell, px, py, x, y, width);
+        add_sample(sp, cell, &(Aim){px, py, cell->count, x, y, width});
     }
+    if (cell->count) cell->mean = vec3f_scale(cell->shown, 1 / (float)cell->count);
 }
 
 /* ---- errors ---- */
@@ -239,9 +277,12 @@ static int level_of(int count) {
     return level;
 }
 
+/* -log4, rounded down; from the number's own exponent. */
 static int contrast_class(double contrast) {
-    int class = contrast > 0 ? (int)(-0.5 * log2(contrast)) : CONTRASTS - 1;
-    return int_clamp(class, 0, CONTRASTS - 1);
+    int exponent;
+    if (!(contrast > 0)) return CONTRASTS - 1;
+    bool power = frexp(contrast, &exponent) == 0.5;
+    return exponent > 0 ? 0 : int_min((power - exponent) / 2, CONTRASTS - 1);
 }
 
 static void learn(Learned *learned, double expected, double found) {
@@ -262,17 +303,15 @@ static double contrast_ratio(const Sampler *sp, double contrast) {
     return ratio;
 }
 
-static Vec3f mean_shown(const Cell *cell) { return vec3f_scale(cell->shown, 1 / (float)cell->count); }
-
 static double variance(const Cell *cell) {
-    double n = cell->count, squares = (double)cell->squares / n, mean = (double)vec3f_dot(mean_shown(cell), mean_shown(cell));
+    double n = cell->count, squares = (double)cell->squares / n, mean = (double)vec3f_dot(cell->mean, cell->mean);
     double found = fmax(squares - mean, 0) * n / (n - 1) / 3;
     /* Few samples may have missed what the neighbours show. */
     return found + (double)cell->contrast / (n * n);
 }
 
 static double expected_error(const Sampler *sp, const Cell *cell) {
-    if (!cell->refinable) return 0;
+    if (!cell->refinable || (cell->count == 1 && cell->contrast == 0)) return 0;
     if (cell->count == 1) return CAUTION * (double)cell->contrast * contrast_ratio(sp, (double)cell->contrast);
     double ratio = learned_ratio(&sp->levels[level_of(cell->count)], EDGE_GAIN * sqrt(5.0 / cell->count));
     return CAUTION * variance(cell) * ratio / cell->count;
@@ -299,7 +338,7 @@ static float contrast_of(const Sampler *sp, int index) {
     Vec3f here = sp->cells[index].first;
     float most = 0;
     for (int k = 0; k < 4; k++) {
-        Vec3f after = vec3f_sub(mean_shown(&sp->cells[index + across[k]]), here), before = vec3f_sub(here, mean_shown(&sp->cells[index - across[k]]));
+        Vec3f after = vec3f_sub(sp->cells[index + across[k]].mean, here), before = vec3f_sub(here, sp->cells[index - across[k]].mean);
         most = float_max(most, mean_square(vec3f_sub(after, before)) * step_like(before, after));
     }
     return most * (float)(STEP_TO_ERROR * STEP_TO_ERROR / 4);
@@ -357,7 +396,7 @@ static void refine(Sampler *sp, int index) {
     Cell *cell = &sp->cells[index];
     int before = cell->count;
     see_more(sp, index, next_count(before));
-    if (before == 1) learn(&sp->contrasts[contrast_class((double)cell->contrast)], (double)cell->contrast, (double)mean_square(vec3f_sub(cell->first, mean_shown(cell))));
+    if (before == 1) learn(&sp->contrasts[contrast_class((double)cell->contrast)], (double)cell->contrast, (double)mean_square(vec3f_sub(cell->first, cell->mean)));
     learn(&sp->levels[level_of(cell->count)], variance(cell) / cell->count, halves_error(cell));
 }
 
@@ -399,13 +438,47 @@ static double refine_all(Sampler *sp) {
     return value_all(sp);
 }
 
+/* All of a tile, for whoever needs them. */
+static void see_shared(void *context, int tile_x, int tile_y, Middle *rows) {
+    Sampler *sp = context;
+    const View *view = &sp->compiled->view;
+    int x0 = tile_x * FILM_TILE, y0 = tile_y * FILM_TILE;
+    for (int y = 0; y < FILM_TILE && y0 + y < view->height; y++)
+        for (int x = 0; x < FILM_TILE && x0 + x < view->width; x++) {
+            Middle *m = &rows[y * FILM_TILE + x];
+            if (stopped(sp)) *m = (Middle){.object = 0};
+            else see_middle(sp, x0 + x, y0 + y, m);
+        }
+}
+
+/* Those of the tile and of the tiles around; NULL where each looks for itself. First what nobody sees yet, then what others do. */
+static void ask_around(Sampler *sp, const Middle *shared[9]) {
+    int x = sp->x0 / FILM_TILE, y = sp->y0 / FILM_TILE;
+    for (int wait = 0; wait < 2; wait++)
+        for (int k = 0; k < 9; k++) shared[k] = middles_ask(sp->middles, x + k % 3 - 1, y + k / 3 - 1, wait, see_shared, sp);
+}
+
+/* Number of the pixel's tile among those around, of which the tile in question is the fourth; and of the pixel in it. */
+static const Middle *shared_middle(const Sampler *sp, const Middle *const shared[9], int px, int py) {
+    int x = px / FILM_TILE - sp->x0 / FILM_TILE + 1, y = py / FILM_TILE - sp->y0 / FILM_TILE + 1;
+    const Middle *rows = shared[3 * y + x];
+    return rows ? &rows[py % FILM_TILE * FILM_TILE + px % FILM_TILE] : NULL;
+}
+
 static void see_middles(Sampler *sp) {
     const View *view = &sp->compiled->view;
+    const Middle *shared[9];
+    ask_around(sp, shared);
     for (int row = 0; row <= sp->rows + 1; row++)
         for (int column = 0; column <= sp->columns + 1 && !stopped(sp); column++) {
             int px = sp->x0 + column - 1, py = sp->y0 + row - 1;
-            if (px >= 0 && py >= 0 && px < view->width && py < view->height) see_middle(sp, row * EDGE + column);
+            if (px < 0 || py < 0 || px >= view->width || py >= view->height) continue;
+            Middle own;
+            const Middle *m = shared_middle(sp, shared, px, py);
+            if (!m) see_middle(sp, px, py, &own);
+            begin_cell(&sp->cells[row * EDGE + column], m ? m : &own);
         }
+    middles_leave(sp->middles, sp->x0 / FILM_TILE, sp->y0 / FILM_TILE);
     /* Beyond the picture's border lies what lies along it. */
     for (int row = 0; row <= sp->rows + 1; row++)
         for (int column = 0; column <= sp->columns + 1; column++) {

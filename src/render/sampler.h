@@ -2,7 +2,7 @@
 #ifndef VTS_RENDER_SAMPLER_H
 #define VTS_RENDER_SAMPLER_H
 
-#include "render/integrate.h"
+#include "render/middles.h"
 
 typedef struct SamplePlan {
     int fixed;        /* samples of every pixel; 0: by the error */
@@ -15,6 +15,8 @@ typedef struct SamplePlan {
 typedef struct Sampler Sampler; /* of one worker */
 
 Sampler *sampler_create(const CompiledScene *compiled, const SamplePlan *plan, Arena *arena);
+/* Before the first tile: what the samplers of all workers share, where nothing is added to `aovs`. NULL: each tile looks for itself. */
+void sampler_share(Sampler *sampler, Middles *middles);
 /* A whole tile, [x0, x1) × [y0, y1), at most FILM_TILE each way: rows of x1 − x0 in `out`, and what is seen
  * there added to `aovs`, unless NULL. What it gives depends on the tile alone. */
 void sampler_tile(Sampler *sampler, int x0, int y0, int x1, int y1, Radiance *out, AovSum *aovs);

@@ -1,0 +1,29 @@
+/* What the middles of pixels see, tile by tile: the samplers of a picture share them, since each tile looks at the pixels around it. */
+#ifndef VTS_RENDER_MIDDLES_H
+#define VTS_RENDER_MIDDLES_H
+
+#include "render/film.h"
+#include "render/integrate.h"
+
+/* The first sample of a pixel. */
+typedef struct Middle {
+    Radiance seen;
+    Vec3f normal;    /* of the surface, */
+    uint32_t object; /* and its number, from 1; 0: none */
+    bool refinable;  /* the pixel's error can be that of edges */
+} Middle;
+
+typedef struct Middles Middles;
+
+/* For the tiles [x0, x1) × [y0, y1), by number. NULL when memory is short. */
+Middles *middles_create(int x0, int y0, int x1, int y1);
+void middles_destroy(Middles *middles);
+
+/* Rows of FILM_TILE middles of a tile, as far as the picture goes; NULL for tiles that are not among those, and when memory is short.
+ * Who asks first makes them with see(context, x, y, rows), others wait for it; asked for without `wait` they may be NULL for that. */
+const Middle *middles_ask(Middles *middles, int x, int y, bool wait,
+                          void (*see)(void *context, int x, int y, Middle *rows), void *context);
+/* The tile is finished: what no other needs any more is released. Each tile once, after all that it asked for. */
+void middles_leave(Middles *middles, int x, int y);
+
+#endif

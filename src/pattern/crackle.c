@@ -29,15 +29,37 @@ static void insert(Nearest *nearest, double sum, Vec3 point) {
         s[2] = sum;
 }
 
-/* One point in each cell: of the cells around, those that are two away in one axis at most can hold the nearest. */
-static Nearest find_nearest(Vec3 p, double metric) {
+/* Of the cells around a place those that are two away in one axis at most can hold the nearest points: by how far they are away. */
+static const int8_t CELLS[][3] = {
+#define ROW(x, y)                                                                                            \
+    {x, y, 0}, {x, y, -1}, { x, y, 1 }
+    ROW(0, 0),    ROW(-1, 0),  ROW(1, 0),   ROW(0, -1),  ROW(0, 1),
+    ROW(-1, -1),  ROW(-1, 1),  ROW(1, -1),  ROW(1, 1),
+#undef ROW
+#define FACE(a, b)                                                                                           \
+    {-2, a, b}, {2, a, b}, {a, -2, b}, {a, 2, b}, {a, b, -2}, { a, b, 2 }
+    FACE(0, 0),   FACE(-1, 0), FACE(1, 0),  FACE(0, -1), FACE(0, 1),
+    FACE(-1, -1), FACE(-1, 1), FACE(1, -1), FACE(1, 1),
+#undef FACE
+};
+
+/* From x to the cell `step` cells away, x being in [0, 1). */
+static double way_to(double x, int step) {
+    return step > 0 ? double_max(step - x, 0) : step < 0 ? double_max(x - step - 1, 0) : 0;
+}
+
+/* One point in each cell. Of the nearest points so many are wanted. */
+static Nearest find_nearest(Vec3 p, double metric, int wanted) {
     /* POV-Ray takes a place 10⁻⁷ below a cell's border for the next cell. */
-    Vec3 corner = vec3(floor(p.x + 1e-7), floor(p.y + 1e-7), floor(p.z + 1e-7));
+    Vec3 corner = vec3(floor(p.x + 1e-7), floor(p.y + 1e-7), floor(p.z + 1e-7)), within = vec3_sub(p, corner);
     Nearest nearest = {.sums = {VTS_INFINITY, VTS_INFINITY, VTS_INFINITY}};
-    for (int cell = 0; cell < 125; cell++) {
-        int x = cell / 25 - 2, y = cell / 5 % 5 - 2, z = cell % 5 - 2;
-        if ((x * x == 4) + (y * y == 4) + (z * z == 4) > 1) continue;
-        Vec3 point = noise_pov_cell_point(vec3_add(corner, vec3(x, y, z)));
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(CELLS); i++) {
+        const int8_t *cell = CELLS[i];
+        Vec3 way = vec3(way_to(within.x, cell[0]), way_to(within.y, cell[1]), way_to(within.z, cell[2]));
+        if (metric > 0 && isfinite(nearest.sums[wanted - 1]) &&
+            distance_sum(way, metric) > nearest.sums[wanted - 1])
+            continue;
+        Vec3 point = noise_pov_cell_point(vec3_add(corner, vec3(cell[0], cell[1], cell[2])));
         insert(&nearest, distance_sum(vec3_sub(point, p), metric), point);
     }
     return nearest;
@@ -45,7 +67,10 @@ static Nearest find_nearest(Vec3 p, double metric) {
 
 double crackle_number(const Pigment *pigment, Vec3 p) {
     const CrackleSettings *c = &pigment->crackle;
-    Nearest nearest = find_nearest(p, c->metric);
+    Nearest nearest = find_nearest(p, c->metric,
+                                   c->solid || (c->form.y == 0 && c->form.z == 0) ? 1
+                                   : c->form.z == 0                               ? 2
+                                                                                  : 3);
     if (c->solid) return double_clamp(noise_generated(generator_of(pigment), nearest.point), 0, 1);
     double value = 0, offset = c->offset == 0 ? 0 : distance_sum(vec3(c->offset, 0, 0), c->metric);
     const double form[3] = {c->form.x, c->form.y, c->form.z};
@@ -54,4 +79,4 @@ double crackle_number(const Pigment *pigment, Vec3 p) {
     return isnan(value) ? 0 : double_clamp(value, 0, 1); /* with metric 0 all distances are infinite */
 }
 
-Vec3 crackle_point(Vec3 p, double metric) { return find_nearest(p, metric).point; }
+Vec3 crackle_point(Vec3 p, double metric) { return find_nearest(p, metric, 1).point; }

@@ -36,6 +36,7 @@ static double zero_between(LineFunction f, const void *context, double a, double
         else
             b = t;
         double next = t - at.value / at.slope;
+        if (fabs(next - t) <= 2e-16) return double_clamp(next, fmin(a, b), fmax(a, b)); /* no more than rounding: the ring has the size 1 */
         bool slow = !(fabs(next - t) < last / 2);
         if (slow || !(next > fmin(a, b) && next < fmax(a, b))) next = a + (b - a) / 2;
         last = fabs(next - t);

@@ -11,18 +11,21 @@ double roots_value(const double *c, int degree, double x) {
     return value;
 }
 
-/* The zero between a and b, where the signs differ: Newton's steps while they stay between and shrink, halving else. */
-static double zero_between(const double *c, const double *slope, int degree, double a, double b) {
+/* The zero between a and b, where the signs differ: Newton's steps while they stay between and shrink, halving else. A step of no more
+ * than rounding is the last: after it they only jump about. */
+static double zero_between(const double *c, int degree, double a, double b) {
     bool rising = roots_value(c, degree, a) < 0;
     double x = a + (b - a) / 2, last = b - a;
     for (int i = 0; i < 120; i++) {
-        double value = roots_value(c, degree, x);
+        double value = c[degree], slope = 0;
+        for (int k = degree - 1; k >= 0; k--) slope = slope * x + value, value = value * x + c[k];
         if (value == 0) return x;
         if ((value < 0) == rising)
             a = x;
         else
             b = x;
-        double next = x - value / roots_value(slope, degree - 1, x);
+        double next = x - value / slope;
+        if (fabs(next - x) <= 3e-16 * fabs(x)) return double_clamp(next, a, b);
         bool slow = !(fabs(next - x) < fabs(last) / 2);
         if (slow || !(next > a && next < b)) next = a + (b - a) / 2;
         last = next - x;
@@ -33,8 +36,7 @@ static double zero_between(const double *c, const double *slope, int degree, dou
 }
 
 /* Zeros of `c` in [lo, hi], where `stations` are those of its derivative. */
-static int zeros_among(const double *c, const double *slope, int degree, double lo, double hi,
-                       const double *stations, int station_count, double *out) {
+static int zeros_among(const double *c, int degree, double lo, double hi, const double *stations, int station_count, double *out) {
     int count = 0;
     double a = lo, at_a = roots_value(c, degree, lo);
     if (at_a == 0) out[count++] = lo;
@@ -43,7 +45,7 @@ static int zeros_among(const double *c, const double *slope, int degree, double 
         if (b > a && at_b == 0)
             out[count++] = b;
         else if ((at_a < 0 && at_b > 0) || (at_a > 0 && at_b < 0))
-            out[count++] = zero_between(c, slope, degree, a, b);
+            out[count++] = zero_between(c, degree, a, b);
         a = b;
         at_a = at_b;
         if (count == degree) break;
@@ -104,13 +106,13 @@ int roots_in(const double *c, int degree, double lo, double hi, double *out) {
     for (int k = 0; k < degree; k++) {
         int most = count_zeros(slopes[k], degree - k, lo, hi);
         if (most == MANY) continue;
-        if (most == 1) out[count++] = zero_between(slopes[k], slopes[k + 1], degree - k, lo, hi);
+        if (most == 1) out[count++] = zero_between(slopes[k], degree - k, lo, hi);
         from = k - 1;
         break;
     }
     for (int k = from; k >= 0; k--) {
         memcpy(stations, out, sizeof *out * (size_t)count);
-        count = zeros_among(slopes[k], slopes[k + 1], degree - k, lo, hi, stations, count, out);
+        count = zeros_among(slopes[k], degree - k, lo, hi, stations, count, out);
     }
     return count;
 }

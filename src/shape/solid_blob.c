@@ -17,10 +17,6 @@ typedef struct StageList {
     size_t count, capacity;
 } StageList;
 
-static const void *prepare(const Object *object, Arena *arena) {
-    (void)arena;
-    return object->as.solid;
-}
 
 /* How the squared distance from the part changes along a line: a t² + b t + c. */
 static void add_stage(Arena *arena, StageList *list, const BlobPart *part, double a, double b, double c,
@@ -91,9 +87,14 @@ static Box3 part_bounds(const BlobPart *part) {
     return box3_transform(&part->transform, box);
 }
 
+typedef struct Blob {
+    const Solid *solid;
+    Box3 reach; /* of all parts */
+} Blob;
+
 /* Parts of negative strength only take away. */
 static Box3 bounds(const void *data) {
-    const Solid *s = data;
+    const Solid *s = ((const Blob *)data)->solid;
     Box3 box = box3_empty();
     if (s->as.blob.threshold <= 0) return (Box3){vec3_splat(-VTS_INFINITY), vec3_splat(VTS_INFINITY)};
     for (size_t i = 0; i < s->as.blob.count; i++)
@@ -118,10 +119,18 @@ static void solve(const StageList *list, double threshold, double *places, size_
     }
 }
 
+static const void *prepare(const Object *object, Arena *arena) {
+    Blob *blob = arena_new(arena, Blob);
+    const Solid *s = blob->solid = object->as.solid;
+    blob->reach = box3_empty();
+    for (size_t i = 0; i < s->as.blob.count; i++) blob->reach = box3_union(blob->reach, part_bounds(&s->as.blob.parts[i]));
+    return blob;
+}
+
 static void cross(const void *data, const Ray *ray, SolidSink *sink) {
-    const Solid *s = data;
-    Box3 box = box3_empty();
-    for (size_t i = 0; i < s->as.blob.count; i++) box = box3_union(box, part_bounds(&s->as.blob.parts[i]));
+    const Blob *blob = data;
+    const Solid *s = blob->solid;
+    const Box3 box = blob->reach;
     double length = vec3_length(ray->direction), reach = 2 * vec3_length(vec3_sub(box.max, box.min));
     Vec3 d = vec3_scale(ray->direction, 1 / length);
     double shift = vec3_dot(vec3_sub(vec3_lerp(box.min, box.max, 0.5), ray->origin), d);
@@ -166,13 +175,14 @@ static double density_at(const Solid *s, Vec3 p, Vec3 *downhill) {
 static Vec3 normal(const void *data, Vec3 p, const SolidTag *tag) {
     Vec3 n;
     (void)tag;
-    density_at(data, p, &n);
+    density_at(((const Blob *)data)->solid, p, &n);
     return vec3_normalize(n);
 }
 
 static bool inside(const void *data, Vec3 p) {
     Vec3 n;
-    return density_at(data, p, &n) > ((const Solid *)data)->as.blob.threshold;
+    const Solid *s = ((const Blob *)data)->solid;
+    return density_at(s, p, &n) > s->as.blob.threshold;
 }
 
 const SolidOps solid_blob_ops = {

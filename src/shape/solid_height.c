@@ -93,10 +93,16 @@ static const void *prepare(const Object *object, Arena *arena) {
     return f;
 }
 
+/* An axis of the ray, in cells (of heights: as they are). Sections are wider than they should be by far more than rounding. */
+typedef struct Along {
+    double origin, direction, slack;
+} Along;
+
 typedef struct FieldVisit {
     const Field *field;
     const Ray *ray;
     SolidSink *sink;
+    Along x, y, z;
 } FieldVisit;
 
 /* The triangle a, b, c by signed volumes; neighbours agree about their common edge. */
@@ -114,21 +120,66 @@ static void try_triangle(const FieldVisit *visit, const Vec3 corners[3], uint32_
     solid_offer(visit->sink, t, (SolidTag){cell, half, 0});
 }
 
+static void try_cell(const FieldVisit *visit, uint32_t i, uint32_t j) {
+    const Field *f = visit->field;
+    Vec3 p00 = point_at(f, i, j), p10 = point_at(f, i + 1, j), p01 = point_at(f, i, j + 1), p11 = point_at(f, i + 1, j + 1);
+    try_triangle(visit, (Vec3[]){p00, p10, p01}, j * f->columns + i, 0);
+    try_triangle(visit, (Vec3[]){p11, p01, p10}, j * f->columns + i, 1);
+}
+
+static Along along(double origin, double direction, double cells) {
+    return (Along){origin * cells, direction * cells, 1e-9 * (1 + fabs(origin * cells))};
+}
+
+typedef struct Section {
+    double near, far;
+} Section;
+
+/* The part of the section where the ray is between lo and hi; empty where near > far. */
+static Section section_between(const Along *a, double lo, double hi, Section s) {
+    lo -= a->slack, hi += a->slack;
+    if (a->direction == 0) return a->origin >= lo && a->origin <= hi ? s : (Section){1, 0};
+    double t0 = (lo - a->origin) / a->direction, t1 = (hi - a->origin) / a->direction;
+    return (Section){double_max(s.near, double_min(t0, t1)), double_min(s.far, double_max(t0, t1))};
+}
+
+/* What the ray passes of the axis on the section. */
+static void passed_on(const Along *a, Section s, double *lo, double *hi) {
+    double x0 = a->direction == 0 ? a->origin : a->origin + a->direction * s.near,
+           x1 = a->direction == 0 ? a->origin : a->origin + a->direction * s.far;
+    *lo = double_min(x0, x1) - a->slack, *hi = double_max(x0, x1) + a->slack;
+}
+
+static bool is_passed(const FieldVisit *visit, uint32_t i, uint32_t j, Section s) {
+    double lo, hi;
+    const float *a = visit->field->heights + (size_t)j * visit->field->columns + i, *b = a + visit->field->columns;
+    passed_on(&visit->y, s, &lo, &hi);
+    float least = float_min(float_min(a[0], a[1]), float_min(b[0], b[1])), most = float_max(float_max(a[0], a[1]), float_max(b[0], b[1]));
+    return !(lo > (double)most || hi < (double)least);
+}
+
+/* Of the block's cells only those under and over which the ray goes, and which are as high. */
 static void visit_block(void *context, uint32_t block) {
     const FieldVisit *visit = context;
     const Field *f = visit->field;
     uint32_t i0 = block % f->block_columns * BLOCK, j0 = block / f->block_columns * BLOCK;
-    for (uint32_t j = j0; j < j0 + BLOCK && j + 1 < f->rows; j++)
-        for (uint32_t i = i0; i < i0 + BLOCK && i + 1 < f->columns; i++) {
-            Vec3 p00 = point_at(f, i, j), p10 = point_at(f, i + 1, j), p01 = point_at(f, i, j + 1),
-                 p11 = point_at(f, i + 1, j + 1);
-            try_triangle(visit, (Vec3[]){p00, p10, p01}, j * f->columns + i, 0);
-            try_triangle(visit, (Vec3[]){p11, p01, p10}, j * f->columns + i, 1);
-        }
+    uint32_t i1 = i0 + BLOCK < f->columns - 1 ? i0 + BLOCK : f->columns - 1, j1 = j0 + BLOCK < f->rows - 1 ? j0 + BLOCK : f->rows - 1;
+    Section whole = section_between(&visit->x, i0, i1, (Section){visit->sink->t_min, visit->sink->t_max});
+    for (uint32_t j = j0; j < j1; j++) {
+        Section row = section_between(&visit->z, j, j + 1, whole);
+        double lo, hi;
+        if (row.near > row.far) continue;
+        passed_on(&visit->x, row, &lo, &hi);
+        uint32_t first = lo > i0 ? lo < i1 ? (uint32_t)lo : i1 : i0, end = hi < i1 ? hi > i0 ? (uint32_t)hi + 1 : i0 : i1;
+        for (uint32_t i = first; i < end; i++)
+            if (is_passed(visit, i, j, section_between(&visit->x, i, i + 1, row))) try_cell(visit, i, j);
+    }
 }
 
 static void cross(const void *data, const Ray *ray, SolidSink *sink) {
-    FieldVisit visit = {data, ray, sink};
+    const Field *f = data;
+    FieldVisit visit = {.field = f, .ray = ray, .sink = sink, .x = along(ray->origin.x, ray->direction.x, f->columns - 1),
+                        .y = along(ray->origin.y, ray->direction.y, 1), .z = along(ray->origin.z, ray->direction.z, f->rows - 1)};
     box_tree_ray(visit.field->tree, ray, sink->t_min, &sink->t_max, visit_block, &visit);
 }
 

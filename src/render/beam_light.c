@@ -142,7 +142,7 @@ void beam_add_light(BeamTracer *tr, const Light *light) {
 
 /* Whether the sky that a sight sees is asked for. */
 static bool under_sky(const BeamTracer *tr, const Sight *sight) {
-    return tr->compiled->scene->settings.sky_light && sight->look && vec3f_length(sight->up) > 0;
+    return tr->compiled->scene->settings.sky_light && sight->look && vec3f_length(sight->up) > 0 && sight->sky < 0;
 }
 
 static uint32_t add_sky_points(BeamTracer *tr, const Sight *sight, uint32_t count) {
@@ -175,7 +175,7 @@ void beam_add_ambient(BeamTracer *tr) {
     for (uint32_t k = 0; k < tr->sight_count; k++) {
         Sight *s = &tr->sights[k];
         if (!s->look) continue;
-        float seen = 1, odd_seen = 1;
+        float seen = s->sky >= 0 ? s->sky : 1, odd_seen = seen;
         if (under_sky(tr, s)) shares_seen(tr, s, &seen, &odd_seen);
         s->light = vec3f_mul(vec3f_madd(s->look->emission, s->look->ambient, seen), s->color);
         s->odd_light = vec3f_mul(vec3f_madd(s->look->emission, s->look->ambient, odd_seen), s->color);

@@ -77,6 +77,14 @@ static Vec3 mean_point(const BeamTracer *tr, const Sight *sight) {
     return vec3_scale(sum, 1.0 / sight->count);
 }
 
+/* Copies of what is known of one place in each period, or at the rim of what stands alone. */
+static float sky_at(const TexelCopy *copy, const TexturePlace *place, Vec3 in, Vec3f to_eye) {
+    if (!copy->texel->sky) return -1;
+    double *axes[] = {&in.x, &in.y, &in.z};
+    for (int i = 0; i < 3; i++) *axes[i] = copy->texel->beam->cyclic[i] ? *axes[i] - floor(*axes[i]) : double_clamp(*axes[i], 0, 1);
+    return skin_sky_seen(copy, place, vec3f_mul(vec3f_from(in), copy->texel->extent), vec3_from_f(to_eye));
+}
+
 /* When all samples of the sight are known: it is what they see on average. */
 static void see_facet(const BeamTracer *tr, Sight *sight) {
     const BeamFacet *f = &tr->draft.facets[tr->beam.samples.mark[sight->first] - 1];
@@ -91,6 +99,7 @@ static void see_facet(const BeamTracer *tr, Sight *sight) {
     double width = cone_diameter(&tr->cones[sight->pixel], (double)sight->t);
     sight->look = f->placed->look ? f->placed->look : own;
     sight->up = vec3f_from(vec3_normalize(place.grad_layer));
+    sight->sky = sky_at(copy, &place, place_in_box(copy, &place), sight->view);
     sight->flat = vec3f_from(flat);
     sight->normal = sheet_normal(normal_on_side(copy, &place, beam_facet_normal(f, place_in_box(copy, &place)), flat), sight->flat, sight->view);
     sight->bias = vec3f_from(vec3_scale(flat, BIAS_TILES * f->skin->tile_size + BIAS_PIXELS * width));
@@ -153,7 +162,7 @@ static uint32_t sight_of(const BeamTracer *tr, int pixel, uint32_t begin, uint32
 }
 
 static Sight new_sight(const BeamTracer *tr, int pixel, uint32_t sample, bool beyond) {
-    Sight sight = {.pixel = pixel, .first = BEAM_NOTHING, .t = INFINITY, .beyond = beyond};
+    Sight sight = {.pixel = pixel, .first = BEAM_NOTHING, .t = INFINITY, .sky = -1, .beyond = beyond};
     uint32_t mark = tr->beam.samples.mark[sample];
     if (!mark && !beam_surface_of(tr, pixel, sample)->found) return sight;
     double t;

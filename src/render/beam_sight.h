@@ -23,6 +23,7 @@ typedef struct Sight {
     int first, count;     /* its samples are linked: next[] */
     float t;              /* of the first; VTS_INFINITY of the sky */
     Vec3f up;             /* of the layer; zero of explicit objects */
+    float sky;            /* the share of the sky that it sees, where its texel knows; below 0 where it must be asked for */
     Vec3f normal, flat, bias; /* bias: to add to a place on it so that it lies on the side of the eye */
     const Look *look;     /* NULL: the sky */
     const SurfaceHit *surface;

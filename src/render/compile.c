@@ -109,7 +109,8 @@ static CompileStatus build_texels(const CompileOptions *options, Detail detail, 
         if (out->skins[i].boxes) out->nearest = fmin(out->nearest, 1e-6 * out->skins[i].tile_size);
         if (out->skins[i].boxes) out->exact_bounds = box3_union(out->exact_bounds, out->skins[i].bounds);
     }
-    if (!voxels && !out->secondary) return COMPILE_OK; /* mirrors show voxels */
+    bool sky = out->scene->settings.sky_light && detail != DETAIL_EXACT; /* what triangles see of the sky, voxels know */
+    if (!voxels && !out->secondary && !sky) return COMPILE_OK; /* mirrors show voxels */
     for (size_t i = 0; i < out->skin_count && !options->exact; i++) skin_ask_voxels(&out->skins[i], options, out);
     for (size_t i = 0; i < out->texel_count; i++) {
         if (!texel_build(out->texels[i], options, out, diags)) return interrupted(options) ? COMPILE_INTERRUPTED : COMPILE_FAILED;

@@ -165,6 +165,15 @@ typedef struct TexelCopy {
     double xu, xv, x0, zu, zv, z0, inverse_scale;
     Vec3f tint; /* 1, 1, 1: none */
 } TexelCopy;
+/* The rate at which texture coordinates change, in the copy's texel space. */
+static inline Vec3f texel_copy_rate(const TexelCopy *copy, Vec3 rate) {
+    Vec3f e = copy->texel->extent;
+    return vec3f((float)(copy->xu * rate.x + copy->xv * rate.y) * e.x, (float)(rate.z * copy->inverse_scale) * e.y,
+                 (float)(copy->zu * rate.x + copy->zv * rate.y) * e.z);
+}
+/* skin_sky.c. The share of the hemisphere over the layer that `at`, in the space of a texel that has a sky, sees past its texel's own matter, if
+ * the eye, which is in the unit direction `to_eye` of the scene, sees it. */
+float skin_sky_seen(const TexelCopy *copy, const TexturePlace *place, Vec3f at, Vec3 to_eye);
 /* A normal of texel space at the place, in the scene: by the transposed map world → texel. Its length is that of texel space against the scene along it;
  * zero where the mapping is singular. */
 Vec3 texel_normal_in_scene(const TexelCopy *copy, const TexturePlace *place, Vec3 normal);

@@ -426,13 +426,19 @@ bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, Co
     return true;
 }
 
+/* The least that what triangles see of the sky is known with. */
+enum { SKY_RESOLUTION = 32 };
+
 void skin_ask_voxels(CompiledSkin *skin, const CompileOptions *options, const CompiledScene *compiled) {
+    bool all_exact = skin->boxes && !isfinite(skin->exact_to) && !compiled->secondary, sky = compiled->scene->settings.sky_light;
     double from = skin->boxes && isfinite(skin->exact_to) ? 0.7 * skin->exact_to : 0;
     for (size_t i = 0; i < skin->texel_count; i++)
         for (size_t k = 0; k < skin->texels[i].family_size; k++) {
             BuiltTexel *texel = skin->texels[i].family[k];
             int needed = options->texel_resolution ? options->texel_resolution
+                         : all_exact && sky        ? SKY_RESOLUTION
                                                    : (int)needed_resolution(skin, &compiled->view, texel->extent, (double)compiled->march.voxel_width, from);
+            if (sky && skin->boxes) needed = int_max(needed, SKY_RESOLUTION);
             texel->needed = int_max(texel->needed, needed);
         }
 }

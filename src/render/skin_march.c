@@ -335,12 +335,6 @@ static Vec3f to_copy(const TexelCopy *copy, Vec3 x) {
                  (float)(copy->zu * x.x + copy->zv * x.y + copy->z0) * e.z);
 }
 
-static Vec3f rate_to_copy(const TexelCopy *copy, Vec3 rate) {
-    Vec3f e = copy->texel->extent;
-    return vec3f((float)(copy->xu * rate.x + copy->xv * rate.y) * e.x, (float)(rate.z * copy->inverse_scale) * e.y,
-                 (float)(copy->zu * rate.x + copy->zv * rate.y) * e.z);
-}
-
 static float wrapped(float x, float size) {
     float turns = x / size;
     if (!(fabsf(turns) < 1e9f)) return 0; /* past all precision, or not a number */
@@ -421,7 +415,7 @@ static double clear_copy(CopyOnWay *on_way, const VoxelFit *fit, uint32_t cone, 
         double *until = &on_way->clear_until[size_min(k, LAYERS_APART - 1)];
         if (fresh || *until <= t || k >= LAYERS_APART) {
             if (!placed) { /* only now: most copies are known to be clear */
-                Vec3f velocity = rate_to_copy(copy, rate);
+                Vec3f velocity = texel_copy_rate(copy, rate);
                 p = to_copy(copy, x);
                 speed = vec3f_length(velocity);
                 direction = speed > 0 ? vec3f_scale(velocity, 1 / speed) : velocity;
@@ -494,26 +488,6 @@ typedef struct StepSample {
     float depth, area, gamma_area, sheet_area;
 } StepSample;
 
-/* Directions over the hemisphere about y, each for the same solid angle: two rings at the middles of equal heights. */
-static const Vec3 SKY_DIRECTIONS[] = {{0.9682, 0.25, 0},        {0, 0.25, 0.9682},       {-0.9682, 0.25, 0},       {0, 0.25, -0.9682},
-                                      {0.4677, 0.75, 0.4677},   {-0.4677, 0.75, 0.4677}, {-0.4677, 0.75, -0.4677}, {0.4677, 0.75, -0.4677}};
-
-/* The share of the hemisphere over the layer that the place sees past its texel's own matter. */
-static float sky_seen(const TexelCopy *copy, const TexturePlace *place, Vec3f at) {
-    SkyView view = texel_sky_at(copy->texel->sky, at);
-    Vec3 up = vec3_normalize(place->grad_layer), s, t;
-    vec3_frame(up, &s, &t);
-    float sum = 0;
-    for (size_t i = 0; i < VTS_ARRAY_COUNT(SKY_DIRECTIONS); i++) {
-        Vec3 d = SKY_DIRECTIONS[i], world = vec3_madd(vec3_madd(vec3_scale(s, d.x), t, d.z), up, d.y);
-        Vec3 rate = vec3(vec3_dot(place->grad_u, world), vec3_dot(place->grad_v, world), vec3_dot(place->grad_w, world));
-        Vec3f way = rate_to_copy(copy, rate);
-        float length = vec3f_length(way);
-        sum += length > 0 ? sky_view_toward(&view, vec3f_scale(way, 1 / length)) : view.mean;
-    }
-    return sum / (float)VTS_ARRAY_COUNT(SKY_DIRECTIONS);
-}
-
 static void sample_copy(SkinMarch *m, size_t i, const CopyOnWay *on_way, StepSample *step, SkinSegment *out) {
     const PlacedTexel *placed = &m->skin->texels[i];
     const TexelCopy *copy = &on_way->copy;
@@ -521,7 +495,7 @@ static void sample_copy(SkinMarch *m, size_t i, const CopyOnWay *on_way, StepSam
     bool known = on_way->cone == m->number, any = !known;
     for (size_t k = 0; k < texel->matter_count && !any; k++) any = on_way->clear_until[size_min(k, LAYERS_APART - 1)] < step->t1;
     if (!any) return;
-    Vec3f at = wrap(texel, to_copy(copy, step->middle)), along = rate_to_copy(copy, step->difference);
+    Vec3f at = wrap(texel, to_copy(copy, step->middle)), along = texel_copy_rate(copy, step->difference);
     const VoxelFit *fit = &m->span.fits[i];
     float lod = float_min(fit->lod, (float)(texel->levels - 1)), coarsening = fit->coarsening;
     if (texel->voxel != placed->finest_voxel) { /* members of a family may be built to different resolutions */
@@ -551,7 +525,7 @@ static void sample_copy(SkinMarch *m, size_t i, const CopyOnWay *on_way, StepSam
                            .width = fit->width,
                            .place = {at.x / texel->extent.x, at.y / texel->extent.y, at.z / texel->extent.z}};
         hit->s = to_world(&v.s, copy, &m->span.place);
-        hit->sky = texel->sky ? sky_seen(copy, &m->span.place, at) : 1;
+        hit->sky = texel->sky ? skin_sky_seen(copy, &m->span.place, at, vec3_negate(m->cone->direction)) : 1;
     }
 }
 

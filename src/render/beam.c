@@ -36,11 +36,12 @@ bool beam_meets_box(const Beam *beam, const Box3 *box) {
 
 /* ---- drawing ---- */
 
-/* Twice the signed area and the key's slopes over a triangle, and its three edges as functions e = a·x + b·y + c that are positive
- * inside. */
+/* A triangle's barycentric coordinates and its key as functions of the way from its first corner: e1 = a1·dx + b1·dy, e2 likewise, e0 = 1 + a0·dx + b0·dy.
+ * From the origin of the samples they would lose the digits that a narrow blade's shadow on itself needs. */
 typedef struct Triangle {
-    float a[3], b[3], c[3];
-    float key_x, key_y, key_0;
+    float x, y, key; /* of the corner */
+    float a[3], b[3];
+    float key_x, key_y;
 } Triangle;
 
 static bool set_up(const Vec3f p[3], Triangle *t) {
@@ -49,13 +50,12 @@ static bool set_up(const Vec3f p[3], Triangle *t) {
     float inverse = 1 / area;
     for (int i = 0; i < 3; i++) {
         const Vec3f *from = &p[(i + 1) % 3], *to = &p[(i + 2) % 3];
-        t->a[i] = (from->y - to->y) * inverse; /* barycentric: 1 at corner i */
+        t->a[i] = (from->y - to->y) * inverse;
         t->b[i] = (to->x - from->x) * inverse;
-        t->c[i] = -(t->a[i] * from->x + t->b[i] * from->y);
     }
-    t->key_x = t->key_y = 0;
-    for (int i = 0; i < 3; i++) t->key_x += t->a[i] * p[i].z, t->key_y += t->b[i] * p[i].z;
-    t->key_0 = p[0].z - t->key_x * p[0].x - t->key_y * p[0].y;
+    t->x = p[0].x, t->y = p[0].y, t->key = p[0].z;
+    t->key_x = t->a[1] * (p[1].z - p[0].z) + t->a[2] * (p[2].z - p[0].z);
+    t->key_y = t->b[1] * (p[1].z - p[0].z) + t->b[2] * (p[2].z - p[0].z);
     return true;
 }
 
@@ -70,12 +70,12 @@ static bool cover(const BeamSamples *s, const Triangle *t, uint32_t begin, uint3
     const float *restrict limit = s->limit;
     float *restrict key = s->key;
     uint32_t *restrict marks = s->mark;
-    float a0 = t->a[0], b0 = t->b[0], c0 = t->c[0], a1 = t->a[1], b1 = t->b[1], c1 = t->c[1], a2 = t->a[2], b2 = t->b[2], c2 = t->c[2];
-    float kx = t->key_x, ky = t->key_y, k0 = t->key_0;
+    float a0 = t->a[0], b0 = t->b[0], a1 = t->a[1], b1 = t->b[1], a2 = t->a[2], b2 = t->b[2];
+    float kx = t->key_x, ky = t->key_y, k0 = t->key, x0 = t->x, y0 = t->y;
     uint32_t any = 0;
     for (uint32_t i = begin; i < end; i++) {
-        float e0 = a0 * x[i] + b0 * y[i] + c0, e1 = a1 * x[i] + b1 * y[i] + c1, e2 = a2 * x[i] + b2 * y[i] + c2;
-        float k = kx * x[i] + ky * y[i] + k0;
+        float dx = x[i] - x0, dy = y[i] - y0;
+        float e0 = 1 + (a0 * dx + b0 * dy), e1 = a1 * dx + b1 * dy, e2 = a2 * dx + b2 * dy, k = k0 + (kx * dx + ky * dy);
         uint32_t in = (uint32_t)(e0 >= 0) & (uint32_t)(e1 >= 0) & (uint32_t)(e2 >= 0) & (uint32_t)(k > key[i]) &
                       (uint32_t)(k * exact_to >= limit[i]) & (uint32_t)(k <= most);
         uint32_t mask = 0u - in;
@@ -90,11 +90,11 @@ static bool cover(const BeamSamples *s, const Triangle *t, uint32_t begin, uint3
 static bool shade(const BeamSamples *s, const Triangle *t, uint32_t begin, uint32_t end, float most, float exact_to) {
     const float *restrict x = s->x, *restrict y = s->y, *restrict key = s->key, *restrict limit = s->limit;
     uint32_t *restrict marks = s->mark;
-    float a0 = t->a[0], b0 = t->b[0], c0 = t->c[0], a1 = t->a[1], b1 = t->b[1], c1 = t->c[1], a2 = t->a[2], b2 = t->b[2], c2 = t->c[2];
-    float kx = t->key_x, ky = t->key_y, k0 = t->key_0;
+    float a0 = t->a[0], b0 = t->b[0], a1 = t->a[1], b1 = t->b[1], a2 = t->a[2], b2 = t->b[2];
+    float kx = t->key_x, ky = t->key_y, k0 = t->key, x0 = t->x, y0 = t->y;
     for (uint32_t i = begin; i < end; i++) {
-        float e0 = a0 * x[i] + b0 * y[i] + c0, e1 = a1 * x[i] + b1 * y[i] + c1, e2 = a2 * x[i] + b2 * y[i] + c2;
-        float k = kx * x[i] + ky * y[i] + k0;
+        float dx = x[i] - x0, dy = y[i] - y0;
+        float e0 = 1 + (a0 * dx + b0 * dy), e1 = a1 * dx + b1 * dy, e2 = a2 * dx + b2 * dy, k = k0 + (kx * dx + ky * dy);
         marks[i] |= (uint32_t)(e0 >= 0) & (uint32_t)(e1 >= 0) & (uint32_t)(e2 >= 0) & (uint32_t)(k > key[i]) &
                     (uint32_t)(exact_to >= limit[i]) & (uint32_t)(k <= most);
     }

@@ -43,23 +43,24 @@ bool cell_is_singular(const SkinCell *cell) {
     return !(fmax(fabs(least), fabs(most)) > SINGULAR * scale * scale);
 }
 
-static Bilinear quarter_of(const Bilinear *f, double a, double b) {
+/* From (a, b) on, with `size` times the rates. */
+static Bilinear quarter_of(const Bilinear *f, double a, double b, double size) {
     const double *c = f->c;
-    return (Bilinear){{bilinear_at(f, a, b), (c[1] + c[3] * b) / 2, (c[2] + c[3] * a) / 2, c[3] / 4}};
+    return (Bilinear){{bilinear_at(f, a, b), (c[1] + c[3] * b) * size, (c[2] + c[3] * a) * size, c[3] * size * size}};
 }
 
-static BilinearVec quarter_of_vec(const BilinearVec *f, double a, double b) {
+static BilinearVec quarter_of_vec(const BilinearVec *f, double a, double b, double size) {
     const Vec3 *c = f->c;
     Vec3 along = vec3_madd(c[1], c[3], b), across = vec3_madd(c[2], c[3], a);
-    return (BilinearVec){{vec3_madd(vec3_madd(c[0], c[1], a), across, b), vec3_scale(along, 0.5), vec3_scale(across, 0.5), vec3_scale(c[3], 0.25)}};
+    return (BilinearVec){{vec3_madd(vec3_madd(c[0], c[1], a), across, b), vec3_scale(along, size), vec3_scale(across, size), vec3_scale(c[3], size * size)}};
 }
 
 SkinCell cell_quarter(const SkinCell *cell, int quarter) {
-    double a = quarter & 1 ? 0.5 : 0, b = quarter & 2 ? 0.5 : 0;
+    double a = quarter & 1 ? 0.5 : 0, b = quarter & 2 ? 0.5 : 0, size = cell->triangle && quarter == 3 ? -0.5 : 0.5;
     SkinCell out = *cell;
-    out.foot = quarter_of_vec(&cell->foot, a, b), out.height = quarter_of_vec(&cell->height, a, b);
-    out.u = quarter_of(&cell->u, a, b), out.v = quarter_of(&cell->v, a, b);
-    out.w_foot = quarter_of(&cell->w_foot, a, b), out.w_tip = quarter_of(&cell->w_tip, a, b);
+    out.foot = quarter_of_vec(&cell->foot, a, b, size), out.height = quarter_of_vec(&cell->height, a, b, size);
+    out.u = quarter_of(&cell->u, a, b, size), out.v = quarter_of(&cell->v, a, b, size);
+    out.w_foot = quarter_of(&cell->w_foot, a, b, size), out.w_tip = quarter_of(&cell->w_tip, a, b, size);
     return out;
 }
 

@@ -28,7 +28,7 @@ double bilinear_at(const Bilinear *f, double a, double b);
 bool cell_is_tame(const SkinCell *cell);
 /* Whether they lie on a line: there is no way back at all. */
 bool cell_is_singular(const SkinCell *cell);
-/* A quarter of a patch, 0 … 3, as a cell. */
+/* A quarter, 0 … 3, as a cell. The last of a triangle lies in its middle, turned about. */
 SkinCell cell_quarter(const SkinCell *cell, int quarter);
 
 /* In which of six ways a point of beam space is out of the beam, a bit each. */

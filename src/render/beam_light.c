@@ -31,8 +31,8 @@ static uint32_t add_points(BeamTracer *tr, const Sight *sight, const LightRay *r
 
 /* What comes past explicit surfaces to a point of a sight. */
 static Vec3f past_surfaces(BeamTracer *tr, const Sight *sight, const Light *light, const LightRay *way, uint32_t point) {
-    Ray shadow = {vec3_add(tr->beam.origin, vec3_from_f(tr->points[point])), way->direction};
-    double clear = (double)vec3f_length(sight->bias);
+    double clear = (double)sight->clear, side = vec3f_dot(sight->flat, vec3f_from(way->direction)) > 0 ? clear : -clear;
+    Ray shadow = {vec3_madd(vec3_add(tr->beam.origin, vec3_from_f(tr->points[point])), vec3_from_f(sight->flat), side), way->direction};
     if (tr->compiled->clear_shadows) {
         SurfaceTracer surfaces = {.compiled = tr->compiled, .counters = &tr->counters, .seed = tr->seed};
         Leg leg;

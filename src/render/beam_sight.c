@@ -1,7 +1,10 @@
 #include "render/beam_sight.h"
 
-/* How far beside a place its shadow begins, in pixels and tiles. */
-static const double BIAS_PIXELS = 0.02, BIAS_TILES = 3e-4;
+/* How far beside a place its shadow begins: what beams may round away, in tiles and distances from the eye. More would light what lies under
+ * matter that is thinner than that: seen from far, pixels are wider than layers are high. */
+static const double BIAS_TILES = 3e-4, BIAS_DISTANCES = 1e-6;
+/* Of explicit surfaces, which may be round: also in pixels. */
+static const double CLEAR_DISTANCES = 1e-5, CLEAR_PIXELS = 0.01;
 
 /* A facet in the scene. */
 typedef struct FacetPlane {
@@ -11,7 +14,9 @@ typedef struct FacetPlane {
 
 static FacetPlane plane_of(const BeamFacet *f) {
     Vec3 p[3];
-    for (int i = 0; i < 3; i++) p[i] = skin_cell_position(f->cell, (double)f->corner[i].x, (double)f->corner[i].y, (double)f->corner[i].z, NULL);
+    for (int i = 0; i < 3; i++)
+        p[i] = skin_cell_position(f->cell, f->from_a + f->size * (double)f->corner[i].x, f->from_b + f->size * (double)f->corner[i].y,
+                                  (double)f->corner[i].z, NULL);
     Vec3 e1 = vec3_sub(p[1], p[0]), e2 = vec3_sub(p[2], p[0]);
     return (FacetPlane){f, p[0], e1, e2, vec3_cross(e1, e2)};
 }
@@ -24,7 +29,7 @@ static SkinPoint in_cell(const FacetPlane *plane, Vec3 point) {
     double u = vec3_dot(vec3_cross(r, plane->e2), plane->normal) * per, v = vec3_dot(vec3_cross(plane->e1, r), plane->normal) * per;
     Vec3f c = vec3f_add(f->corner[0], vec3f_add(vec3f_scale(vec3f_sub(f->corner[1], f->corner[0]), (float)u),
                                                 vec3f_scale(vec3f_sub(f->corner[2], f->corner[0]), (float)v)));
-    return (SkinPoint){0, (double)c.x, (double)c.y, (double)c.z};
+    return (SkinPoint){0, f->from_a + f->size * (double)c.x, f->from_b + f->size * (double)c.y, (double)c.z};
 }
 
 /* In the copy's box, which repeats along y where that is cyclic. */
@@ -96,13 +101,13 @@ static void see_facet(const BeamTracer *tr, Sight *sight) {
     if (sight->count > 1) sight->point = mean_point(tr, sight);
     SkinPoint at = in_cell(&plane, sight->point);
     TexturePlace place = skin_texture_place(f->cell, &at);
-    double width = cone_diameter(&tr->cones[sight->pixel], (double)sight->t);
     sight->look = f->placed->look ? f->placed->look : own;
     sight->up = vec3f_from(vec3_normalize(place.grad_layer));
     sight->sky = sky_at(copy, &place, place_in_box(copy, &place), sight->view);
     sight->flat = vec3f_from(flat);
     sight->normal = sheet_normal(normal_on_side(copy, &place, beam_facet_normal(f, place_in_box(copy, &place)), flat), sight->flat, sight->view);
-    sight->bias = vec3f_from(vec3_scale(flat, BIAS_TILES * f->skin->tile_size + BIAS_PIXELS * width));
+    sight->bias = vec3f_from(vec3_scale(flat, BIAS_TILES * f->skin->tile_size + BIAS_DISTANCES * (double)sight->t));
+    sight->clear = vec3f_length(sight->bias);
     sight->color = vec3f_mul(facet_color(tr, &plane, own, sight), copy->tint);
 }
 
@@ -116,7 +121,8 @@ static void see_explicit(const SeenSurface *seen, Vec3 point, double width, doub
     sight->surface = hit;
     sight->normal = vec3f_from(normal);
     sight->flat = vec3f_from(hit->flat);
-    sight->bias = vec3f_from(vec3_scale(hit->flat, 1e-5 * t + 0.01 * width));
+    sight->bias = vec3f_from(vec3_scale(hit->flat, BIAS_DISTANCES * t));
+    sight->clear = (float)(CLEAR_DISTANCES * t + CLEAR_PIXELS * width);
 }
 
 /* Two explicit hits of one pixel that may share their shading. */

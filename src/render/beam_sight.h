@@ -25,6 +25,7 @@ typedef struct Sight {
     Vec3f up;             /* of the layer; zero of explicit objects */
     float sky;            /* the share of the sky that it sees, where its texel knows; below 0 where it must be asked for */
     Vec3f normal, flat, bias; /* bias: to add to a place on it so that it lies on the side of the eye */
+    float clear;          /* from how far beside it explicit surfaces are asked for: more than what they deviate from the planes of pixels */
     const Look *look;     /* NULL: the sky */
     const SurfaceHit *surface;
     Vec3f view;           /* from the first sample to the eye: across a horizon the pixel's own direction is another side's */

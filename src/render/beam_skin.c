@@ -5,9 +5,12 @@
 #include <stdlib.h>
 
 /* How often a triangle is cut in four where the mapping bends it. */
-enum { NEWTON_STEPS = 3, DEEPEST_CUT = 5, MOST_CLIPPED = 9, DEEPEST_NODE = 512, DEEPEST_PART = 4 };
+enum { NEWTON_STEPS = 3, DEEPEST_CUT = 5, MOST_CLIPPED = 9, DEEPEST_NODE = 512, DEEPEST_PART = 4, DEEPEST_VAST_PART = 24 };
 /* Corners this little outside of a cell count as inside: tiles that end with the cell do so but for rounding. */
 static const float HAIR = 1e-5f;
+/* Cells of more tiles than this along a side are drawn in parts: floats tell places in a wider one less well than shadows of blades on themselves
+ * need. */
+static const double MOST_TILES_ACROSS = 64;
 
 /* ---- triangles ---- */
 
@@ -26,7 +29,7 @@ typedef struct Drawing {
     BeamDraft *draft;
     const CompiledSkin *skin;
     const SkinCell *cell;     /* of which a part is drawn: its (a, b) times `size`, plus these */
-    float from_a, from_b, size;
+    double from_a, from_b, size;
     CopyFrame at;
     const TexelCluster *cluster;
     Vec3f walls[4];           /* of the part, in box coordinates of a copy: inside where x·p.x + y·p.z + z >= 0 */
@@ -109,8 +112,8 @@ static void keep_facet(const Drawing *d, const Vec3f corner[3], int triangle) {
     BeamDraft *draft = d->draft;
     BeamFacet *f = &draft->facets[draft->facet_count++];
     *f = (BeamFacet){.skin = d->skin, .cell = d->cell, .placed = d->at.placed, .copy = *d->at.copy, .cluster = d->cluster, .triangle = triangle,
-                     .period = d->at.period};
-    for (int i = 0; i < 3; i++) f->corner[i] = vec3f(d->from_a + d->size * corner[i].x, d->from_b + d->size * corner[i].y, corner[i].z);
+                     .period = d->at.period, .from_a = d->from_a, .from_b = d->from_b, .size = d->size};
+    for (int i = 0; i < 3; i++) f->corner[i] = corner[i];
     if (draft->facet_count == draft->facet_capacity) drop_hidden(draft);
 }
 
@@ -437,20 +440,25 @@ static bool tiles_of_cell(const SkinCell *cell, int reach, TileRange *r) {
     return true;
 }
 
-/* A cell as a whole, or where texture coordinates bend much, part by part. */
+static bool is_vast(const SkinCell *cell) {
+    const double *u = cell->u.c, *v = cell->v.c;
+    return fabs(u[1]) + fabs(u[2]) + fabs(u[3]) + fabs(v[1]) + fabs(v[2]) + fabs(v[3]) > 2 * MOST_TILES_ACROSS;
+}
+
+/* A cell as a whole, or where texture coordinates bend much, or tiles are many, part by part. */
 static void draw_part(Drawing *d, const SkinCell *cell, int depth) {
     CellFrame f;
     const CellBox all = {0, 1, 0, 1, 0, 1};
     float nearest;
     bool framed = cell_frame(&f, d->draft->beam, cell);
     if (depth && framed && !cell_box_met(d->draft->beam, &f, &all, &nearest)) return;
-    if (depth < DEEPEST_PART && !cell_is_tame(cell)) {
+    if (depth < DEEPEST_PART ? !cell_is_tame(cell) || is_vast(cell) : depth < DEEPEST_VAST_PART && is_vast(cell)) {
         Drawing part = *d;
-        part.size = d->size / 2;
         for (int i = 0; i < 4; i++) {
             SkinCell quarter = cell_quarter(cell, i);
-            part.from_a = d->from_a + (i & 1 ? part.size : 0);
-            part.from_b = d->from_b + (i & 2 ? part.size : 0);
+            part.size = d->size * (cell->triangle && i == 3 ? -0.5 : 0.5);
+            part.from_a = d->from_a + (i & 1 ? d->size / 2 : 0);
+            part.from_b = d->from_b + (i & 2 ? d->size / 2 : 0);
             draw_part(&part, &quarter, depth + 1);
         }
         return;

@@ -17,7 +17,8 @@ typedef struct BeamFacet {
     const TexelCluster *cluster; /* the triangle of the texel that it is, or a part of */
     int triangle;
     int period;      /* of cyclic y: how many boxes above the foot's */
-    Vec3f corner[3]; /* (a, b, w) */
+    Vec3f corner[3]; /* (a, b, w) of the part of the cell that was drawn: its (a, b) times `size`, plus `from` */
+    double from_a, from_b, size;
 } BeamFacet;
 
 static inline size_t beam_facet_layer(const BeamFacet *f) { return f->cluster->layers[f->triangle]; }

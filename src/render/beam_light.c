@@ -87,7 +87,7 @@ static float through_voxels(BeamTracer *tr, const Sight *sight, const LightRay *
     double aperture = tr->compiled->shadow_aperture, side = vec3f_dot(sight->flat, vec3f_from(ray->direction)) > 0 ? 1 : -1;
     Vec3 from = vec3_madd(cone_point(&cone, t), vec3_from_f(sight->bias), side);
     Cone shadow = {from, ray->direction, cone_diameter(&cone, t) * aperture, cone.spread * aperture};
-    return skin_light_through_voxels(&tr->volumes.light, &shadow, ray->distance, seen_from);
+    return skin_light_through_voxels(&tr->volumes.light, &shadow, ray->distance, seen_from, vec3_negate(cone.direction));
 }
 
 /* The share of a sight's points that are not hidden, of all and of those with odd numbers. */

@@ -228,7 +228,7 @@ static float luminance(Vec3f c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f
 static float record_visibility(Tracer *tr, const Light *light, const Cone *cone, const ShadeRecord *r) {
     if (light->shadowless) return 1;
     const CompiledScene *scene = tr->compiled;
-    Vec3 point = cone_point(cone, r->t);
+    Vec3 point = cone_point(cone, r->t), to_eye = vec3_negate(cone->direction);
     LightRay ray = light_ray(light, point);
     tr->counters.shadow_rays++;
     Ray explicit_ray = {point, ray.direction};
@@ -248,10 +248,10 @@ static float record_visibility(Tracer *tr, const Light *light, const Cone *cone,
     SkinPoint place = r->point;
     bool seam = false;
     SkinSide side = skin_locate(&scene->skins[r->skin], point, r->tolerance, &place, &seam);
-    if (side == SKIN_LOST || side == SKIN_BORDER) return clear * skin_light_through(&tr->light, &shadow, ray.distance, -1);
+    if (side == SKIN_LOST || side == SKIN_BORDER) return clear * skin_light_through(&tr->light, &shadow, ray.distance, -1, to_eye);
     place.w = double_clamp(place.w, 0, 1);
-    float visible = skin_light_on_matter(&tr->light, &shadow, ray.distance, r->skin, &place, r->tolerance);
-    return visible > 0 ? clear * visible * skin_light_through(&tr->light, &shadow, ray.distance, (int)r->skin) : 0;
+    float visible = skin_light_on_matter(&tr->light, &shadow, ray.distance, r->skin, &place, r->tolerance, to_eye);
+    return visible > 0 ? clear * visible * skin_light_through(&tr->light, &shadow, ray.distance, (int)r->skin, to_eye) : 0;
 }
 
 /* Light of one source over the records with shadows. Visibility is found at a few records, at equal shares of the light
@@ -331,8 +331,8 @@ static Vec3f matter_before(void *tracer, const Cone *cone, double t_max, float *
     return trace_skins(tracer, cone, &everything, t_max, transmittance);
 }
 
-static float passing_matter(void *tracer, const Cone *cone, double t_max) {
-    return skin_light_through(&((Tracer *)tracer)->light, cone, t_max, -1);
+static float passing_matter(void *tracer, const Cone *cone, double t_max, Vec3 to_eye) {
+    return skin_light_through(&((Tracer *)tracer)->light, cone, t_max, -1, to_eye);
 }
 
 SurfaceTracer tracer_of_surfaces(Tracer *tr) {

@@ -88,7 +88,8 @@ static bool sky_lit(const Sample *s, const Facet *facet) {
 
 static Vec3f exact_matter(void *sample, const Cone *cone, double t_max, float *transmittance);
 
-static float exact_passing(void *sample, const Cone *cone, double t_max) {
+static float exact_passing(void *sample, const Cone *cone, double t_max, Vec3 to_eye) {
+    (void)to_eye;
     const Sample *s = sample;
     const Ray ray = {cone->origin, cone->direction};
     return exact_skins_occluded(s->compiled->exact, &ray, 0, t_max, s->counters) ? 0 : 1;

@@ -1,5 +1,7 @@
 #include "render/skin_light.h"
 
+#include "render/skin_joint.h"
+
 /* Light that is less than this makes no difference: it is but a part of a pixel. */
 static const float DARK_BELOW = 1.0f / 64;
 /* The surroundings of a place, to both sides, in voxels of the shadow's cone: the blur of a blade. */
@@ -17,34 +19,41 @@ static float rest_of_march(SkinMarch *march, float transmittance) {
     return transmittance > DARK_BELOW ? transmittance : 0;
 }
 
-float skin_light_through(SkinLight *light, const Cone *cone, double t_max, int but) {
+/* Through one skin, from what may be the ground under it. */
+static float through_skin(SkinMarch *march, Vec3 to_eye) {
+    SkinSegment first;
+    if (!skin_march_next(march, &first)) return 1;
+    return skin_joint_ground(march, to_eye, rest_of_march(march, first.transmittance));
+}
+
+float skin_light_through(SkinLight *light, const Cone *cone, double t_max, int but, Vec3 to_eye) {
     const CompiledScene *scene = light->compiled;
     float transmittance = 1;
     const Ray axis = {cone->origin, cone->direction};
     size_t met = compiled_skins_met(scene, &axis, t_max, light->met);
-    for (size_t k = 0; k < met && transmittance > 0; k++) {
+    for (size_t k = 0; k < met && transmittance > DARK_BELOW; k++) {
         uint32_t i = light->met[k];
         if ((int)i == but) continue;
         SkinMarch *march = &light->marches[i];
         skin_march_begin(march, cone, 0, t_max, &scene->shadow_march, light->counters, false);
-        transmittance = rest_of_march(march, transmittance);
+        transmittance *= through_skin(march, to_eye);
     }
-    return transmittance;
+    return transmittance > DARK_BELOW ? transmittance : 0;
 }
 
-float skin_light_through_voxels(SkinLight *light, const Cone *cone, double t_max, double seen_from) {
+float skin_light_through_voxels(SkinLight *light, const Cone *cone, double t_max, double seen_from, Vec3 to_eye) {
     const CompiledScene *scene = light->compiled;
     float transmittance = 1;
     const Ray axis = {cone->origin, cone->direction};
     size_t met = compiled_skins_met(scene, &axis, t_max, light->met);
-    for (size_t k = 0; k < met && transmittance > 0; k++) {
+    for (size_t k = 0; k < met && transmittance > DARK_BELOW; k++) {
         uint32_t i = light->met[k];
         const CompiledSkin *skin = &scene->skins[i];
         if (skin->boxes && seen_from <= skin->exact_to) continue;
         skin_march_begin(&light->marches[i], cone, 0, t_max, &scene->shadow_march, light->counters, false);
-        transmittance = rest_of_march(&light->marches[i], transmittance);
+        transmittance *= through_skin(&light->marches[i], to_eye);
     }
-    return transmittance;
+    return transmittance > DARK_BELOW ? transmittance : 0;
 }
 
 /* More hides nothing more. */
@@ -68,7 +77,7 @@ float skin_light_share(const LightSurroundings *s) {
 /* From this mean gamma on, matter is one sheet, or the wall of a solid (whose two walls have less). */
 static const float SHEET_GAMMA = 0.6f;
 
-float skin_light_on_matter(SkinLight *light, const Cone *cone, double t_max, uint32_t own, const SkinPoint *at, double tolerance) {
+float skin_light_on_matter(SkinLight *light, const Cone *cone, double t_max, uint32_t own, const SkinPoint *at, double tolerance, Vec3 to_eye) {
     SkinMarch *march = &light->marches[own];
     double reach = skin_march_begin_around(march, cone, at, SURROUNDINGS, tolerance, t_max, &light->compiled->shadow_march, light->counters);
     LightSurroundings around = {0};
@@ -86,5 +95,5 @@ float skin_light_on_matter(SkinLight *light, const Cone *cone, double t_max, uin
         }
     }
     around.sheet = around.area > 0 ? float_clamp(gamma_area / (SHEET_GAMMA * around.area), 0, 1) : 0;
-    return skin_light_share(&around) * transmittance;
+    return skin_joint_matter(march, to_eye, skin_light_share(&around) * transmittance);
 }

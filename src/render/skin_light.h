@@ -14,15 +14,16 @@ typedef struct SkinLight {
 
 void skin_light_init(SkinLight *light, const CompiledScene *compiled, TraceCounters *counters, Arena *arena);
 
-/* The share of light that passes all skins but `but` (-1: none) along the cone from t = 0 to t_max. In [0, 1]. */
-float skin_light_through(SkinLight *light, const Cone *cone, double t_max, int but);
+/* The share of light that passes all skins but `but` (-1: none) along the cone from t = 0 to t_max, which begins at a place that is seen from
+ * the direction `to_eye`. In [0, 1]. */
+float skin_light_through(SkinLight *light, const Cone *cone, double t_max, int but, Vec3 to_eye);
 
 /* The same of those skins that are not drawn as exact geometry at the distance `seen_from` from the eye. */
-float skin_light_through_voxels(SkinLight *light, const Cone *cone, double t_max, double seen_from);
+float skin_light_through_voxels(SkinLight *light, const Cone *cone, double t_max, double seen_from, Vec3 to_eye);
 
-/* The share of light that comes to matter of skin `own` at the start of the cone, which lies at `at` in it; what other skins
- * take away is left out. `tolerance` (scene units) is that of finding places in the skin. In [0, 1]. */
-float skin_light_on_matter(SkinLight *light, const Cone *cone, double t_max, uint32_t own, const SkinPoint *at, double tolerance);
+/* The share of light that comes to matter of skin `own` at the start of the cone, which lies at `at` in it and is seen from the direction `to_eye`; what
+ * other skins take away is left out. `tolerance` (scene units) is that of finding places in the skin. In [0, 1]. */
+float skin_light_on_matter(SkinLight *light, const Cone *cone, double t_max, uint32_t own, const SkinPoint *at, double tolerance, Vec3 to_eye);
 
 /* The surroundings of a place: a way along a beam with the place in its middle. */
 typedef struct LightSurroundings {

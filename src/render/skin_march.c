@@ -511,8 +511,7 @@ static void sample_copy(SkinMarch *m, size_t i, const CopyOnWay *on_way, StepSam
         float tau = m->settings->opacity == OPACITY_MEAN ? opacity_depth_mean(&v, finest, h, along)
                                                          : opacity_depth(m->settings->opacity, &v, h, along);
         if (!(tau > 0)) continue;
-        /* Not of shadows: what is seen is lit rather than not, from wherever the light comes, and that is left out as well. */
-        if (m->settings->opacity == OPACITY_CORRELATED && m->shade) tau *= voxel_layer_trim_at(texel->matter[k].voxels, lod, along);
+        if (m->settings->opacity == OPACITY_CORRELATED) tau *= voxel_layer_trim_at(texel->matter[k].voxels, lod, along);
         step->depth += tau;
         float area = opacity_area(&v, along);
         step->area += area;

@@ -33,8 +33,8 @@ typedef struct SurfaceTracer {
     uint64_t seed;      /* of what is sampled: for each line of sight anew */
     /* Matter of skins: what a cone gathers of it before t_max, the air before it included, and what shows of the rest; NULL: none. */
     Vec3f (*matter)(void *skins, const Cone *cone, double t_max, float *transmittance);
-    /* The share of light that passes it. */
-    float (*passing)(void *skins, const Cone *cone, double t_max);
+    /* The share of light that passes it, to a place that is seen from the direction `to_eye`. */
+    float (*passing)(void *skins, const Cone *cone, double t_max, Vec3 to_eye);
     void *skins;
 } SurfaceTracer;
 

@@ -82,7 +82,7 @@ static Vec3f one_way(SurfaceTracer *tracer, const Ray *ray, double distance, con
     if (!tracer->passing || most_of(through) <= 0) return through;
     double aperture = compiled->shadow_aperture;
     Cone cone = {ray->origin, ray->direction, width * aperture, leg->cone.spread * aperture};
-    return vec3f_scale(through, tracer->passing(tracer->skins, &cone, distance));
+    return vec3f_scale(through, tracer->passing(tracer->skins, &cone, distance, vec3_negate(leg->cone.direction)));
 }
 
 /* Of a light with an area: a few places of it at first, and many where these do not agree. */

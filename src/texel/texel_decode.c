@@ -2,6 +2,7 @@
 #include "texel/texel_content.h"
 #include "texel/texel_format.h"
 #include "texel/voxel_layer.h"
+#include "texel/voxel_pairs.h"
 #include "texel/voxel_trim.h"
 
 #include <stdarg.h>
@@ -64,7 +65,8 @@ static const char *section_name(uint32_t kind) {
                                         [SECTION_INDEX] = "index",
                                         [SECTION_SLICES] = "block of masks",
                                         [SECTION_CODES] = "block of voxels",
-                                        [SECTION_TRIM] = "table of factors"};
+                                        [SECTION_TRIM] = "table of factors",
+                                        [SECTION_PAIRS] = "table of pairs"};
     return kind < VTS_ARRAY_COUNT(names) && names[kind] ? names[kind] : "section";
 }
 
@@ -244,12 +246,16 @@ static bool read_codes(FormatReader *r, VoxelLayer *layer, size_t number, int l)
     return voxel_level_mark_support(layer, level) || lack_memory(r);
 }
 
+static bool next_is(const FormatReader *r, SectionKind kind) {
+    FormatSection next;
+    if (r->next >= r->header.section_count) return false;
+    memcpy(&next, r->data + sizeof(FormatHeader) + (size_t)r->next * sizeof next, sizeof next);
+    return next.kind == (uint32_t)kind;
+}
+
 /* Factors of coarse levels, if the file has any. */
 static bool read_trim(FormatReader *r, VoxelLayer *layer, size_t number) {
-    FormatSection next;
-    if (r->next >= r->header.section_count) return true;
-    memcpy(&next, r->data + sizeof(FormatHeader) + (size_t)r->next * sizeof next, sizeof next);
-    if (next.kind != SECTION_TRIM) return true;
+    if (!next_is(r, SECTION_TRIM)) return true;
     const unsigned char *at = open_section(r, SECTION_TRIM, number, 0);
     if (!at) return false;
     if (r->section.size != sizeof layer->trim) return refuse_section(r, "has not the size that it should have");
@@ -258,6 +264,16 @@ static bool read_trim(FormatReader *r, VoxelLayer *layer, size_t number) {
     for (size_t i = 0; i < sizeof layer->trim / sizeof(float); i++)
         if (!(factors[i] >= TRIM_LEAST && factors[i] <= TRIM_MOST)) return refuse_section(r, "holds what it should not");
     return true;
+}
+
+/* What eye and sun have in common, if the file says so. */
+static bool read_pairs(FormatReader *r, VoxelLayer *layer, size_t number) {
+    if (!next_is(r, SECTION_PAIRS)) return true;
+    const unsigned char *at = open_section(r, SECTION_PAIRS, number, 0);
+    if (!at) return false;
+    if (r->section.size != sizeof layer->pairs) return refuse_section(r, "has not the size that it should have");
+    memcpy(&layer->pairs, at, sizeof layer->pairs);
+    return voxel_pairs_are_sound(&layer->pairs) || refuse_section(r, "holds what it should not");
 }
 
 static bool read_voxels(FormatReader *r, const FormatTexel *texel, size_t number,
@@ -272,7 +288,7 @@ static bool read_voxels(FormatReader *r, const FormatTexel *texel, size_t number
         if (!read_index(r, layer, number, l) || !read_slices(r, layer, number, l) ||
             !read_codes(r, layer, number, l))
             return false;
-    return read_trim(r, layer, number);
+    return read_trim(r, layer, number) && read_pairs(r, layer, number);
 }
 
 static bool read_file(FormatReader *r, MemoryBudget *memory, TexelFile *out) {

@@ -4,6 +4,7 @@
 #include "image/whole_file.h"
 #include "texel/texel_format.h"
 #include "texel/voxel_layer.h"
+#include "texel/voxel_pairs.h"
 #include "texel/voxel_trim.h"
 
 #include <stdlib.h>
@@ -86,6 +87,13 @@ static void write_trim(Writer *w, const VoxelLayer *voxels, size_t layer) {
     end_section(w);
 }
 
+static void write_pairs(Writer *w, const VoxelLayer *voxels, size_t layer) {
+    if (!voxel_layer_is_paired(voxels)) return;
+    begin_section(w, SECTION_PAIRS, layer, 0);
+    add_bytes(w, &voxels->pairs, sizeof voxels->pairs);
+    end_section(w);
+}
+
 static void write_sections(Writer *w, const TexelFile *file) {
     write_texel(w, file);
     for (size_t i = 0; i < file->layer_count; i++) {
@@ -93,6 +101,7 @@ static void write_sections(Writer *w, const TexelFile *file) {
         write_look(w, &file->layers[i], i);
         for (int l = 0; l < voxels->levels; l++) write_level(w, &voxels->level[l], i, l);
         write_trim(w, voxels, i);
+        write_pairs(w, voxels, i);
     }
 }
 

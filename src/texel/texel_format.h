@@ -26,7 +26,8 @@ typedef enum SectionKind {
     SECTION_INDEX,
     SECTION_SLICES,
     SECTION_CODES,
-    SECTION_TRIM
+    SECTION_TRIM,
+    SECTION_PAIRS
 } SectionKind;
 enum { SECTIONS_PER_LEVEL = 3 };
 

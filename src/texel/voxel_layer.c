@@ -1,5 +1,6 @@
 #include "texel/voxel_layer.h"
 
+#include "texel/voxel_pairs.h"
 #include "texel/voxel_trim.h"
 
 #include <stdlib.h>
@@ -61,6 +62,7 @@ VoxelLayer *voxel_layer_create(const TexelBuildOptions *options) {
     layer->scattered = options->field != NULL;
     for (int i = 0; i < 3; i++) layer->cyclic[i] = options->cyclic >> i & 1;
     voxel_layer_forget_trim(layer);
+    voxel_layer_forget_pairs(layer);
     set_sizes(layer, options);
     return layer;
 }
@@ -99,6 +101,7 @@ bool voxel_layer_is_empty(const VoxelLayer *layer) { return layer->level[layer->
 Hash128 voxel_layer_hash(const VoxelLayer *layer) {
     Hash128 hash = hash_begin((uint64_t)layer->levels);
     hash_add(&hash, layer->trim, sizeof layer->trim);
+    hash_add(&hash, &layer->pairs, sizeof layer->pairs);
     for (int i = 0; i < layer->levels; i++) {
         const VoxelLevel *l = &layer->level[i];
         hash_add(&hash, l->size, sizeof l->size);

@@ -8,6 +8,8 @@
 enum { BRICK_SIDE = 8, BRICK_VOXELS = 512 };
 /* Levels of up to 8 voxels, and directions each way, for which it is known how much they have to be trimmed. */
 enum { TRIM_LEVELS = 4, TRIM_NODES = 9 };
+/* Every other of those directions, in pairs. */
+enum { PAIR_SIDE = (TRIM_NODES + 1) / 2, PAIR_NODES = PAIR_SIDE * PAIR_SIDE };
 
 /* Voxel (x, y, z) is stored if bit 8·y + x of slice[z] is set; its code is then
  * codes[first[z] + number of lower bits set in the slice]. */
@@ -51,6 +53,12 @@ typedef struct VoxelLevel {
     size_t brick_count, code_count;
 } VoxelLevel;
 
+/* What eye and light have in common: voxel_pairs.h. */
+typedef struct VoxelPairs {
+    float lit[PAIR_NODES * PAIR_NODES]; /* by direction to the eye, then to the light; below 0: not known */
+    float spot;                         /* difference of slopes over which gaps forget each other; 0: not known */
+} VoxelPairs;
+
 struct VoxelLayer {
     int owners; /* voxel_layer_destroy() takes one away */
     int levels;
@@ -59,6 +67,7 @@ struct VoxelLayer {
     TexelFiltering filtering;
     VoxelLevel level[TEXEL_MAX_LEVELS];
     float trim[TRIM_LEVELS][TRIM_NODES * TRIM_NODES]; /* of the coarsest levels, the last first, by direction: voxel_trim.h */
+    VoxelPairs pairs;
     MemoryBudget *memory;
     size_t bytes; /* taken from memory */
 };

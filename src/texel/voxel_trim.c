@@ -2,7 +2,7 @@
 
 #include "base/random.h"
 #include "texel/opacity.h"
-#include "texel/voxel_layer.h"
+#include "texel/voxel_pairs.h"
 
 #include <stdlib.h>
 
@@ -42,6 +42,9 @@ typedef struct TrimWork {
     bool contained;    /* nothing of it lies beyond the extent, but along cyclic axes */
     bool coarse;       /* many triangles */
     bool known[TRIM_DIRECTIONS];
+    bool paired;       /* what even nodes see is kept: of a period */
+    PairView pairs[PAIR_NODES], spots[SPOT_GROUPS * SPOT_VIEWS];
+    float *tops;       /* for all of these; NULL: nothing is kept */
 } TrimWork;
 
 /* The upper hemisphere as an octahedron's upper half, unfolded to a square: node (i, j) of TRIM_NODES each way. */
@@ -60,9 +63,13 @@ static int places_each_way(const TrimWork *work) {
     return is_period(work->layer) && work->mesh->triangle_count > TRIM_SOME_TRIANGLES ? TRIM_GRID / 2 : TRIM_GRID;
 }
 
-static TrimView look_along(const TrimWork *work, int node) {
-    Vec3f d = trim_direction(node);
-    uint64_t bits = random_hash((uint64_t)node, 0, 0, 0);
+static bool is_even(int node) { return node % TRIM_NODES % 2 == 0 && node / TRIM_NODES % 2 == 0; }
+
+/* Of an even node, its number among those. */
+static int pair_node(int node) { return node / TRIM_NODES / 2 * PAIR_SIDE + node % TRIM_NODES / 2; }
+
+static TrimView look_along(const TrimWork *work, Vec3f d, uint64_t number, bool cyclic) {
+    uint64_t bits = random_hash(number, 0, 0, 0);
     TrimView v = {.d = d,
                   .extent = work->extent,
                   .slope_x = d.x / d.y,
@@ -71,12 +78,26 @@ static TrimView look_along(const TrimWork *work, int node) {
                   .shift = {random_unitf(bits), random_unitf(random_mix(bits))}};
     const float slope[2] = {v.slope_x, v.slope_z}, extent[2] = {work->extent.x, work->extent.z};
     for (int k = 0; k < 2; k++) {
-        v.cyclic[k] = work->layer->cyclic[2 * k];
+        v.cyclic[k] = cyclic || work->layer->cyclic[2 * k];
         float reach = -slope[k] * work->extent.y;
         v.origin[k] = v.cyclic[k] ? 0 : float_min(0, reach);
         v.size[k] = v.cyclic[k] ? extent[k] : extent[k] + fabsf(reach);
     }
     return v;
+}
+
+/* Of a node; of a period place by place as of all others. */
+static TrimView look_along_node(const TrimWork *work, int node) {
+    return look_along(work, trim_direction(node), work->paired ? 0 : (uint64_t)node, false);
+}
+
+/* Once around at a steep slope, and a little beside that, along it and across. */
+static TrimView look_along_spot(const TrimWork *work, int spot) {
+    static const float slope[SPOT_GROUPS][2] = {{0.8f, 0.3f}, {-0.3f, 0.8f}, {-0.8f, -0.3f}, {0.3f, -0.8f}};
+    const float *at = slope[spot / SPOT_VIEWS];
+    int beside = spot % SPOT_VIEWS;
+    float x = at[0] + (beside == 1 ? SPOT_OFFSET : 0), z = at[1] + (beside == 2 ? SPOT_OFFSET : 0);
+    return look_along(work, vec3f_normalize(vec3f(x, 1, z)), 0, true);
 }
 
 /* ---- triangles ---- */
@@ -141,8 +162,8 @@ static bool cut_row(const TrimCorner *const p[3], float row, TrimSpan *span) {
     return span->column[0] < span->column[1];
 }
 
-/* Of a row, the places within the extent. */
-static void mark_row(const TrimWork *work, const TrimView *v, int row, const TrimSpan *span, uint8_t *seen) {
+/* Of a row, the places within the extent: the height of what is met first from above. */
+static void mark_row(const TrimWork *work, const TrimView *v, int row, const TrimSpan *span, float *top) {
     int line = wrapped_place(row, v->grid, v->cyclic[1]);
     if (line < 0) return;
     float cell_x = v->size[0] / (float)v->grid, cell_z = v->size[1] / (float)v->grid;
@@ -157,12 +178,13 @@ static void mark_row(const TrimWork *work, const TrimView *v, int row, const Tri
              !within(v, v->origin[0] + ((float)i + v->shift[0]) * cell_x, height, 0) ||
              !within(v, v->origin[1] + ((float)row + v->shift[1]) * cell_z, height, 1)))
             continue;
-        seen[line * v->grid + column] = 1;
+        float *place = &top[line * v->grid + column];
+        *place = float_max(*place, float_max(height, 0));
     }
 }
 
 /* Marks the places where a triangle is seen; many have none. Returns how much work that was. */
-static int64_t mark_triangle(const TrimWork *work, const TrimView *v, const TrimCorner *const p[3], uint8_t *seen) {
+static int64_t mark_triangle(const TrimWork *work, const TrimView *v, const TrimCorner *const p[3], float *top) {
     float left = float_min(p[0]->column, float_min(p[1]->column, p[2]->column)),
           right = float_max(p[0]->column, float_max(p[1]->column, p[2]->column)),
           front = float_min(p[0]->row, float_min(p[1]->row, p[2]->row)),
@@ -171,25 +193,24 @@ static int64_t mark_triangle(const TrimWork *work, const TrimView *v, const Trim
     if (columns <= 0) return 1;
     for (int row = first; row < end; row++) {
         TrimSpan span;
-        if (cut_row(p, (float)row, &span)) mark_row(work, v, row, &span, seen);
+        if (cut_row(p, (float)row, &span)) mark_row(work, v, row, &span, top);
     }
     return 1 + (int64_t)columns * (end - first);
 }
 
-/* The share of the view that the triangles hide; < 0 where that is not known. */
-static double hidden_by_triangles(const TrimWork *work, const TrimView *v) {
+/* The share of the view that the triangles hide; < 0 where that is not known. `top` gets the heights, below 0 where nothing is. */
+static double hidden_by_triangles(const TrimWork *work, const TrimView *v, float *top) {
     const TexelMesh *mesh = work->mesh;
     size_t places = (size_t)(v->grid * v->grid), hidden = 0;
     int64_t spent = 0;
-    uint8_t *seen = calloc(places, 1);
     TrimCorner *corners = malloc(mesh->vertex_count * sizeof *corners);
-    bool known = seen && corners && project(work, v, corners);
+    bool known = corners && project(work, v, corners);
+    for (size_t i = 0; i < places; i++) top[i] = -1;
     for (size_t t = 0; known && t < mesh->triangle_count && spent < TRIM_MOST_PLACES; t++) {
         const uint32_t *at = mesh->triangles[t];
-        spent += mark_triangle(work, v, (const TrimCorner *const[3]){&corners[at[0]], &corners[at[1]], &corners[at[2]]}, seen);
+        spent += mark_triangle(work, v, (const TrimCorner *const[3]){&corners[at[0]], &corners[at[1]], &corners[at[2]]}, top);
     }
-    for (size_t i = 0; known && i < places; i++) hidden += seen[i];
-    free(seen);
+    for (size_t i = 0; i < places; i++) hidden += top[i] >= 0;
     free(corners);
     return known && spent < TRIM_MOST_PLACES ? (double)hidden / (double)places : -1;
 }
@@ -256,18 +277,38 @@ static float trim_level(const VoxelLayer *layer, int level, const TrimView *v, d
     return find_factor(depths, side * side, hidden);
 }
 
-static void look_through(void *context, size_t node, int worker) {
-    (void)worker;
-    TrimWork *work = context;
+/* Room for what the view sees: kept with the pair, or to be freed. */
+static float *room_for_view(const TrimWork *work, const TrimView *view, int kept) {
+    size_t places = (size_t)(view->grid * view->grid);
+    return kept >= 0 && work->tops ? work->tops + (size_t)kept * places : malloc(places * sizeof(float));
+}
+
+static void look_at_spot(TrimWork *work, int spot) {
+    if (!work->tops) return;
+    TrimView view = look_along_spot(work, spot);
+    float *top = room_for_view(work, &view, PAIR_NODES + spot);
+    work->spots[spot] = (PairView){view.slope_x, view.slope_z, hidden_by_triangles(work, &view, top) >= 0 ? top : NULL};
+}
+
+static void look_at_node(TrimWork *work, int node) {
     VoxelLayer *layer = work->layer;
     work->known[node] = true;
-    if (work->coarse && (node % TRIM_NODES % 2 || node / TRIM_NODES % 2)) return; /* between others */
-    TrimView view = look_along(work, (int)node);
-    double hidden = hidden_by_triangles(work, &view);
+    if (work->coarse && !is_even(node)) return; /* between others */
+    TrimView view = look_along_node(work, node);
+    int kept = work->paired && is_even(node) ? pair_node(node) : -1;
+    float *top = room_for_view(work, &view, kept);
+    double hidden = top ? hidden_by_triangles(work, &view, top) : -1;
     work->known[node] = hidden >= 0;
-    if (!work->known[node]) return;
-    for (int i = 0; i < TRIM_LEVELS && i < layer->levels; i++)
+    if (kept >= 0) work->pairs[kept] = (PairView){view.slope_x, view.slope_z, top};
+    else free(top);
+    for (int i = 0; work->known[node] && i < TRIM_LEVELS && i < layer->levels; i++)
         layer->trim[i][node] = trim_level(layer, layer->levels - 1 - i, &view, hidden);
+}
+
+static void look_through(void *context, size_t number, int worker) {
+    (void)worker;
+    if (number < TRIM_DIRECTIONS) look_at_node(context, (int)number);
+    else look_at_spot(context, (int)number - TRIM_DIRECTIONS);
 }
 
 void voxel_layer_forget_trim(VoxelLayer *layer) {
@@ -334,20 +375,39 @@ static bool find_bounds(TrimWork *work) {
     return true;
 }
 
+/* Without room pairs stay unknown. */
+static void keep_views(TrimWork *work) {
+    size_t grid = (size_t)places_each_way(work);
+    work->tops = malloc((PAIR_NODES + SPOT_GROUPS * SPOT_VIEWS) * grid * grid * sizeof *work->tops);
+    work->paired = work->tops && is_period(work->layer);
+}
+
+static void compare_views(const TrimWork *work) {
+    bool seen = work->tops != NULL;
+    int grid = places_each_way(work);
+    for (int i = 0; i < SPOT_GROUPS * SPOT_VIEWS; i++) seen &= work->spots[i].top != NULL;
+    if (seen) voxel_layer_find_spot(work->layer, work->spots, grid);
+    if (work->paired) voxel_layer_pair(work->layer, work->pairs, grid, (float[2]){work->extent.x, work->extent.z});
+}
+
 void voxel_layer_trim(VoxelLayer *layer, const TexelMesh *mesh, Vec3f extent, Pool *pool) {
     voxel_layer_forget_trim(layer);
+    voxel_layer_forget_pairs(layer);
     if (layer->cyclic[1] || layer->scattered || !mesh->triangle_count ||
         mesh->triangle_count > TRIM_MOST_TRIANGLES || voxel_layer_is_empty(layer))
         return;
     TrimWork work = {
         .layer = layer, .mesh = mesh, .extent = extent, .coarse = mesh->triangle_count > TRIM_MANY_TRIANGLES};
-    bool known = find_bounds(&work) && pool_run(pool, TRIM_DIRECTIONS, look_through, &work);
+    keep_views(&work);
+    bool known = find_bounds(&work) && pool_run(pool, TRIM_DIRECTIONS + SPOT_GROUPS * SPOT_VIEWS, look_through, &work);
     for (int node = 0; node < TRIM_DIRECTIONS; node++) known &= work.known[node];
     if (known && work.coarse) fill_between(layer);
+    if (known) compare_views(&work);
     if (known)
         join_horizon(layer);
     else
         voxel_layer_forget_trim(layer);
+    free(work.tops);
 }
 
 /* ---- reading ---- */

@@ -1,0 +1,37 @@
+/* What eye and light have in common: both look through the same gaps.
+ *
+ * Voxels tell how much of a light comes through a layer, not how much of it falls on what is seen: where the eye looks through a gap, along nearly the
+ * same line the light does, too (the hot spot of remote sensing). How nearly, the gaps' correlation tells between directions a little apart. And of
+ * matter in a layer that repeats along x and z the triangles tell which share of what is seen is lit, for pairs of 25 directions of the upper
+ * hemisphere. */
+#ifndef VTS_TEXEL_VOXEL_PAIRS_H
+#define VTS_TEXEL_VOXEL_PAIRS_H
+
+#include "texel/voxel_layer.h"
+
+/* The layer seen along a direction d, d.y > 0, over the plane y = 0. */
+typedef struct PairView {
+    float slope_x, slope_z; /* d / d.y */
+    const float *top;       /* [grid × grid], along x first: height of what is met first from above; below 0 nothing */
+} PairView;
+
+/* Sets layer->pairs.lit from views along the directions of even nodes. `size`: of the period along x and z; the middle of the first place is the
+ * same in all views. */
+void voxel_layer_pair(VoxelLayer *layer, const PairView views[PAIR_NODES], int grid, const float size[2]);
+/* Sets layer->pairs.spot from groups of SPOT_VIEWS views: one along a direction, the others with slopes that differ by SPOT_OFFSET from its. */
+enum { SPOT_VIEWS = 3, SPOT_GROUPS = 4 };
+#define SPOT_OFFSET 0.15f
+void voxel_layer_find_spot(VoxelLayer *layer, const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid);
+/* As if nothing was known. */
+void voxel_layer_forget_pairs(VoxelLayer *layer);
+bool voxel_layer_is_paired(const VoxelLayer *layer);
+/* Whether the numbers of a file are such as voxel_layer_pair() makes. */
+bool voxel_pairs_are_sound(const VoxelPairs *pairs);
+
+/* Directions of texel space, of any length, to the eye and to the light: how much of what the eye's way through the layer's gaps tells holds for the
+ * light's: 1 where both are one, 0 where they have nothing in common or nothing is known. */
+float voxel_layer_spot(const VoxelLayer *layer, Vec3f to_eye, Vec3f to_light);
+/* The share that is lit of the matter that is seen; below 0 where that is not known. */
+float voxel_layer_lit_pair(const VoxelLayer *layer, Vec3f to_eye, Vec3f to_light);
+
+#endif

@@ -1,0 +1,126 @@
+/* What eye and light have in common, against rays through the triangles. */
+#include "texel/voxel_pairs.h"
+
+#include "base/random.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { BLADES = 40, SIDES = 3 * BLADES };
+
+typedef struct Meadow {
+    Vec3f vertices[SIDES];
+    VoxelLayer *layer;
+} Meadow;
+
+/* Triangles that stand anywhere in a unit cube, `wide` at the foot, all leaning a little. */
+static void grow(Meadow *m, float wide) {
+    static uint32_t triangles[BLADES][3];
+    for (int i = 0; i < BLADES; i++) {
+        float x = random_unitf(random_hash((uint64_t)i, 0, 0, 7)), z = random_unitf(random_hash((uint64_t)i, 1, 0, 7));
+        float turn = 6.28f * random_unitf(random_hash((uint64_t)i, 2, 0, 7)), lean = 0.2f * random_unitf(random_hash((uint64_t)i, 3, 0, 7));
+        Vec3f across = {wide / 2 * cosf(turn), 0, wide / 2 * sinf(turn)};
+        m->vertices[3 * i] = vec3f(x - across.x, 0, z - across.z);
+        m->vertices[3 * i + 1] = vec3f(x + across.x, 0, z + across.z);
+        m->vertices[3 * i + 2] = vec3f(x + lean * sinf(turn), 0.9f, z - lean * cosf(turn));
+        for (int k = 0; k < 3; k++) triangles[i][k] = (uint32_t)(3 * i + k);
+    }
+    TexelMesh mesh = {.vertices = m->vertices, .vertex_count = SIDES, .triangles = (const uint32_t(*)[3])triangles, .triangle_count = BLADES};
+    TexelBuildOptions options = {.resolution = 32, .extent = {1, 1, 1}, .cyclic = TEXEL_CYCLIC_X | TEXEL_CYCLIC_Z};
+    m->layer = voxel_layer_build(&mesh, &options, NULL);
+    assert_non_null(m->layer);
+}
+
+/* The nearest t in (from, …] at which the ray meets a blade, copies around included; INFINITY. */
+static double meet(const Meadow *m, Vec3 from, Vec3 d, double after) {
+    double nearest = INFINITY;
+    for (int i = 0; i < BLADES; i++)
+        for (int copy = 0; copy < 49; copy++) {
+            Vec3 shift = {copy % 7 - 3, 0, copy / 7 - 3}, p[3];
+            for (int k = 0; k < 3; k++) p[k] = vec3_add(vec3_from_f(m->vertices[3 * i + k]), shift);
+            Vec3 e1 = vec3_sub(p[1], p[0]), e2 = vec3_sub(p[2], p[0]), h = vec3_cross(d, e2), s = vec3_sub(from, p[0]), q = vec3_cross(s, e1);
+            double det = vec3_dot(e1, h), u = vec3_dot(s, h) / det, v = vec3_dot(d, q) / det, t = vec3_dot(e2, q) / det;
+            if (u >= 0 && v >= 0 && u + v <= 1 && t > after && t < nearest) nearest = t;
+        }
+    return nearest;
+}
+
+typedef struct Shares {
+    double seen, matter_lit, ground_lit, through; /* of the view, of what is seen of both, and what of the light reaches the ground */
+} Shares;
+
+static Shares shares_of(const Meadow *m, Vec3 eye, Vec3 light) {
+    enum { SIDE = 60 };
+    int matter = 0, lit = 0, ground = 0, ground_lit = 0, reached = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        Vec3 foot = {(i % SIDE + 0.5) / SIDE, 0, (i / SIDE + 0.5) / SIDE}, high = vec3_madd(foot, eye, 1 / eye.y);
+        bool open = isinf(meet(m, foot, light, 1e-9));
+        double t = meet(m, high, vec3_negate(eye), 0);
+        reached += open;
+        if (t < 1 / eye.y) matter++, lit += isinf(meet(m, vec3_madd(high, eye, -t), light, 1e-6));
+        else ground++, ground_lit += open;
+    }
+    return (Shares){matter / (double)(SIDE * SIDE), lit / (double)matter, ground_lit / (double)ground, reached / (double)(SIDE * SIDE)};
+}
+
+static void shares_are_those_of_rays(void **state) {
+    (void)state;
+    static const struct {
+        Vec3 eye, light;
+    } ways[] = {{{0.3, 1, 0.2}, {0.9, 1, -0.4}}, {{-0.8, 1, 0.5}, {0.7, 1, -0.2}}, {{0.8, 1, 0.3}, {0.8, 1, 0.31}}, {{0.8, 1, 0.3}, {0.7, 1, 0.45}}, {{0.1, 1, -1.2}, {0.8, 1, -0.7}}};
+    Meadow m;
+    int close = 0;
+    grow(&m, 0.12f);
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(ways); i++) {
+        Vec3 eye = vec3_normalize(ways[i].eye), light = vec3_normalize(ways[i].light);
+        Shares truth = shares_of(&m, eye, light);
+        double lit = (double)voxel_layer_lit_pair(m.layer, vec3f_from(eye), vec3f_from(light));
+        double spot = (double)voxel_layer_spot(m.layer, vec3f_from(eye), vec3f_from(light)), ground = truth.through + (1 - truth.through) * spot;
+        print_message("seen %.3f: matter lit %.3f, rays %.3f; ground lit %.3f, rays %.3f, through %.3f\n", truth.seen, lit, truth.matter_lit, ground, truth.ground_lit,
+                      truth.through);
+        assert_true(fabs(lit - truth.matter_lit) < 0.08);
+        /* Far from the light's own direction gaps may exclude each other, as they happen to in a period of few blades. */
+        if (spot > 0.1) assert_true(fabs(ground - truth.ground_lit) < 0.5 * fabs(truth.through - truth.ground_lit));
+        close += spot > 0.1;
+    }
+    assert_true(close >= 2);
+    voxel_layer_destroy(m.layer);
+}
+
+static void wide_blades_have_a_wide_spot(void **state) {
+    (void)state;
+    Meadow thin, wide;
+    grow(&thin, 0.04f);
+    grow(&wide, 0.16f);
+    assert_true(thin.layer->pairs.spot > 0 && wide.layer->pairs.spot > 1.5f * thin.layer->pairs.spot);
+    voxel_layer_destroy(thin.layer);
+    voxel_layer_destroy(wide.layer);
+}
+
+static void odd_directions_are_harmless(void **state) {
+    (void)state;
+    static const Vec3f odd[] = {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, {NAN, 1, 0}, {INFINITY, 1, 0}, {0, 1e-30f, 0}, {1e30f, 1e30f, 0}};
+    Meadow m;
+    grow(&m, 0.1f);
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(odd); i++)
+        for (size_t k = 0; k < VTS_ARRAY_COUNT(odd); k++) {
+            float lit = voxel_layer_lit_pair(m.layer, odd[i], odd[k]), spot = voxel_layer_spot(m.layer, odd[i], odd[k]);
+            assert_true(lit == -1 || (lit >= 0 && lit <= 1));
+            assert_true(spot >= 0 && spot <= 1);
+        }
+    voxel_layer_forget_pairs(m.layer);
+    assert_false(voxel_layer_is_paired(m.layer));
+    assert_true(voxel_layer_lit_pair(m.layer, vec3f(0, 1, 0), vec3f(0, 1, 0)) < 0);
+    voxel_layer_destroy(m.layer);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(shares_are_those_of_rays), cmocka_unit_test(wide_blades_have_a_wide_spot),
+                                       cmocka_unit_test(odd_directions_are_harmless)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -106,6 +106,24 @@ bool read_and_widen(ImageInput &input, const ImageSpec &spec, TypeDesc type, flo
     return true;
 }
 
+/* What is stored together: tiles side by side, or scanlines. */
+int row_step_of(const ImageSpec &spec) {
+    enum { SCANLINES = 16 };
+    int step = spec.tile_width > 0 ? spec.tile_height : SCANLINES;
+    return step < 1 ? 1 : step < spec.height ? step : spec.height;
+}
+
+template <typename Sample>
+bool read_rows_and_widen(ImageInput &input, const ImageSpec &spec, int row, int channel, TypeDesc type, float *samples) {
+    int first = spec.y + row, end = spec.y + (row + row_step_of(spec) < spec.height ? row + row_step_of(spec) : spec.height);
+    size_t count = static_cast<size_t>(spec.width) * static_cast<size_t>(end - first);
+    std::vector<Sample> native(count);
+    bool good = spec.tile_width > 0 ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, first, end, 0, 1, channel, channel + 1, type, native.data())
+                                    : input.read_scanlines(0, 0, first, end, 0, channel, channel + 1, type, native.data());
+    for (size_t i = 0; good && i < count; i++) samples[i] = static_cast<float>(native[i]);
+    return good;
+}
+
 /* Natively, widened here: asked for floats, OpenImageIO would divide integers by their largest value, and asked for
  * integers it would clamp floats. */
 bool read_native(ImageInput &input, float *pixels) {
@@ -120,6 +138,21 @@ bool read_native(ImageInput &input, float *pixels) {
     case IMAGE_SAMPLE_I32: return read_and_widen<int>(input, spec, type, pixels);
     case IMAGE_SAMPLE_DOUBLE: return read_and_widen<double>(input, spec, type, pixels);
     default: return input.read_image(0, 0, 0, spec.nchannels, TypeDesc::FLOAT, pixels);
+    }
+}
+
+bool read_native_rows(ImageInput &input, int row, int channel, float *samples) {
+    ImageSpec spec = input.spec();
+    TypeDesc type(static_cast<TypeDesc::BASETYPE>(spec.format.basetype));
+    switch (sample_of(type)) {
+    case IMAGE_SAMPLE_U8: return read_rows_and_widen<unsigned char>(input, spec, row, channel, type, samples);
+    case IMAGE_SAMPLE_I8: return read_rows_and_widen<signed char>(input, spec, row, channel, type, samples);
+    case IMAGE_SAMPLE_U16: return read_rows_and_widen<unsigned short>(input, spec, row, channel, type, samples);
+    case IMAGE_SAMPLE_I16: return read_rows_and_widen<short>(input, spec, row, channel, type, samples);
+    case IMAGE_SAMPLE_U32: return read_rows_and_widen<unsigned int>(input, spec, row, channel, type, samples);
+    case IMAGE_SAMPLE_I32: return read_rows_and_widen<int>(input, spec, row, channel, type, samples);
+    case IMAGE_SAMPLE_DOUBLE: return read_rows_and_widen<double>(input, spec, row, channel, type, samples);
+    default: return read_rows_and_widen<float>(input, spec, row, channel, TypeDesc::FLOAT, samples);
     }
 }
 
@@ -188,6 +221,7 @@ bool shim_open(const char *path, OiioReader **out, OiioHeader *header, char erro
     header->alpha_unassociated = spec.get_int_attribute("oiio:UnassociatedAlpha") != 0 ||
                                  std::strcmp(reader->input->format_name(), "png") == 0;
     header->linear = space == "Linear" || space == "linear" || space.compare(0, 4, "lin_") == 0;
+    header->row_step = row_step_of(spec);
     header->attributes = reader->attributes.data();
     header->attribute_count = reader->attributes.size();
     *out = reader.release();
@@ -198,6 +232,13 @@ bool shim_open(const char *path, OiioReader **out, OiioHeader *header, char erro
 
 bool shim_read(OiioReader *reader, float *pixels, char error[OIIO_ERROR_SIZE]) try {
     if (read_native(*reader->input, pixels)) return true;
+    return fail(error, reader->input->geterror());
+} catch (const std::exception &exception) { return fail(error, exception.what()); } catch (...) {
+    return fail(error, "");
+}
+
+bool shim_read_rows(OiioReader *reader, int row, int channel, float *samples, char error[OIIO_ERROR_SIZE]) try {
+    if (read_native_rows(*reader->input, row, channel, samples)) return true;
     return fail(error, reader->input->geterror());
 } catch (const std::exception &exception) { return fail(error, exception.what()); } catch (...) {
     return fail(error, "");
@@ -231,7 +272,7 @@ bool shim_encode(const OiioPicture *picture, void **bytes, size_t *size, char er
     return fail(error, "");
 }
 
-const OiioShim shim = {OIIO_SHIM_VERSION, shim_open, shim_read, shim_close, shim_encode};
+const OiioShim shim = {OIIO_SHIM_VERSION, shim_open, shim_read, shim_read_rows, shim_close, shim_encode};
 
 } // namespace
 

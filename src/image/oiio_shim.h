@@ -10,7 +10,7 @@ extern "C" {
 #endif
 
 /* Changes with every change of this file; a module with another number is not used. */
-enum { OIIO_SHIM_VERSION = 1, OIIO_ERROR_SIZE = 512 };
+enum { OIIO_SHIM_VERSION = 2, OIIO_ERROR_SIZE = 512 };
 
 typedef struct OiioReader OiioReader;
 
@@ -22,6 +22,7 @@ typedef struct OiioHeader {
     int alpha;                        /* index of the alpha channel, or -1 */
     bool alpha_unassociated;          /* colours are not multiplied by alpha */
     bool linear;                      /* integers that hold linear light, says the file */
+    int row_step;                     /* rows that are stored together: strips, tiles */
     const ImageAttribute *attributes; /* texts and numbers; nothing structured */
     size_t attribute_count;
 } OiioHeader;
@@ -45,6 +46,9 @@ typedef struct OiioShim {
     bool (*open)(const char *path, OiioReader **reader, OiioHeader *header, char error[OIIO_ERROR_SIZE]);
     /* All samples, integers not scaled, into width · height · channels floats. */
     bool (*read)(OiioReader *reader, float *pixels, char error[OIIO_ERROR_SIZE]);
+    /* The samples of one channel, as read() has them, of the rows from `row` on: a multiple of row_step, up to the next multiple or the
+     * last row. */
+    bool (*read_rows)(OiioReader *reader, int row, int channel, float *samples, char error[OIIO_ERROR_SIZE]);
     void (*close)(OiioReader *reader);
     /* The bytes of a file, allocated with malloc(). */
     bool (*encode)(const OiioPicture *picture, void **bytes, size_t *size, char error[OIIO_ERROR_SIZE]);

@@ -33,7 +33,7 @@ typedef struct HeightmapOptions {
     HeightmapVoids voids;
     bool has_nodata;
     double nodata;     /* this sample means "no data", besides the one that the file names */
-    const char *geoid; /* "egm96_15", or the path of a .gtx file: heights above it become heights above the ellipsoid; NULL: none */
+    const char *geoid; /* "egm96_15", or the path of a .gtx file, with a slash in it: heights above it become heights above the ellipsoid; NULL: none */
     const char *const *folders; /* where a geoid is looked for, before the folders of PROJ's data */
     size_t folder_count;
 } HeightmapOptions;
@@ -81,6 +81,8 @@ bool heightmap_from_geo(const Heightmap *map, GeoPlace place, double *column, do
 bool heightmap_height(const Heightmap *map, GeoPlace place, double *height);
 bool heightmap_at(const Heightmap *map, double column, double row, double *height);
 
+/* The height of a post, quickly; NaN for holes and outside. */
+float heightmap_post(const Heightmap *map, int column, int row);
 /* Every step-th post: columns x rows heights from (column, row) on, rows one after the other, NaN for holes and what lies outside.
  * Returns whether all are there. */
 bool heightmap_block(const Heightmap *map, int column, int row, int step, int columns, int rows, float *heights);

@@ -149,7 +149,7 @@ static void window_fill(Window *window, const Posts *posts, const Level *coarse,
                    k == FINE_LEVELS - 1, window->next);
 }
 
-static bool is_within(const PostRect *rects, size_t count, int column, int row) {
+bool post_is_within(const PostRect *rects, size_t count, int column, int row) {
     for (size_t i = 0; i < count; i++)
         if (column >= rects[i].column && column - rects[i].column < rects[i].columns && row >= rects[i].row &&
             row - rects[i].row < rects[i].rows)
@@ -165,7 +165,7 @@ static bool take_block(const Window *window, const PostRect *rects, size_t count
     for (int r = 0; r < POST_BLOCK; r++)
         for (int c = 0; c < POST_BLOCK; c++) {
             size_t at = level_at(level, c + MARGIN, r + MARGIN);
-            bool wanted = !level->open[at] || is_within(rects, count, block_column * POST_BLOCK + c, block_row * POST_BLOCK + r);
+            bool wanted = !level->open[at] || post_is_within(rects, count, block_column * POST_BLOCK + c, block_row * POST_BLOCK + r);
             out[r * POST_BLOCK + c] = wanted ? level->heights[at] : NAN;
             any |= wanted && level->open[at];
         }

@@ -400,7 +400,7 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
 
 /* ---- calls ---- */
 
-typedef enum CallKind { CALL_CHECK, CALL_RUN, CALL_RENDER, CALL_REFERENCE, CALL_DUMP, CALL_TEXEL, CALL_HALVES, CALL_MEASURE } CallKind;
+typedef enum CallKind { CALL_CHECK, CALL_RUN, CALL_RENDER, CALL_REFERENCE, CALL_DUMP, CALL_TEXEL, CALL_HALVES, CALL_MEASURE, CALL_INFO } CallKind;
 
 typedef struct Call {
     CallKind kind;
@@ -411,6 +411,7 @@ typedef struct Call {
     const VtsReference *reference;      /* CALL_MEASURE */
     VtsReference *halves;               /* CALL_HALVES */
     VtsMeasure *measure;
+    bool json;                          /* CALL_INFO */
 } Call;
 
 static VtsStatus dump(VtsSession *session, const Call *call) {
@@ -437,6 +438,7 @@ static VtsStatus perform(VtsSession *session, const Call *call) {
     case CALL_RENDER: return render(session, call->scene_path, call->output_path, false);
     case CALL_REFERENCE: return render(session, call->scene_path, call->output_path, true);
     case CALL_DUMP: return dump(session, call);
+    case CALL_INFO: return session_info(session, call->scene_path, call->json);
     case CALL_TEXEL: return session_texel(session, call->scene_path, call->texel_name, call->save_path, call->output_path);
     case CALL_HALVES: return session_make_reference(session, call->scene_path, call->paths, call->halves);
     case CALL_MEASURE: return session_measure(session, call->scene_path, call->reference, call->output_path, call->measure);
@@ -505,6 +507,9 @@ VtsStatus vts_measure(VtsSession *session, const char *scene_path, const VtsRefe
 }
 VtsStatus vts_dump(VtsSession *session, const char *scene_path, VtsDump stage) {
     return guarded(session, &(Call){.kind = CALL_DUMP, .scene_path = scene_path, .dump = stage});
+}
+VtsStatus vts_info(VtsSession *session, const char *path, bool json) {
+    return guarded(session, &(Call){.kind = CALL_INFO, .scene_path = path, .json = json});
 }
 VtsStatus vts_texel(VtsSession *session, const char *scene_path, const char *name, const char *save_path, const char *picture_path) {
     return guarded(session, &(Call){.kind = CALL_TEXEL, .scene_path = scene_path, .output_path = picture_path,

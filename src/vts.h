@@ -119,6 +119,10 @@ VTS_API VtsStatus vts_dump(VtsSession *session, const char *scene_path, VtsDump 
  * table as text. VTS_ERROR_USAGE when there is no such texel. */
 VTS_API VtsStatus vts_texel(VtsSession *session, const char *scene_path, const char *name, const char *save_path, const char *picture_path);
 
+/* What is in a file: a map of heights, a texel, a volume, a geoid or a picture. vts_report() is then that as lines of text or, if `json`, as
+ * one JSON object. VTS_ERROR_FILE when it is none of these. */
+VTS_API VtsStatus vts_info(VtsSession *session, const char *path, bool json);
+
 typedef struct VtsDifference {
     int width, height;
     double rmse;       /* over pixels and channels, linear light clamped to [0,1] */
@@ -168,7 +172,7 @@ VTS_API const char *const *vts_setting_values(const char *knob);
 
 /* All diagnostics so far as text; "" when none. Valid until the next call with this session. */
 VTS_API const char *vts_diagnostics(const VtsSession *session);
-/* The report of the last vts_render() or vts_reference() as JSON (--report), or vts_texel()'s table; "" before. Valid until the next call. */
+/* The report of the last vts_render() or vts_reference() as JSON (--report), vts_texel()'s table, or what vts_info() tells; "" before. Valid until the next call. */
 VTS_API const char *vts_report(const VtsSession *session);
 /* From any thread or a signal handler: the running call stops soon and returns VTS_INTERRUPTED. */
 VTS_API void vts_interrupt(VtsSession *session);

@@ -74,4 +74,7 @@ VtsStatus session_measure(VtsSession *session, const char *scene_path, const Vts
 VtsStatus session_texel(VtsSession *session, const char *scene_path, const char *name, const char *save_path,
                         const char *picture_path);
 
+/* vts_info.c: vts_info() without its guard. */
+VtsStatus session_info(VtsSession *session, const char *path, bool json);
+
 #endif

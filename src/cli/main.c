@@ -30,7 +30,7 @@ static const Command COMMANDS[] = {
      "renders with nothing prefiltered, slowly: what renderings are compared with", COMMAND_REFERENCE, command_reference},
     {"chart", "vts chart", "SCENE --sweep KNOB=V,V,... [options]",
      "charts speed against accuracy: renders with several settings and measures each against the reference", COMMAND_CHART, command_chart},
-    {"info", NULL, NULL, NULL, 0, NULL},
+    {"info", "vts info", "FILE… [options]", "tells what is in maps, texels, volumes and pictures", COMMAND_INFO, command_info},
     {"farm", NULL, NULL, NULL, 0, NULL},
     {"stitch", NULL, NULL, NULL, 0, NULL},
 };

@@ -15,6 +15,7 @@ enum {
     COMMAND_REFERENCE = 16,
     COMMAND_TEXEL = 32,
     COMMAND_CHART = 64,
+    COMMAND_INFO = 128,
     COMMAND_ALL = 119, /* that take scenes */
     COMMAND_DRAW = 49 /* that make pictures of them */
 };

@@ -83,7 +83,7 @@ case_usage() {
   refused check scene.vts --alpha
   refused render scene.vts --alpha=1
   local word
-  for word in farm info stitch; do refused $word scene.vts; want_in err 'not available in this version'; done
+  for word in farm stitch; do refused $word scene.vts; want_in err 'not available in this version'; done
   for word in --resume --frames=1-3 -f1-3; do refused render scene.vts $word; want_in err 'not available in this version'; done
   want_only scene.vts
 }

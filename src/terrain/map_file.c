@@ -52,15 +52,16 @@ static OpenMap *reader_of(const char *path, const char *head, size_t size) {
 /* The first bytes; -1 with a line of text when there is no such file to read. */
 static long read_head(const char *path, char *head, size_t size, StrBuf *error) {
     struct stat info;
-    FILE *file = stat(path, &info) == 0 && !S_ISDIR(info.st_mode) ? fopen(path, "rb") : NULL;
-    if (!file) {
-        map_fail(error, "%s", stat(path, &info) != 0 ? strerror(errno) : S_ISDIR(info.st_mode) ? "it is a folder" : strerror(errno));
-        return -1;
-    }
-    size_t got = S_ISREG(info.st_mode) ? fread(head, 1, size, file) : 0;
-    fclose(file);
-    if (!S_ISREG(info.st_mode)) map_fail(error, "it is no ordinary file");
-    else if (got == 0) map_fail(error, "it is empty");
+    bool there = stat(path, &info) == 0;
+    FILE *file = there && S_ISREG(info.st_mode) ? fopen(path, "rb") : NULL;
+    size_t got = file ? fread(head, 1, size, file) : 0;
+    if (there && !S_ISREG(info.st_mode))
+        map_fail(error, S_ISDIR(info.st_mode) ? "it is a folder" : "it is no regular file");
+    else if (!file)
+        map_fail(error, "%s", strerror(errno));
+    else if (got == 0)
+        map_fail(error, "it is empty");
+    if (file) fclose(file);
     return got ? (long)got : -1;
 }
 

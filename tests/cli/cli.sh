@@ -277,6 +277,42 @@ case_texel() {
   want_only texels.vts ground.inc ball.ppm wrong.vts endless.vts
 }
 
+case_info() {
+  run info; want_status 2
+  run info --help; want_status 0; want_in out 'Usage: vts info'; want_in out --json
+  # A grid of longitudes and latitudes: 4 x 3 posts in cells of half a degree.
+  printf 'NCOLS 4\nNROWS 3\nXLLCORNER 10\nYLLCORNER 50\nCELLSIZE 0.5\nNODATA_value -9999\n1 2 3 4\n5 6 7 -9999\n9 10 11 12.5\n' >grid.asc
+  run info grid.asc; want_status 0; want_empty err
+  want_in out 'grid.asc: map, ESRI ASCII grid'; want_in out '4 x 3'; want_in out '10.0000000 to 12.0000000'; want_in out '50.0000000 to 51.5000000'
+  want_in out '1 to 12.5 m'; want_in out '1 posts (8.33 %)'
+  run info --json grid.asc; want_status 0; "$json_check" <out || fail "no JSON: $(cat out)"
+  want_in out '"columns":4'; want_in out '"west":10,'; want_in out '"registration":"area"'; want_in out '"highest":12.5'
+  # SRTM: big-endian, its place is its name; the same bytes under another name lie nowhere.
+  printf '\0\1\0\2\200\0\377\377' >S01W180.hgt; cp S01W180.hgt nowhere.hgt
+  run info S01W180.hgt; want_status 0; want_in out '2 x 2, 16-bit signed'; want_in out 'are points'; want_in out '-1 to 2 m'; want_in out '-180.0000000 to -179.0000000'
+  run info nowhere.hgt; want_status 0; want_in out 'no place'
+  # A picture, a texel, volumes, a geoid too short.
+  printf 'P5\n3 2\n255\nabcdef' >grey.pgm
+  run info grey.pgm; want_status 0; want_in out 'grey.pgm: picture, pgm'; want_in out '3 x 2, 1 channel, 8-bit unsigned'
+  texel_scene
+  run texel texels.vts Ball --save ball.vtx; want_status 0
+  run info ball.vtx --json; want_status 0; "$json_check" <out || fail "no JSON: $(cat out)"; want_in out '"kind":"texel"'; want_in out '"name":"Ball"'
+  printf '\0\2\0\1\0\1ab' >small.df3
+  run info small.df3; want_status 0; want_in out '2 x 1 x 1, 8-bit unsigned'
+  printf '12345678' >cube.raw
+  run info cube.raw; want_status 0; want_in out '2 x 2 x 2, 8-bit'
+  run info --json grid.asc small.df3; want_status 0; "$json_check" <out || fail "no JSON: $(cat out)"
+  # What is wrong is named, the rest is told.
+  printf 'a text' >text.tif; : >empty.asc; printf 'ncols 1000000000\nnrows 1000000000\n1' >huge.asc; printf '\0\2\0\1\0\1a' >cut.df3; printf 'x' >cut.gtx; mkdir folder.tif
+  printf 'NanoVDB0\1\2\3\4\1\0\0\0' >cut.nvdb
+  local file
+  for file in text.tif empty.asc huge.asc cut.df3 cut.gtx folder.tif cut.nvdb none.hgt; do
+    run info "$file"; want_status 3; want_empty out; want_in err "'$file'"
+  done
+  mkfifo pipe.tif; run info pipe.tif; want_status 3; want_in err 'no regular file'
+  run info none.hgt grid.asc; want_status 3; want_in out 'grid.asc'; want_in err 'none.hgt'
+}
+
 case_texel_file() {
   texel_scene
   run texel texels.vts Ball --save ball.vtx; want_status 0; want_file ball.vtx

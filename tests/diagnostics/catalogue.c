@@ -18,6 +18,7 @@ static const Emitter emitters[] = {
     {"diag_error", 3}, {"diag_warning", 3},  {"reader_error", 3},     {"parser_fail", 3},
     {"eval_fail", 3},  {"compiler_fail", 3}, {"parser_fail_hint", 4}, {"diag_note", 0},
     {"diag_hint", 0},  {"strbuf_addf", 0},   {"arena_printf", 0},     {"format_refuse", 0},
+    {"map_fail", 0},   {"say", 0},
 };
 
 const char *catalogue_message(Arena *arena, const char *format) {

@@ -58,6 +58,18 @@ double noise_perlin(Vec3 p) {
     return lattice_between(corners, 0, x, y, z, fade(x), fade(y), fade(z));
 }
 
+static double fade_slope(double t) { return 30 * t * t * (t - 1) * (t - 1); }
+
+double noise_perlin_gradient(Vec3 p, double gradient[3]) {
+    double place[3], curve[3], slope[3];
+    LatticeCorners corners;
+    gradient[0] = gradient[1] = gradient[2] = (double)NAN;
+    if (!vec3_is_finite(p)) return (double)NAN;
+    find_corners((int32_t[3]){cell(p.x, &place[0]), cell(p.y, &place[1]), cell(p.z, &place[2])}, corners);
+    for (int k = 0; k < 3; k++) curve[k] = fade(place[k]), slope[k] = fade_slope(place[k]);
+    return lattice_gradient(corners, place, curve, slope, gradient);
+}
+
 /* At a place of a cell each corner gives at most the sum of the two largest distances from it along the axes, times its weight.
  * The largest sum of the eight is 1.0363539 (test_tape_interval.c). */
 static const double MOST_PERLIN = 1.03636;

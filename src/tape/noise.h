@@ -7,6 +7,10 @@
 /* Perlin's improved noise of 2002 with its published permutation; in about [-1, 1], 0 at lattice points, period 256.
  * Exact lattice arithmetic for coordinates of any size; NaN where a coordinate is not finite (as all noises here). */
 double noise_perlin(Vec3 p);
+/* The same with its gradient. */
+double noise_perlin_gradient(Vec3 p, double gradient[3]);
+/* A bound for the second derivative of Perlin's noise along any unit direction anywhere, whatever its lattice holds. */
+#define NOISE_PERLIN_CURVATURE 15.0
 /* Three independent Perlin noises, another for each `seed`: for jitter. */
 Vec3 noise_perlin3(Vec3 p, uint32_t seed);
 /* One of a family of Perlin noises: `seed` moves and turns the lattice. */
@@ -26,6 +30,9 @@ double noise_sparse_convolution(Vec3 p, int count);
 /* POV-Ray's own noises, number for number (its noise_generator 2, the default of 3.7, and 1). In [0, 1], period 4096. */
 double noise_pov(Vec3 p);
 double noise_pov_original(Vec3 p);
+/* The first before it is clamped to [0, 1], with its gradient, which is continuous; it changes by at most this along a unit of way. */
+double noise_pov_gradient3(Vec3 p, double gradient[3]);
+#define NOISE_POV_CURVATURE (25.0 * 0.48985582)
 /* Its noise_generator 3, period 2048; and the gradient noise that it is made of, about [-0.7, 0.7]. */
 double noise_pov_gradient(Vec3 p);
 double noise_gradient(Vec3 p);

@@ -36,6 +36,27 @@ static inline double lattice_between(const double *const corners[8], int skip, d
     return lattice_mix(w, lattice_mix(v, near_low, near_high), lattice_mix(v, far_low, far_high));
 }
 
+/* The same, with its gradient; du, dv and dw are the curves' slopes. */
+static inline double lattice_gradient(const double *const corners[8], const double place[3], const double curve[3], const double slope[3],
+                                      double gradient[3]) {
+    double value[8], mixed[4], along[2][4];
+    for (int c = 0; c < 8; c++)
+        value[c] = lattice_at_corner(corners[c], place[0] - (c & 1), place[1] - (c >> 1 & 1), place[2] - (c >> 2));
+    double u = curve[0], v = curve[1], w = curve[2];
+    for (int k = 0; k < 4; k++) {
+        mixed[k] = lattice_mix(u, value[2 * k], value[2 * k + 1]);
+        along[0][k] = slope[0] * (value[2 * k + 1] - value[2 * k]) + lattice_mix(u, corners[2 * k][1], corners[2 * k + 1][1]);
+        along[1][k] = lattice_mix(u, corners[2 * k][2], corners[2 * k + 1][2]);
+    }
+    double low = lattice_mix(v, mixed[0], mixed[1]), high = lattice_mix(v, mixed[2], mixed[3]), far[4];
+    for (int k = 0; k < 4; k++) far[k] = lattice_mix(u, corners[2 * k][3], corners[2 * k + 1][3]);
+    gradient[0] = lattice_mix(w, lattice_mix(v, along[0][0], along[0][1]), lattice_mix(v, along[0][2], along[0][3]));
+    gradient[1] = lattice_mix(w, slope[1] * (mixed[1] - mixed[0]) + lattice_mix(v, along[1][0], along[1][1]),
+                              slope[1] * (mixed[3] - mixed[2]) + lattice_mix(v, along[1][2], along[1][3]));
+    gradient[2] = slope[2] * (high - low) + lattice_mix(w, lattice_mix(v, far[0], far[1]), lattice_mix(v, far[2], far[3]));
+    return lattice_mix(w, low, high);
+}
+
 /* ---- arrays ---- */
 
 enum { LATTICE_LANES = 64, LATTICE_RUN = 4 /* shorter runs in one cell are not worth a vector loop */ };

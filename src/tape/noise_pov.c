@@ -83,6 +83,19 @@ static inline double corrected(double raw) { return double_clamp((raw + 1.05242)
 double noise_pov(Vec3 p) { return corrected(raw_noise(p)); }
 double noise_pov_original(Vec3 p) { return double_clamp(raw_noise(p) + 0.5, 0, 1); }
 
+double noise_pov_gradient3(Vec3 p, double gradient[3]) {
+    gradient[0] = gradient[1] = gradient[2] = (double)NAN;
+    if (!vec3_is_finite(p)) return (double)NAN;
+    Lattice lattice = lattice_at(p);
+    LatticeCorners corners;
+    double slope[3];
+    find_corners(lattice.cell, corners);
+    for (int k = 0; k < 3; k++) slope[k] = 6 * lattice.fraction[k] * (1 - lattice.fraction[k]);
+    double raw = lattice_gradient(corners, lattice.fraction, lattice.curve, slope, gradient);
+    for (int k = 0; k < 3; k++) gradient[k] *= 0.48985582;
+    return (raw + 1.05242) * 0.48985582;
+}
+
 static void find_near(const int32_t cell[3], LatticeCorners corners) {
     unsigned moved[3];
     for (int k = 0; k < 3; k++) moved[k] = (unsigned)cell[k] + LATTICE_ORIGIN;

@@ -1,69 +1,14 @@
 /* Intervals hold what they must: every operation over random spans, the nasty ones among them, against the scalar operation at
  * places in them, and against long double where C has the function. */
-#include "tape/tape_interval.h"
-
-#include "base/random.h"
 #include "tape/noise.h"
+#include "tape/tape_program.h"
+#include "bounds_sample.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
 
 #include <cmocka.h>
-
-static uint64_t bits(uint64_t i, uint32_t k) { return random_hash(0x696E7476, i, k, 0); }
-static double unit(uint64_t i, uint32_t k) { return random_unit(bits(i, k)); }
-
-static const double special[] = {0, -0.0, 1, -1, 0.5, 2, -2, 3, 10, VTS_PI, -VTS_PI, VTS_PI / 2, DBL_MAX, -DBL_MAX, DBL_MIN, -DBL_MIN, DBL_TRUE_MIN, -DBL_TRUE_MIN,
-                                 HUGE_VAL, -HUGE_VAL, 0x1p53, 0x1p62, -0x1p63, 1e300, 1e-300, 0.9999999999999999, 1.0000000000000002, 255.5, 256};
-
-/* A number of any size: small ones with few digits, any exponent, special ones. */
-static double some_number(uint64_t i, uint32_t k) {
-    switch (bits(i, k) % 8) {
-    case 0: return special[bits(i, k + 1) % VTS_ARRAY_COUNT(special)];
-    case 1: return ldexp(unit(i, k + 1) - 0.5, (int)(bits(i, k + 2) % 2100) - 1050);
-    case 2: return floor(20 * unit(i, k + 1)) - 10;
-    case 3: return ldexp(unit(i, k + 1) - 0.5, (int)(bits(i, k + 2) % 40) - 20);
-    default: return 8 * (unit(i, k + 1) - 0.5);
-    }
-}
-
-static Interval some_interval(uint64_t i, uint32_t k) {
-    double a = some_number(i, k), b = some_number(i, k + 3);
-    if (bits(i, k + 6) % 4 == 0) b = a;
-    if (bits(i, k + 6) % 4 == 1) b = a + ldexp(unit(i, k + 3), -(int)(bits(i, k + 7) % 50));
-    return interval(fmin(a, b), fmax(a, b));
-}
-
-/* Ends, middles, special values within. */
-static double some_place(Interval a, uint64_t i, uint32_t k) {
-    uint64_t kind = bits(i, k) % 8;
-    if (kind == 0) return a.low;
-    if (kind == 1) return a.high;
-    if (kind == 2) {
-        double x = special[bits(i, k + 1) % VTS_ARRAY_COUNT(special)];
-        return interval_holds(a, x) ? x : a.low;
-    }
-    double u = unit(i, k + 1), x = isfinite(a.high - a.low) ? a.low + u * (a.high - a.low) : u * a.low + (1 - u) * a.high;
-    if (kind == 3 && a.low > 0) x = exp(log(a.low) + u * (log(a.high) - log(a.low)));
-    return interval_holds(a, x) ? x : a.high;
-}
-
-static const struct {
-    TapeOp op;
-    const char *name;
-    int arity;
-} operations[] = {
-#define ROW_0(name)
-#define ROW_1(name) {TAPE_##name, #name, 1},
-#define ROW_2(name) {TAPE_##name, #name, 2},
-#define ROW_3(name) {TAPE_##name, #name, 3},
-#define TAPE_OP(name, arity, text) ROW_##arity(name)
-#include "tape/tape_ops.def"
-#undef TAPE_OP
-};
-
-double tape_apply(TapeOp op, double a, double b, double c);
 
 static void every_operation_holds_its_values(void **state) {
     (void)state;

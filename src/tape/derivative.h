@@ -3,6 +3,8 @@
 #ifndef VTS_TAPE_DERIVATIVE_H
 #define VTS_TAPE_DERIVATIVE_H
 
+#include "base/common.h"
+
 #define DERIVATIVE_ONE_MINUS_SQUARE(A, C, x) A##_SUB(C(1), A##_SQR(x))
 
 #define DERIVATIVE_SQRT(A, C, x, y)  A##_DIV(C(0.5), y)

@@ -81,7 +81,10 @@ static Transform from_linear(Mat3 linear, Vec3 offset) {
     return t;
 }
 
-Transform transform_identity(void) { return transform_scale(vec3(1, 1, 1)); }
+Transform transform_identity(void) {
+    static const Mat3 unit = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    return (Transform){.linear = unit, .inverse_linear = unit};
+}
 
 Transform transform_of(const Affine *affine) { return from_linear(affine->linear, affine->offset); }
 

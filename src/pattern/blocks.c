@@ -4,7 +4,7 @@
 static const double border = 1e-7;
 
 static double spot_along(const Spot *spot, int axis, double *width) {
-    *width = spot_width(spot, vec3(axis == 0, axis == 1, axis == 2));
+    *width = spot_width_along(spot, axis);
     return vec3_get(spot->p, axis);
 }
 

@@ -52,7 +52,7 @@ static void blend_covered(const Pigment *pattern, const Spot *spot, const double
 static void blend_cells(const Pigment *pattern, const Spot *spot, BlendVisit *visit, void *target) {
     double width[3], widest = 0;
     for (int k = 0; k < 3; k++) {
-        width[k] = spot_width(spot, vec3(k == 0, k == 1, k == 2));
+        width[k] = spot_width_along(spot, k);
         widest = fmax(widest, width[k]);
     }
     double far = double_clamp(widest - 1, 0, 1);

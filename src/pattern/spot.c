@@ -36,6 +36,13 @@ double spot_width(const Spot *spot, Vec3 g) {
     return sqrt(square);
 }
 
+double spot_width_along(const Spot *spot, int axis) {
+    const Vec3 *a = spot->axes;
+    double square = spot->blur * spot->blur;
+    for (int k = 0; k < 3; k++) square += vec3_get(a[k], axis) * vec3_get(a[k], axis);
+    return sqrt(square);
+}
+
 double spot_size(const Spot *spot) {
     double largest = 0;
     for (int k = 0; k < 3; k++) largest = fmax(largest, vec3_length_squared(spot->axes[k]));

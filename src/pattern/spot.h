@@ -34,6 +34,8 @@ static inline bool spot_is_point(const Spot *s) {
 }
 /* How much the linear function g · p varies over the spot. */
 double spot_width(const Spot *spot, Vec3 g);
+/* The same for a coordinate. */
+double spot_width_along(const Spot *spot, int axis);
 /* One number for how large the spot is. */
 double spot_size(const Spot *spot);
 

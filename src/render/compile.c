@@ -149,6 +149,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     double start = stopwatch_wall();
     size_t errors = diags->error_count;
     *out = (CompiledScene){.scene = scene, .options = options, .arena = arena, .view = {.camera = scene->camera, .width = options->width, .height = options->height}};
+    view_prepare(&out->view);
     arena_init(&out->scratch, options->memory, 0);
     out->quadrature = quadrature_of(scene->settings.quadrature);
     out->filtering = filtering_of(scene->settings.filtering);

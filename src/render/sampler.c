@@ -297,10 +297,15 @@ static double learned_ratio(const Learned *learned, double before) {
 }
 
 /* Of what is expected of a first sample, the part that was found where the contrast was as large, or next larger. */
+static void contrast_ratios(const Sampler *sp, int classes, double ratios[CONTRASTS]) {
+    for (int class = 0; class < classes; class++) ratios[class] = learned_ratio(&sp->contrasts[class], class ? ratios[class - 1] : 1);
+}
+
 static double contrast_ratio(const Sampler *sp, double contrast) {
-    double ratio = 1;
-    for (int class = 0; class <= contrast_class(contrast); class++) ratio = learned_ratio(&sp->contrasts[class], ratio);
-    return ratio;
+    double ratios[CONTRASTS];
+    int class = contrast_class(contrast);
+    contrast_ratios(sp, class + 1, ratios);
+    return ratios[class];
 }
 
 static double variance(const Cell *cell) {
@@ -310,11 +315,17 @@ static double variance(const Cell *cell) {
     return found + (double)cell->contrast / (n * n);
 }
 
-static double expected_error(const Sampler *sp, const Cell *cell) {
-    if (!cell->refinable || (cell->count == 1 && cell->contrast == 0)) return 0;
-    if (cell->count == 1) return CAUTION * (double)cell->contrast * contrast_ratio(sp, (double)cell->contrast);
+/* By so many: of pixels with one sample, of those with more. */
+static double error_of_first(const Cell *cell, double ratio) { return CAUTION * (double)cell->contrast * ratio; }
+static double error_of_many(const Sampler *sp, const Cell *cell) {
     double ratio = learned_ratio(&sp->levels[level_of(cell->count)], EDGE_GAIN * sqrt(5.0 / cell->count));
     return CAUTION * variance(cell) * ratio / cell->count;
+}
+
+static double expected_error(const Sampler *sp, const Cell *cell) {
+    if (!cell->refinable) return 0;
+    if (cell->count > 1) return error_of_many(sp, cell);
+    return error_of_first(cell, contrast_ratio(sp, (double)cell->contrast));
 }
 
 static double halves_error(const Cell *cell) {
@@ -379,12 +390,14 @@ static bool can_refine(const Sampler *sp, const Cell *cell) { return cell->refin
 
 /* Values every pixel of the tile anew, by what has been learned. Returns the sum of its errors. */
 static double value_all(Sampler *sp) {
-    double sum = 0;
+    double sum = 0, ratios[CONTRASTS];
     sp->heap_count = 0;
+    contrast_ratios(sp, CONTRASTS, ratios);
     for (int row = 1; row <= sp->rows; row++)
         for (int column = 1; column <= sp->columns; column++) {
             Cell *cell = &sp->cells[row * EDGE + column];
-            cell->error = expected_error(sp, cell);
+            if (!cell->refinable || (cell->count == 1 && cell->contrast == 0)) cell->error = 0;
+            else cell->error = cell->count > 1 ? error_of_many(sp, cell) : error_of_first(cell, ratios[contrast_class((double)cell->contrast)]);
             sum += cell->error;
             if (cell->error > 0 && can_refine(sp, cell)) heap_push(sp, row * EDGE + column, gain_of(cell));
         }

@@ -92,17 +92,25 @@ static bool line_at(const Camera *c, double s, double t, Line *out) {
     return true;
 }
 
-static Cone flat_cone(const View *view, double s, double t, double width_px) {
+void view_prepare(View *view) {
+    const Vec3 across = vec3_cross(view->camera.right, view->camera.up);
+    view->axis = vec3_normalize(across);
+    view->pixel_area = vec3_length(across) / ((double)view->width * view->height);
+}
+
+static Cone flat_cone(const View *given, double s, double t, double width_px) {
+    View prepared;
+    const View *view = given;
+    if (!(view->pixel_area > 0)) prepared = *given, view_prepare(&prepared), view = &prepared;
     const Camera *c = &view->camera;
+    const double pixel_area = view->pixel_area;
     Vec3 offset = vec3_madd(vec3_scale(c->right, s), c->up, t);
-    double pixel_area = vec3_length(vec3_cross(c->right, c->up)) / ((double)view->width * view->height);
     if (c->kind == CAMERA_ORTHOGRAPHIC)
         return (Cone){vec3_add(c->location, offset), vec3_normalize(c->direction), sqrt(pixel_area) * width_px, 0};
     Vec3 d = vec3_add(c->direction, offset);
     double length = vec3_length(d);
     /* The pixel's solid angle: its area on the image plane, foreshortened, over the distance squared. */
-    Vec3 axis = vec3_normalize(vec3_cross(c->right, c->up));
-    double cosine = fabs(vec3_dot(axis, d)) / length;
+    double cosine = fabs(vec3_dot(view->axis, d)) / length;
     return (Cone){c->location, vec3_scale(d, 1 / length), 0, sqrt(pixel_area * cosine) / length * width_px};
 }
 

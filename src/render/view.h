@@ -9,7 +9,13 @@
 typedef struct View {
     Camera camera;
     int width, height;
+    /* Of flat pictures, by view_prepare(); before it they are zero, and calculated with every cone. */
+    Vec3 axis;         /* unit, across the picture */
+    double pixel_area; /* on the picture's plane */
 } View;
+
+/* Once camera and size are known. */
+void view_prepare(View *view);
 
 /* The cone through the picture's point (x, y), in pixels from the upper left corner, from the middle of the lens; `width_px` is its width
  * in pixels. Where the picture of a fisheye or omnimax camera shows nothing, its direction is zero. */

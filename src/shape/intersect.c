@@ -104,7 +104,7 @@ static double share(double x, double lo, double hi) {
     return hi > lo ? double_clamp((x - lo) / (hi - lo), 0, 1) : 0;
 }
 
-static void finish_box(const Object *object, int part, ShapeHit *hit) {
+static void finish_box(const Object *object, int part, bool place, ShapeHit *hit) {
     Vec3 lo = vec3_min(object->as.box.corner1, object->as.box.corner2);
     Vec3 hi = vec3_max(object->as.box.corner1, object->as.box.corner2);
     hit->point = vec3_min(vec3_max(hit->point, lo), hi);
@@ -115,7 +115,7 @@ static void finish_box(const Object *object, int part, ShapeHit *hit) {
     normal[axis] = part & 1 ? 1 : -1;
     hit->point = vec3(p[0], p[1], p[2]);
     hit->normal = vec3(normal[0], normal[1], normal[2]);
-    hit->uv = (TexCoord){share(p[columns], vec3_get(lo, columns), vec3_get(hi, columns)),
+    if (place) hit->uv = (TexCoord){share(p[columns], vec3_get(lo, columns), vec3_get(hi, columns)),
                          share(p[rows], vec3_get(lo, rows), vec3_get(hi, rows))};
 }
 
@@ -219,9 +219,9 @@ static int cross_cone(const Object *object, const Ray *ray, ShapeCrossing out[4]
 
 static void finish_cone(const Object *object, int part, bool place, ShapeHit *hit) {
     ConeFrame frame;
-    Vec3 side, other;
+    Vec3 side = {0, 0, 0}, other = {0, 0, 0};
     if (!cone_frame(object, &frame)) return;
-    shape_axis_frame(frame.axis, &side, &other);
+    if (place) shape_axis_frame(frame.axis, &side, &other);
     Vec3 from_middle = vec3_sub(hit->point, frame.middle);
     double z = vec3_dot(from_middle, frame.axis), half = frame.length / 2;
     Vec3 q = vec3_madd(from_middle, frame.axis, -z);
@@ -263,11 +263,12 @@ static int cross_plane(const Object *object, const Ray *ray, ShapeCrossing out[4
     return 1;
 }
 
-static void finish_plane(const Object *object, ShapeHit *hit) {
+static void finish_plane(const Object *object, bool place, ShapeHit *hit) {
     Vec3 side, other, normal = object->as.plane.normal;
-    shape_axis_frame(normal, &side, &other);
     hit->point = vec3_madd(hit->point, normal, object->as.plane.distance - vec3_dot(hit->point, normal));
     hit->normal = normal;
+    if (!place) return;
+    shape_axis_frame(normal, &side, &other);
     hit->uv = (TexCoord){vec3_dot(hit->point, side), vec3_dot(hit->point, other)};
 }
 
@@ -282,13 +283,14 @@ static int cross_disc(const Object *object, const Ray *ray, ShapeCrossing out[4]
     return 1;
 }
 
-static void finish_disc(const Object *object, ShapeHit *hit) {
+static void finish_disc(const Object *object, bool place, ShapeHit *hit) {
     Vec3 side, other, normal = vec3_normalize(object->as.disc.normal);
-    shape_axis_frame(normal, &side, &other);
     Vec3 q = vec3_sub(hit->point, object->as.disc.center);
     q = vec3_madd(q, normal, -vec3_dot(q, normal));
     hit->point = vec3_add(object->as.disc.center, q);
     hit->normal = normal;
+    if (!place) return;
+    shape_axis_frame(normal, &side, &other);
     double radius = fabs(object->as.disc.radius);
     hit->uv = radius > 0 ? (TexCoord){0.5 + 0.5 * vec3_dot(q, side) / radius,
                                       0.5 + 0.5 * vec3_dot(q, other) / radius}
@@ -350,11 +352,11 @@ static void finish(const Object *object, bool place, ShapeHit *hit) {
         finish_sphere(object, hit);
         if (place) place_on_sphere(hit);
         break;
-    case OBJECT_BOX: finish_box(object, hit->part, hit); break;
+    case OBJECT_BOX: finish_box(object, hit->part, place, hit); break;
     case OBJECT_CYLINDER:
     case OBJECT_CONE: finish_cone(object, hit->part, place, hit); break;
-    case OBJECT_PLANE: finish_plane(object, hit); break;
-    case OBJECT_DISC: finish_disc(object, hit); break;
+    case OBJECT_PLANE: finish_plane(object, place, hit); break;
+    case OBJECT_DISC: finish_disc(object, place, hit); break;
     case OBJECT_TORUS: finish_torus(object, place, hit); break;
     default: break;
     }

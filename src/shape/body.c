@@ -282,12 +282,17 @@ static bool meets_guards(Search *search, const Body *body, const Object *object,
     return true;
 }
 
+/* Meeting it costs no more than meeting its box. */
+static bool is_simple(const Object *object) {
+    return object->kind == OBJECT_BOX || object->kind == OBJECT_SPHERE || object->kind == OBJECT_PLANE || object->kind == OBJECT_DISC;
+}
+
 static bool visit_body(const Visit *outer, const Body *body, const Object *object, const Transform *place, const Ray *ray) {
     Search *search = outer->search;
     if (search->budget == 0) return false;
     search->budget--;
     double near = search->t_min, far = search->hit->t;
-    if (!box_tree_clip(&body->bounds, ray, &near, &far) || !meets_guards(search, body, object, ray)) return false;
+    if ((!is_simple(object) && !box_tree_clip(&body->bounds, ray, &near, &far)) || !meets_guards(search, body, object, ray)) return false;
     const Filter clip = {outer->filters, body, 0, *ray, WITHIN_CLIPS};
     const Trail trail = {outer->trail, object, body, place};
     const Visit visit = {.search = search,

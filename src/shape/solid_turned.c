@@ -43,6 +43,35 @@ static const void *lathe_prepare(const Object *object, Arena *arena) {
     return lathe->outline.count ? lathe : NULL;
 }
 
+/* The part of the line, somewhat widened, on which pieces are looked for. */
+typedef struct LineSpan {
+    double near, far, slack;
+} LineSpan;
+
+static LineSpan span_of(const LocalLine *line, double size, const SolidSink *sink) {
+    double slack = 1e-9 * (size + fabs(line->shift) * 1e-3);
+    return (LineSpan){sink->t_min / line->scale - line->shift - slack, sink->t_max / line->scale - line->shift + slack, slack};
+}
+
+/* Whether the line comes, between the heights of the piece, as near to the axis as it and as far away. */
+static bool may_meet(const OutlinePiece *piece, const LocalLine *line, LineSpan span) {
+    Vec3 o = line->o, d = line->d;
+    double low = piece->min.y - span.slack, high = piece->max.y + span.slack;
+    if (d.y == 0 && (o.y < low || o.y > high)) return false;
+    if (d.y != 0) {
+        double t0 = (low - o.y) / d.y, t1 = (high - o.y) / d.y;
+        span.near = double_max(span.near, double_min(t0, t1)), span.far = double_min(span.far, double_max(t0, t1));
+    }
+    if (span.near > span.far) return false;
+    double across = d.x * d.x + d.z * d.z, along = o.x * d.x + o.z * d.z, off = o.x * o.x + o.z * o.z;
+    double nearest = across > 0 ? double_clamp(-along / across, span.near, span.far) : 0;
+    double outer = double_max(fabs(piece->min.x), fabs(piece->max.x)) + span.slack,
+           inner = piece->min.x > 0 ? piece->min.x : piece->max.x < 0 ? -piece->max.x : 0;
+    if ((across * nearest + 2 * along) * nearest + off > outer * outer) return false;
+    inner = double_max(inner - span.slack, 0);
+    return !((across * span.near + 2 * along) * span.near + off < inner * inner && (across * span.far + 2 * along) * span.far + off < inner * inner);
+}
+
 /* The squared distance from the axis is quadratic along the line, and y tells the place on the line: with y = y(s),
  * dy²·x(s)² = |dy·(oₓ, o_z) + (y(s) - o_y)·(dₓ, d_z)|², of degree 6 for cubic pieces. */
 static void lathe_piece(const OutlinePiece *piece, uint32_t index, const LocalLine *line, SolidSink *sink) {
@@ -91,7 +120,8 @@ static void lathe_cross(const void *data, const Ray *ray, SolidSink *sink) {
     bool level = fabs(line.d.y) * size < 1e-12 * size;
     if (level) line.d.y = 0;
     for (size_t i = 0; i < outline->count; i++)
-        (level ? lathe_level : lathe_piece)(&outline->items[i], (uint32_t)i, &line, sink);
+        if (may_meet(&outline->items[i], &line, span_of(&line, size, sink)))
+            (level ? lathe_level : lathe_piece)(&outline->items[i], (uint32_t)i, &line, sink);
 }
 
 static Vec3 spun_normal(Point2 tangent, Vec3 p, double side) {

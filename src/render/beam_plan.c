@@ -6,6 +6,8 @@
 static const double BEAM_TOLERANCE_VOXELS = 0.2;
 /* As many triangles in a pixel's footprint cost as much as its voxels do. */
 static const double MOST_TRIANGLES_A_PIXEL = 128;
+/* The same where rays meet what is rigid, at the logarithm of that cost. */
+static const double MOST_MET_A_PIXEL = 4096;
 /* The share of a skin's cells that may be left away because their texture coordinates lie on a line: beams go from them back to places. */
 static const double MOST_SINGULAR = 0.01;
 /* More triangles than this are left to the voxels. */
@@ -91,7 +93,7 @@ void beam_plan_skin(CompiledSkin *skin, bool everything, CompiledScene *compiled
     skin->tile_size = mean_tile_size(skin);
     if (!all || !(skin->tile_size > 0) || coordinates_singular(skin)) return;
     Cone cone = view_cone(view, view->width / 2.0, view->height / 2.0, 1);
-    double width = skin->tile_size * sqrt(MOST_TRIANGLES_A_PIXEL / fmax(triangles, 1));
+    double most = skin->rigid ? MOST_MET_A_PIXEL : MOST_TRIANGLES_A_PIXEL, width = skin->tile_size * sqrt(most / fmax(triangles, 1));
     double to = cone.spread > 0 ? width / cone.spread : cone.width <= width ? VTS_INFINITY : 0;
     seen_range(skin, view, &nearest, &farthest);
     bool out_of_sight = farthest == 0; /* its shadows may be seen */

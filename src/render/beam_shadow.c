@@ -1,5 +1,7 @@
 #include "render/beam_shadow.h"
 
+#include "render/beam_rigid.h"
+
 #include <string.h>
 
 enum { POINTS_IN_BIN = 4, MOST_BINS_ACROSS = 128, LEAST_HALVED = 64 };
@@ -200,6 +202,8 @@ static void cast_central(ShadowScratch *scratch, const CompiledScene *compiled, 
 }
 
 void beam_shadow(ShadowScratch *scratch, const CompiledScene *compiled, const Light *light, const ShadowPoints *in) {
+    if (compiled->rigid) scratch->rays += rigid_hide(compiled->rigid, light, in);
+    if (box3_is_empty(compiled->exact_bounds)) return;
     if (light_is_parallel(light)) cast_parallel(scratch, compiled, light, in);
     else cast_central(scratch, compiled, light, in);
 }

@@ -19,6 +19,7 @@ typedef struct ShadowScratch {
     uint32_t *order, *sorted, *bin, *first, *mark;
     float *x, *y, *key, *limit;
     uint32_t capacity;     /* of points */
+    uint64_t rays;         /* counted up */
 } ShadowScratch;
 
 /* All but the draft. */

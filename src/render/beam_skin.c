@@ -476,7 +476,7 @@ static void draw_part(Drawing *d, const SkinCell *cell, int depth) {
 size_t beam_most_cells(const CompiledScene *compiled) {
     size_t count = 0;
     for (size_t i = 0; i < compiled->skin_count; i++)
-        if (compiled->skins[i].boxes) count += compiled->skins[i].cell_count;
+        if (compiled->skins[i].boxes && !compiled->skins[i].rigid) count += compiled->skins[i].cell_count;
     return count;
 }
 
@@ -512,7 +512,7 @@ static void gather_cell(void *context, uint32_t cell) {
 static void gather_skin(void *context, uint32_t skin) {
     Gathering *g = context;
     g->skin = skin;
-    if (g->compiled->skins[skin].boxes) box_tree_descend(g->compiled->skins[skin].boxes, meets, gather_cell, g);
+    if (g->compiled->skins[skin].boxes && !g->compiled->skins[skin].rigid) box_tree_descend(g->compiled->skins[skin].boxes, meets, gather_cell, g);
 }
 
 static int nearer_first(const void *a, const void *b) {

@@ -1,6 +1,7 @@
 #include "render/beam_sight.h"
 
 #include "base/random.h"
+#include "render/beam_rigid.h"
 
 #include <string.h>
 
@@ -68,6 +69,7 @@ BeamTracer *beam_tracer_create(const CompiledScene *compiled, const BeamPlan *pl
 
 void beam_tracer_count(const BeamTracer *tr, TraceCounters *sum) {
     trace_counters_add(sum, &tr->counters);
+    sum->shadow_rays += tr->shadow.rays;
     trace_counters_add(sum, &tr->volumes.counters);
 }
 /* ---- skins ---- */
@@ -83,6 +85,8 @@ static void draw_skins(BeamTracer *tr, uint32_t cells) {
     } else {
         memset(s->limit, 0, count * sizeof *s->limit);
     }
+    if (tr->compiled->rigid)
+        tr->counters.camera_rays += rigid_see(tr->compiled->rigid, &tr->draft, tr->corner, tr->right, tr->down, tr->compiled->view.camera.direction);
     beam_draw_cells(&tr->draft, tr->compiled, cells);
 }
 
@@ -90,6 +94,7 @@ static void draw_skins(BeamTracer *tr, uint32_t cells) {
 static bool see_sky(const BeamTracer *tr, Radiance *out) {
     const Scene *scene = tr->compiled->scene;
     if (!tr->bounded || beam_meets_box(&tr->beam, &tr->explicit_bounds) || !isinf(tr->compiled->all_exact_to)) return false;
+    if (tr->compiled->rigid && rigid_meets(tr->compiled->rigid, &tr->beam)) return false;
     for (int i = 0; i < tr->columns * tr->rows; i++) {
         Vec3f color = sky_radiance(scene, tr->cones[i].direction, tr->cones[i].spread);
         Air air = air_between(scene, &(Ray){tr->cones[i].origin, tr->cones[i].direction}, VTS_INFINITY);

@@ -1,6 +1,7 @@
 #include "render/compile.h"
 
 #include "base/stopwatch.h"
+#include "render/beam_rigid.h"
 #include "render/exact_skin.h"
 
 #include <string.h>
@@ -104,10 +105,13 @@ static CompileStatus build_texels(const CompileOptions *options, Detail detail, 
     }
     for (size_t i = 0; i < out->skin_count && beams; i++) {
         beam_plan_skin(&out->skins[i], detail == DETAIL_EXACT, out);
+    }
+    if (beams) out->rigid = rigid_copies_build(out);
+    for (size_t i = 0; i < out->skin_count && beams; i++) {
         voxels |= !out->skins[i].boxes || isfinite(out->skins[i].exact_to);
         out->all_exact_to = fmin(out->all_exact_to, out->skins[i].boxes ? out->skins[i].exact_to : 0);
         if (out->skins[i].boxes) out->nearest = fmin(out->nearest, 1e-6 * out->skins[i].tile_size);
-        if (out->skins[i].boxes) out->exact_bounds = box3_union(out->exact_bounds, out->skins[i].bounds);
+        if (out->skins[i].boxes && !out->skins[i].rigid) out->exact_bounds = box3_union(out->exact_bounds, out->skins[i].bounds);
     }
     bool sky = out->scene->settings.sky_light && detail != DETAIL_EXACT; /* what triangles see of the sky, voxels know */
     if (!voxels && !out->secondary && !sky) return COMPILE_OK; /* mirrors show voxels */
@@ -189,11 +193,13 @@ void compiled_scene_destroy(CompiledScene *compiled) {
         if (compiled->texels[i]->sky) texel_sky_destroy(compiled->texels[i]->sky);
         for (size_t k = 0; k < compiled->texels[i]->matter_count; k++) voxel_layer_destroy(compiled->texels[i]->matter[k].voxels);
     }
+    rigid_copies_destroy(compiled->rigid);
     hierarchy_destroy(compiled->hierarchy);
     arena_destroy(&compiled->scratch);
     compiled->skin_count = compiled->texel_count = 0;
     compiled->exact = NULL;
     compiled->hierarchy = NULL;
+    compiled->rigid = NULL;
 }
 
 void compiled_scene_print(const CompiledScene *compiled, StrBuf *out) {

@@ -34,6 +34,7 @@ typedef struct CompiledScene {
     size_t skin_count;
     const BoxTree *skin_tree; /* over the bounds of the skins */
     ExactSkins *exact;    /* the skins' geometry, for the reference; else NULL */
+    struct RigidCopies *rigid; /* copies that rays meet, or NULL */
     struct WangKept *wang; /* texels taken apart */
     BuiltTexel **texels;  /* every texel built, for the report */
     size_t texel_count;
@@ -48,7 +49,7 @@ typedef struct CompiledScene {
     int samples;          /* a pixel, of the first pass of what is drawn by beams */
     int split;            /* cones per pixel side where explicit edges cross the pixel */
     double build_seconds;
-    Box3 exact_bounds;    /* of the skins that beams draw */
+    Box3 exact_bounds;    /* of the skins that beams draw, those of `rigid` not counted */
     double all_exact_to;  /* the least exact_to of all skins, 0 of those that are voxels alone */
     double nearest;       /* nearer to the eye than this nothing is drawn by beams */
 } CompiledScene;

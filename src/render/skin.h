@@ -102,6 +102,7 @@ typedef struct CompiledSkin {
     bool overlaps;       /* sheets lie over one another: a cell is folded, or neighbours are turned opposite ways */
     CellTree *tree;   /* NULL in the reference */
     const BoxTree *boxes; /* over the cells' bounds, for beams; NULL: the skin is drawn from voxels alone */
+    bool rigid;           /* its copies are whole and not bent: beam_rigid.h draws them */
     double exact_to;      /* distance from the eye at which voxels take the place of exact geometry; VTS_INFINITY: never */
     double tile_size;     /* of one texel on the surface, on the average, scene units */
     Box3 bounds;

@@ -5,6 +5,7 @@
 #include "base/stopwatch.h"
 #include "grow/wind.h"
 #include "pattern/pattern.h"
+#include "render/beam_rigid.h"
 #include "render/skin_fold.h"
 #include "render/skin_rim.h"
 #include "tape/noise.h"
@@ -422,6 +423,7 @@ bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, Co
     out->texels = arena_new_array(compiled->arena, PlacedTexel, skin->texel_count * (skin->wang ? WANG_GRIDS + 1 : 1));
     for (size_t i = 0; i < skin->texel_count; i++) place_texel(i, compiled, diags, out);
     skin_rim_add(out, &mesh, compiled->arena);
+    out->rigid = skin_is_rigid(out);
     out->overlaps = sheets_overlap(out);
     return true;
 }

@@ -1,0 +1,431 @@
+#include "render/beam_rigid.h"
+
+#include "render/beam_cell.h"
+#include "render/embree_ray.h"
+
+#include <string.h>
+
+/* Copies in all: each takes some hundred bytes. */
+enum { MOST_RIGID_COPIES = 1 << 18, WIDE = 8, KEPT_FACETS = 1024 };
+/* What is affine but for rounding, in parts of the cell. */
+static const double ROUNDING = 1e-7;
+
+/* A copy: box coordinates of its texel → (a, b, w) of the cell. */
+typedef struct RigidCopy {
+    const CompiledSkin *skin;
+    const SkinCell *cell;
+    const PlacedTexel *placed;
+    TexelCopy copy;
+    double a_x, a_z, a_0, b_x, b_z, b_0, w_y, w_0;
+} RigidCopy;
+
+/* A texel's triangles; of each, its cluster's number times CLUSTER_TRIANGLES, and its own there. */
+typedef struct RigidTexel {
+    const BeamTexel *beam;
+    RTCScene scene;
+    const uint32_t *facets;
+    struct RigidTexel *next;
+} RigidTexel;
+
+struct RigidCopies {
+    RTCScene scene;
+    Vec3 origin;         /* from which places count: the eye, around which they must be finest */
+    Box3 bounds;
+    const RigidCopy *items; /* by the numbers of Embree's instances */
+    size_t count;
+    double exact_to;     /* of all these skins */
+    RigidTexel *texels;
+    bool wide;           /* the machine takes rays by eights */
+};
+
+/* ---- which skins ---- */
+
+static bool vanishes(Vec3 v, double scale) { return vec3_length(v) <= ROUNDING * scale; }
+
+static bool cell_is_affine(const SkinCell *cell) {
+    const Vec3 *p = cell->foot.c, *h = cell->height.c;
+    double size = vec3_length(p[1]) + vec3_length(p[2]), high = vec3_length(h[0]), tiles = 0;
+    for (int i = 1; i < 3; i++) tiles += fabs(cell->u.c[i]) + fabs(cell->v.c[i]);
+    for (int i = 1; i < 4; i++)
+        if (!vanishes(h[i], high) || fabs(cell->w_foot.c[i]) > ROUNDING || fabs(cell->w_tip.c[i]) > ROUNDING) return false;
+    return high > 0 && vanishes(p[3], size) && fabs(cell->u.c[3]) <= ROUNDING * tiles && fabs(cell->v.c[3]) <= ROUNDING * tiles;
+}
+
+/* The place in the cell with those texture coordinates; false where they are singular. */
+static bool place_in_cell(const SkinCell *cell, double u, double v, double *a, double *b) {
+    const double *p = cell->u.c, *q = cell->v.c;
+    double det = p[1] * q[2] - p[2] * q[1], du = u - p[0], dv = v - q[0];
+    if (!(fabs(det) > 0)) return false;
+    *a = (q[2] * du - p[2] * dv) / det, *b = (p[1] * dv - q[1] * du) / det;
+    return isfinite(*a) && isfinite(*b);
+}
+
+/* Whether a cell goes on as the first does. */
+static bool goes_on(const SkinCell *first, const SkinCell *cell) {
+    double size = vec3_length(first->foot.c[1]) + vec3_length(first->foot.c[2]), a, b;
+    if (!cell_is_affine(cell) || !vanishes(vec3_sub(cell->height.c[0], first->height.c[0]), vec3_length(first->height.c[0]))) return false;
+    for (int i = 0; i < (cell->triangle ? 3 : 4); i++) {
+        SkinCorner corner = skin_cell_corner(cell, i);
+        if (!place_in_cell(first, corner.u, corner.v, &a, &b)) return false;
+        Vec3 there = skin_cell_position(first, a, b, 0, NULL);
+        if (!vanishes(vec3_sub(there, corner.foot), size * (1 + fabs(a) + fabs(b)))) return false;
+    }
+    return true;
+}
+
+/* The tiles of a surface that is a rectangle of whole tiles. */
+typedef struct TileRect {
+    int64_t u0, u1, v0, v1;
+} TileRect;
+
+static bool whole_tiles(const CompiledSkin *skin, TileRect *rect) {
+    double lo[2] = {VTS_INFINITY, VTS_INFINITY}, hi[2] = {-VTS_INFINITY, -VTS_INFINITY}, area = 0;
+    for (size_t i = 0; i < skin->cell_count; i++) {
+        const SkinCell *cell = &skin->cells[i];
+        if (cell->rim) continue;
+        area += (cell->triangle ? 0.5 : 1) * fabs(cell->u.c[1] * cell->v.c[2] - cell->u.c[2] * cell->v.c[1]);
+        for (int k = 0; k < (cell->triangle ? 3 : 4); k++) {
+            SkinCorner corner = skin_cell_corner(cell, k);
+            lo[0] = fmin(lo[0], corner.u), hi[0] = fmax(hi[0], corner.u);
+            lo[1] = fmin(lo[1], corner.v), hi[1] = fmax(hi[1], corner.v);
+        }
+    }
+    double all = (hi[0] - lo[0]) * (hi[1] - lo[1]);
+    if (!(all <= MOST_RIGID_COPIES) || fabs(area - all) > 1e-6 * all) return false;
+    for (int k = 0; k < 2; k++)
+        if (!(fabs(lo[k]) < 1e9) || fabs(lo[k] - round(lo[k])) > 1e-6 || fabs(hi[k] - round(hi[k])) > 1e-6) return false;
+    *rect = (TileRect){(int64_t)round(lo[0]), (int64_t)round(hi[0]), (int64_t)round(lo[1]), (int64_t)round(hi[1])};
+    return true;
+}
+
+/* Whether its copies are whole: none ends at the surface's border, or at the layer's foot or top. */
+static bool copies_are_whole(const CompiledSkin *skin, const PlacedTexel *placed) {
+    if (placed->shift_u > 0 || placed->shift_v > 0 || (placed->overhang > 0 && !skin->beyond)) return false;
+    for (size_t i = 0; i < placed->family_size; i++)
+        if (placed->family[i]->def->cyclic & TEXEL_CYCLIC_Y) return false;
+    return true;
+}
+
+bool skin_is_rigid(const CompiledSkin *skin) {
+    TileRect rect;
+    const SkinCell *first = &skin->cells[0];
+    if (!skin->cell_count || first->rim || first->side == CELL_FLAT || !cell_is_affine(first)) return false;
+    if (fabs(first->w_foot.c[0]) > ROUNDING || fabs(first->w_tip.c[0] - skin->top) > ROUNDING) return false;
+    for (size_t i = 0; i < skin->texel_count; i++)
+        if (!copies_are_whole(skin, &skin->texels[i])) return false;
+    for (size_t i = 1; i < skin->cell_count; i++)
+        if (!goes_on(first, &skin->cells[i])) return false;
+    return whole_tiles(skin, &rect);
+}
+
+/* ---- building ---- */
+
+typedef struct Building {
+    CompiledScene *compiled;
+    RTCDevice device;
+    RigidCopies *out;
+    struct {
+        RigidCopy *items;
+        size_t count, capacity;
+    } copies;
+} Building;
+
+static void fill_texel(const BeamTexel *beam, float *vertices, unsigned *indices, uint32_t *facets) {
+    size_t vertex = 0, triangle = 0;
+    for (size_t c = 0; c < beam->cluster_count; c++) {
+        const TexelCluster *cluster = &beam->clusters[c];
+        for (int i = 0; i < cluster->triangle_count; i++, triangle++) {
+            for (int k = 0; k < 3; k++) indices[3 * triangle + (size_t)k] = (unsigned)(vertex + cluster->triangles[i][k]);
+            facets[triangle] = (uint32_t)(c * CLUSTER_TRIANGLES + (size_t)i);
+        }
+        for (int i = 0; i < cluster->vertex_count; i++, vertex++) {
+            vertices[3 * vertex] = cluster->x[i], vertices[3 * vertex + 1] = cluster->y[i], vertices[3 * vertex + 2] = cluster->z[i];
+        }
+    }
+}
+
+static RigidTexel *texel_of(Building *b, const BeamTexel *beam) {
+    for (RigidTexel *t = b->out->texels; t; t = t->next)
+        if (t->beam == beam) return t;
+    RigidTexel *texel = arena_new(b->compiled->arena, RigidTexel);
+    uint32_t *facets = arena_new_array(b->compiled->arena, uint32_t, beam->triangle_count);
+    size_t vertices = 0;
+    for (size_t c = 0; c < beam->cluster_count; c++) vertices += (size_t)beam->clusters[c].vertex_count;
+    *texel = (RigidTexel){beam, rtcNewScene(b->device), facets, b->out->texels};
+    b->out->texels = texel;
+    RTCGeometry geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices);
+    unsigned *t = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), beam->triangle_count);
+    if (v && t) fill_texel(beam, v, t, facets);
+    rtcSetSceneFlags(texel->scene, RTC_SCENE_FLAG_ROBUST);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(texel->scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(texel->scene);
+    return texel;
+}
+
+/* The copy's place in its cell; false where it has none. */
+static bool place_copy(RigidCopy *r) {
+    const TexelCopy *c = &r->copy;
+    double det = c->xu * c->zv - c->xv * c->zu, a0, b0, ax, bx, az, bz;
+    if (!(fabs(det) > 0) || !(c->inverse_scale > 0)) return false;
+    double u_x = c->zv / det, u_z = -c->xv / det, u_0 = -(u_x * c->x0 + u_z * c->z0);
+    double v_x = -c->zu / det, v_z = c->xu / det, v_0 = -(v_x * c->x0 + v_z * c->z0);
+    if (!place_in_cell(r->cell, u_0, v_0, &a0, &b0)) return false;
+    if (!place_in_cell(r->cell, u_0 + u_x, v_0 + v_x, &ax, &bx) || !place_in_cell(r->cell, u_0 + u_z, v_0 + v_z, &az, &bz)) return false;
+    double foot = r->cell->w_foot.c[0], per = 1 / (r->cell->w_tip.c[0] - foot);
+    r->a_0 = a0, r->a_x = ax - a0, r->a_z = az - a0;
+    r->b_0 = b0, r->b_x = bx - b0, r->b_z = bz - b0;
+    r->w_y = per / c->inverse_scale, r->w_0 = -foot * per;
+    return true;
+}
+
+static void put_column(float *out, Vec3 v) {
+    Vec3f f = vec3f_from(v);
+    out[0] = f.x, out[1] = f.y, out[2] = f.z;
+}
+
+static void add_copy(Building *b, const RigidCopy *r) {
+    const Vec3 *foot = r->cell->foot.c, high = r->cell->height.c[0];
+    float columns[12];
+    Vec3 from = vec3_madd(vec3_madd(vec3_madd(foot[0], foot[1], r->a_0), foot[2], r->b_0), high, r->w_0);
+    put_column(columns, vec3_madd(vec3_scale(foot[1], r->a_x), foot[2], r->b_x));
+    put_column(columns + 3, vec3_scale(high, r->w_y));
+    put_column(columns + 6, vec3_madd(vec3_scale(foot[1], r->a_z), foot[2], r->b_z));
+    put_column(columns + 9, vec3_sub(from, b->out->origin));
+    RTCGeometry geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, texel_of(b, r->copy.texel->beam)->scene);
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(b->out->scene, geometry, (unsigned)b->copies.count);
+    rtcReleaseGeometry(geometry);
+    *list_push(b->compiled->arena, &b->copies) = *r;
+}
+
+static void add_skin(Building *b, const CompiledSkin *skin) {
+    TileRect rect;
+    if (!whole_tiles(skin, &rect)) return;
+    for (size_t i = 0; i < skin->texel_count; i++)
+        for (int64_t iu = rect.u0; iu < rect.u1; iu++)
+            for (int64_t iv = rect.v0; iv < rect.v1; iv++) {
+                RigidCopy r = {.skin = skin, .cell = &skin->cells[0], .placed = &skin->texels[i]};
+                if (skin_copy_of(skin, r.cell, r.placed, iu, iv, &r.copy) && r.copy.texel->beam->triangle_count && place_copy(&r)) add_copy(b, &r);
+            }
+    b->out->bounds = box3_union(b->out->bounds, skin->bounds);
+}
+
+static size_t tiles_of(const CompiledSkin *skin) {
+    TileRect rect;
+    return whole_tiles(skin, &rect) ? (size_t)((rect.u1 - rect.u0) * (rect.v1 - rect.v0)) * skin->texel_count : 0;
+}
+
+RigidCopies *rigid_copies_build(CompiledScene *compiled) {
+    size_t tiles = 0;
+    double exact_to = 0;
+    for (size_t i = 0; i < compiled->skin_count; i++) {
+        CompiledSkin *skin = &compiled->skins[i];
+        skin->rigid &= skin->boxes != NULL;
+        if (!skin->rigid) continue;
+        tiles += tiles_of(skin);
+        exact_to = fmax(exact_to, skin->exact_to);
+    }
+    bool too_many = tiles > MOST_RIGID_COPIES;
+    for (size_t i = 0; i < compiled->skin_count; i++) {
+        CompiledSkin *skin = &compiled->skins[i];
+        skin->rigid &= !too_many;
+        if (skin->rigid) skin->exact_to = exact_to; /* a ray ends at one distance */
+    }
+    if (!tiles || too_many) return NULL;
+    RTCDevice device = hierarchy_device(compiled->hierarchy);
+    RigidCopies *out = arena_new(compiled->arena, RigidCopies);
+    *out = (RigidCopies){.scene = rtcNewScene(device), .origin = compiled->view.camera.location, .bounds = box3_empty(), .exact_to = exact_to,
+                         .wide = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0};
+    Building b = {.compiled = compiled, .device = device, .out = out};
+    rtcSetSceneFlags(out->scene, RTC_SCENE_FLAG_ROBUST);
+    for (size_t i = 0; i < compiled->skin_count; i++)
+        if (compiled->skins[i].rigid) add_skin(&b, &compiled->skins[i]);
+    rtcCommitScene(out->scene);
+    out->items = b.copies.items;
+    out->count = b.copies.count;
+    return out;
+}
+
+void rigid_copies_destroy(RigidCopies *copies) {
+    if (!copies) return;
+    rtcReleaseScene(copies->scene);
+    for (RigidTexel *t = copies->texels; t; t = t->next) rtcReleaseScene(t->scene);
+}
+
+bool rigid_meets(const RigidCopies *copies, const Beam *beam) { return beam_meets_box(beam, &copies->bounds); }
+
+/* ---- rays ---- */
+
+/* Rays from `origin` along `direction` up to `far`, by eights. */
+typedef struct Bundle {
+    _Alignas(32) int valid[WIDE];
+    _Alignas(32) struct RTCRayHit8 rays;
+    uint32_t sample[WIDE];
+    int count;
+} Bundle;
+
+static void bundle_clear(Bundle *bundle) {
+    bundle->count = 0;
+    memset(bundle->valid, 0, sizeof bundle->valid);
+}
+
+static void bundle_add(Bundle *bundle, Vec3f origin, Vec3f direction, float near, float far, uint32_t sample) {
+    struct RTCRay one = {.org_x = origin.x, .org_y = origin.y, .org_z = origin.z, .dir_x = direction.x, .dir_y = direction.y, .dir_z = direction.z,
+                         .tnear = near, .tfar = far};
+    if (!embree_takes(&one)) return;
+    struct RTCRay8 *r = &bundle->rays.ray;
+    int i = bundle->count++;
+    r->org_x[i] = origin.x, r->org_y[i] = origin.y, r->org_z[i] = origin.z;
+    r->dir_x[i] = direction.x, r->dir_y[i] = direction.y, r->dir_z[i] = direction.z;
+    r->tnear[i] = near, r->tfar[i] = far, r->time[i] = 0;
+    r->mask[i] = UINT32_MAX, r->id[i] = 0, r->flags[i] = 0;
+    bundle->rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    bundle->rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    bundle->sample[i] = sample;
+    bundle->valid[i] = -1;
+}
+
+static struct RTCRay ray_of(const Bundle *bundle, int i) {
+    const struct RTCRay8 *r = &bundle->rays.ray;
+    return (struct RTCRay){.org_x = r->org_x[i], .org_y = r->org_y[i], .org_z = r->org_z[i], .dir_x = r->dir_x[i], .dir_y = r->dir_y[i], .dir_z = r->dir_z[i],
+                           .tnear = r->tnear[i], .tfar = r->tfar[i], .mask = UINT32_MAX};
+}
+
+static void intersect_bundle(const RigidCopies *copies, Bundle *bundle) {
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    if (copies->wide) {
+        rtcIntersect8(bundle->valid, copies->scene, &context, &bundle->rays);
+        return;
+    }
+    for (int i = 0; i < bundle->count; i++) {
+        struct RTCRayHit one = {.ray = ray_of(bundle, i), .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .instID = {RTC_INVALID_GEOMETRY_ID}}};
+        rtcIntersect1(copies->scene, &context, &one);
+        bundle->rays.ray.tfar[i] = one.ray.tfar;
+        bundle->rays.hit.geomID[i] = one.hit.geomID, bundle->rays.hit.primID[i] = one.hit.primID, bundle->rays.hit.instID[0][i] = one.hit.instID[0];
+    }
+}
+
+static void occlude_bundle(const RigidCopies *copies, Bundle *bundle) {
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    if (copies->wide) {
+        rtcOccluded8(bundle->valid, copies->scene, &context, &bundle->rays.ray);
+        return;
+    }
+    for (int i = 0; i < bundle->count; i++) {
+        struct RTCRay one = ray_of(bundle, i);
+        rtcOccluded1(copies->scene, &context, &one);
+        bundle->rays.ray.tfar[i] = one.tfar;
+    }
+}
+
+/* ---- what samples see ---- */
+
+/* Facets that were met of late, and their marks. */
+typedef struct Seeing {
+    const RigidCopies *copies;
+    BeamDraft *draft;
+    struct {
+        uint32_t copy, triangle, mark;
+    } kept[KEPT_FACETS];
+} Seeing;
+
+static const RigidTexel *texel_of_copy(const RigidCopies *copies, const RigidCopy *copy) {
+    const RigidTexel *texel = copies->texels;
+    while (texel->beam != copy->copy.texel->beam) texel = texel->next;
+    return texel;
+}
+
+static uint32_t new_facet(const Seeing *s, const RigidCopy *copy, uint32_t triangle) {
+    BeamDraft *draft = s->draft;
+    uint32_t number = texel_of_copy(s->copies, copy)->facets[triangle];
+    const TexelCluster *cluster = &copy->copy.texel->beam->clusters[number / CLUSTER_TRIANGLES];
+    BeamFacet *f = &draft->facets[draft->facet_count++];
+    *f = (BeamFacet){.skin = copy->skin, .cell = copy->cell, .placed = copy->placed, .copy = copy->copy, .cluster = cluster,
+                     .triangle = (int)(number % CLUSTER_TRIANGLES)};
+    for (int i = 0; i < 3; i++) {
+        int v = cluster->triangles[f->triangle][i];
+        double x = (double)cluster->x[v], y = (double)cluster->y[v], z = (double)cluster->z[v];
+        f->corner[i] = vec3f((float)(copy->a_x * x + copy->a_z * z + copy->a_0), (float)(copy->b_x * x + copy->b_z * z + copy->b_0), (float)(copy->w_y * y + copy->w_0));
+    }
+    return draft->facet_count;
+}
+
+static uint32_t mark_of(Seeing *s, uint32_t copy, uint32_t triangle) {
+    size_t at = (copy * 0x9E3779B1u + triangle) % KEPT_FACETS;
+    if (s->kept[at].mark && s->kept[at].copy == copy && s->kept[at].triangle == triangle) return s->kept[at].mark;
+    s->kept[at].copy = copy, s->kept[at].triangle = triangle;
+    return s->kept[at].mark = new_facet(s, &s->copies->items[copy], triangle);
+}
+
+static void take_hits(Seeing *s, Bundle *bundle) {
+    BeamSamples *samples = &s->draft->beam->samples;
+    if (bundle->count) intersect_bundle(s->copies, bundle);
+    for (int i = 0; i < bundle->count; i++) {
+        uint32_t at = bundle->sample[i], copy = bundle->rays.hit.instID[0][i];
+        float t = bundle->rays.ray.tfar[i], key = s->draft->beam->perspective ? 1 / t : -t;
+        if (bundle->rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID || !(key > samples->key[at])) continue;
+        samples->mark[at] = mark_of(s, copy, bundle->rays.hit.primID[i]);
+        samples->key[at] = key;
+    }
+    bundle_clear(bundle);
+}
+
+uint64_t rigid_see(const RigidCopies *copies, BeamDraft *draft, Vec3 corner, Vec3 right, Vec3 down, Vec3 direction) {
+    const Beam *beam = draft->beam;
+    const BeamSamples *s = &beam->samples;
+    Seeing seeing = {.copies = copies, .draft = draft};
+    uint32_t count = s->first[s->columns * s->rows];
+    uint64_t rays = 0;
+    Bundle bundle;
+    if (!rigid_meets(copies, beam)) return 0;
+    bundle_clear(&bundle);
+    Vec3 shift = beam->perspective ? vec3_sub(beam->origin, copies->origin) : vec3_negate(copies->origin);
+    for (uint32_t i = 0; i < count && !beam_is_interrupted(draft); i++) {
+        Vec3 to = vec3_madd(vec3_madd(corner, right, (double)s->x[i]), down, (double)s->y[i]);
+        float near = beam->perspective ? (float)beam->nearest : 0, far = beam->perspective ? 1 / s->key[i] : -s->key[i];
+        if (beam->perspective && s->limit[i] > 0) far = float_min(far, (float)(copies->exact_to / (double)s->limit[i]));
+        bundle_add(&bundle, vec3f_from(beam->perspective ? shift : vec3_add(to, shift)), vec3f_from(beam->perspective ? to : direction), near, far, i);
+        if (bundle.count < WIDE) continue;
+        rays += WIDE;
+        take_hits(&seeing, &bundle);
+    }
+    take_hits(&seeing, &bundle);
+    return rays;
+}
+
+/* ---- shadows ---- */
+
+static void hide_hits(const RigidCopies *copies, Bundle *bundle, uint8_t *hidden) {
+    if (bundle->count) occlude_bundle(copies, bundle);
+    for (int i = 0; i < bundle->count; i++)
+        if (bundle->rays.ray.tfar[i] < 0) hidden[bundle->sample[i]] = 1;
+    bundle_clear(bundle);
+}
+
+uint64_t rigid_hide(const RigidCopies *copies, const Light *light, const ShadowPoints *points) {
+    bool parallel = light_is_parallel(light);
+    Vec3 shift = vec3_sub(points->origin, copies->origin);
+    uint64_t rays = 0;
+    Bundle bundle;
+    bundle_clear(&bundle);
+    for (uint32_t i = 0; i < points->count; i++) {
+        if (points->hidden[i] || !(copies->exact_to >= (double)points->distance[i])) continue;
+        Vec3 from = vec3_add(shift, vec3_from_f(points->points[i]));
+        Vec3 to = parallel ? light->to_light : vec3_sub(vec3_sub(light->location, copies->origin), from);
+        bundle_add(&bundle, vec3f_from(from), vec3f_from(to), 0, parallel ? INFINITY : 1, i);
+        if (bundle.count < WIDE) continue;
+        rays += WIDE;
+        hide_hits(copies, &bundle, points->hidden);
+    }
+    hide_hits(copies, &bundle, points->hidden);
+    return rays;
+}

@@ -174,7 +174,7 @@ static void complete(ProjectionParameters *p, const bool given[TO_NOTHING + 1], 
     if (p->kind == PROJECTION_POLAR_STEREOGRAPHIC) {
         double told = given[TO_PARALLEL_1] ? p->parallels[0] : p->latitude;
         double at = pole != 0 ? pole : told < 0 ? -90 : 90;
-        if (fabs(told) < 90 && !given[TO_SCALE]) {
+        if (fabs(told) < 90 && (!given[TO_SCALE] || p->scale == 1)) {
             p->parallels[0] = p->parallels[1] = told; /* variant B: the parallel of true scale */
             p->scale = 0;
         } else if (p->scale == 0) {

@@ -60,15 +60,29 @@ static float level_between(const Level *level, int column0, int row0, int column
     return 0.75f * near + 0.25f * far;
 }
 
+static float mean_of_neighbours(const Level *level, int c, int r) {
+    return 0.25f * (level_clamped(level, c - 1, r) + level_clamped(level, c + 1, r) + level_clamped(level, c, r - 1) + level_clamped(level, c, r + 1));
+}
+
+/* A row away from the border: both values are there before one is chosen, so that compilers can take several cells at a time. */
+static void relax_inside(const float *above, const float *row, const float *below, const bool *open, int columns, float *next) {
+    for (int c = 1; c < columns - 1; c++) {
+        float mean = 0.25f * (row[c - 1] + row[c + 1] + above[c] + below[c]);
+        next[c] = open[c] ? mean : row[c];
+    }
+}
+
 static void level_relax(Level *level, float *next) {
-    for (int r = 0; r < level->rows; r++)
-        for (int c = 0; c < level->columns; c++) {
-            size_t at = level_at(level, c, r);
-            next[at] = !level->open[at] ? level->heights[at]
-                                        : 0.25f * (level_clamped(level, c - 1, r) + level_clamped(level, c + 1, r) +
-                                                   level_clamped(level, c, r - 1) + level_clamped(level, c, r + 1));
-        }
-    memcpy(level->heights, next, (size_t)level->columns * (size_t)level->rows * sizeof *next);
+    int columns = level->columns, rows = level->rows;
+    for (int r = 0; r < rows; r++) {
+        size_t at = level_at(level, 0, r);
+        const float *row = level->heights + at;
+        bool inside = r > 0 && r < rows - 1;
+        if (inside) relax_inside(row - columns, row, row + columns, level->open + at, columns, next + at);
+        for (int c = 0; c < columns; c += inside ? int_max(columns - 1, 1) : 1)
+            next[at + (size_t)c] = level->open[at + (size_t)c] ? mean_of_neighbours(level, c, r) : row[c];
+    }
+    memcpy(level->heights, next, (size_t)columns * (size_t)rows * sizeof *next);
 }
 
 /* Fills `level` from the next coarser one, which is whole. `next` has room for the level's cells. */
@@ -126,9 +140,10 @@ typedef struct Window {
     Level levels[FINE_LEVELS];
     Level above; /* the part of the coarse level over the window, and a cell around */
     float *next;
+    int column, row; /* of its first post */
 } Window;
 
-enum { ABOVE = WINDOW / COARSE_SIDE + 2 /* cells */ };
+enum { ABOVE = WINDOW / COARSE_SIDE + 2 };
 
 static void window_init(Window *window, Arena *arena) {
     for (int k = 0; k < FINE_LEVELS; k++) window->levels[k] = level_make(arena, WINDOW >> k, WINDOW >> k);
@@ -136,17 +151,33 @@ static void window_init(Window *window, Arena *arena) {
     window->next = arena_new_array(arena, float, (size_t)WINDOW * WINDOW);
 }
 
+/* Where the window of a block begins and how long it is, in whole coarse cells; it ends with the lattice. */
+static int window_side(int block, int posts, int *first) {
+    int cells = (posts + COARSE_SIDE - 1) / COARSE_SIDE;
+    *first = int_max(block * POST_BLOCK - MARGIN, 0);
+    return int_min((block + 1) * POST_BLOCK + MARGIN, cells * COARSE_SIDE) - *first;
+}
+
+static void window_place(Window *window, const Posts *posts, int block_column, int block_row) {
+    int columns = window_side(block_column, posts->columns, &window->column), rows = window_side(block_row, posts->rows, &window->row);
+    for (int k = 0; k < FINE_LEVELS; k++) window->levels[k].columns = columns >> k, window->levels[k].rows = rows >> k;
+    window->above.columns = columns / COARSE_SIDE + 2;
+    window->above.rows = rows / COARSE_SIDE + 2;
+}
+
 static void window_fill(Window *window, const Posts *posts, const Level *coarse, int block_column, int block_row) {
-    int column = block_column * POST_BLOCK - MARGIN, row = block_row * POST_BLOCK - MARGIN;
-    posts_read(posts, column, row, 1, WINDOW, WINDOW, window->levels[0].heights, WINDOW);
+    window_place(window, posts, block_column, block_row);
+    Level *finest = &window->levels[0], *above = &window->above;
+    posts_read(posts, window->column, window->row, 1, finest->columns, finest->rows, finest->heights, (size_t)finest->columns);
     for (int k = 1; k < FINE_LEVELS; k++) level_push(&window->levels[k - 1], &window->levels[k]);
-    for (int r = 0; r < ABOVE; r++)
-        for (int c = 0; c < ABOVE; c++)
-            window->above.heights[level_at(&window->above, c, r)] =
-                level_clamped(coarse, column / COARSE_SIDE + c - 1, row / COARSE_SIDE + r - 1);
-    for (int k = FINE_LEVELS - 1; k >= 0; k--)
-        level_pull(&window->levels[k], k == FINE_LEVELS - 1 ? &window->above : &window->levels[k + 1], k == FINE_LEVELS - 1,
-                   k == FINE_LEVELS - 1, window->next);
+    for (int r = 0; r < above->rows; r++)
+        for (int c = 0; c < above->columns; c++)
+            above->heights[level_at(above, c, r)] =
+                level_clamped(coarse, window->column / COARSE_SIDE + c - 1, window->row / COARSE_SIDE + r - 1);
+    for (int k = FINE_LEVELS - 1; k >= 0; k--) {
+        bool coarsest = k == FINE_LEVELS - 1;
+        level_pull(&window->levels[k], coarsest ? above : &window->levels[k + 1], coarsest, coarsest, window->next);
+    }
 }
 
 bool post_is_within(const PostRect *rects, size_t count, int column, int row) {
@@ -162,13 +193,16 @@ static bool take_block(const Window *window, const PostRect *rects, size_t count
                        float out[POST_BLOCK_COUNT]) {
     const Level *level = &window->levels[0];
     bool any = false;
-    for (int r = 0; r < POST_BLOCK; r++)
-        for (int c = 0; c < POST_BLOCK; c++) {
-            size_t at = level_at(level, c + MARGIN, r + MARGIN);
-            bool wanted = !level->open[at] || post_is_within(rects, count, block_column * POST_BLOCK + c, block_row * POST_BLOCK + r);
-            out[r * POST_BLOCK + c] = wanted ? level->heights[at] : NAN;
-            any |= wanted && level->open[at];
-        }
+    for (int i = 0; i < POST_BLOCK_COUNT; i++) {
+        int column = block_column * POST_BLOCK + i % POST_BLOCK, row = block_row * POST_BLOCK + i / POST_BLOCK;
+        int c = column - window->column, r = row - window->row;
+        out[i] = NAN;
+        if (c >= level->columns || r >= level->rows) continue;
+        size_t at = level_at(level, c, r);
+        bool wanted = !level->open[at] || post_is_within(rects, count, column, row);
+        if (wanted) out[i] = level->heights[at];
+        any |= wanted && level->open[at];
+    }
     return any;
 }
 

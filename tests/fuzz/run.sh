@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# run.sh TARGET SECONDS [FOLDER…]: a fuzzing session of lexer, parser or evaluator (or another target here), seeded with the corpus and
+# run.sh TARGET SECONDS [FOLDER…]: a fuzzing session of lexer, parser, evaluator or maps, seeded with the corpus and
 # the programs of the tests, and with the files of the folders given. Builds in build-fuzz with clang and sanitizers; finds are kept
 # in build-fuzz/finds, what widened the coverage in build-fuzz/corpus-TARGET. Status 0: nothing was found.
 set -eu -o pipefail
@@ -11,6 +11,8 @@ build=$root/build-fuzz
   -DCMAKE_BUILD_TYPE=RelWithDebInfo -DVTS_FUZZ=ON -DVTS_SANITIZE=ON -DVTS_TESTS=OFF >&2
 ninja -C "$build" "fuzz_$target"
 mkdir -p "$build/finds" "$build/corpus-$target"
+programs=("$root/tests/fuzz/corpus" "$root/tests/language" "$root/tests/diagnostics")
+[ "$target" != maps ] || programs=("$root/tests/fuzz/maps")
 exec nice -n 10 "$build/tests/fuzz/fuzz_$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2500 -max_len=6000 \
   -dict="$build/tests/fuzz/keywords.dict" -artifact_prefix="$build/finds/$target-" -print_final_stats=1 \
-  "$build/corpus-$target" "$root/tests/fuzz/corpus" "$root/tests/language" "$root/tests/diagnostics" "$@"
+  "$build/corpus-$target" "${programs[@]}" "$@"

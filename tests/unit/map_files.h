@@ -100,7 +100,7 @@ typedef struct MadeTag {
 } MadeTag;
 
 static inline size_t made_sample(const MadeTiff *t, double h, unsigned char out[8]) {
-    uint16_t u = (uint16_t)(t->sample == MADE_I16 ? (uint16_t)(int16_t)h : (uint16_t)h);
+    uint16_t u = t->sample > MADE_I16 ? 0 : t->sample == MADE_I16 ? (uint16_t)(int16_t)h : (uint16_t)h;
     float f = (float)h;
     if (t->sample == MADE_F32) return (size_t)(memcpy(out, &f, 4), 4);
     if (t->sample == MADE_F64) return (size_t)(memcpy(out, &h, 8), 8);

@@ -154,6 +154,11 @@ void pnm_add_header(StrBuf *out, int width, int height, int channels, int larges
 }
 
 void pnm_add_floats(StrBuf *out, const float *samples, size_t count) {
+    static const uint16_t one = 1;
+    if (*(const unsigned char *)&one == 1) { /* this machine has them as the file wants them */
+        strbuf_add(out, (const char *)samples, count * sizeof *samples);
+        return;
+    }
     for (size_t i = 0; i < count; i++) {
         uint32_t bits;
         memcpy(&bits, &samples[i], sizeof bits);

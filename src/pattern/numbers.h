@@ -13,6 +13,8 @@ double crackle_number(const Pigment *pigment, Vec3 p);
 Vec3 crackle_point(Vec3 p, double metric);
 /* water.c: ripples and waves, from 0 to 1; `wave` weighs long waves more. */
 double water_number(const Pigment *pigment, Vec3 p, bool waves);
+/* Where the source of this number lies, on the unit sphere. */
+Vec3 water_source(int i);
 /* What they add to a normal; waves shorter than the spot fade. */
 Vec3 water_bump(const Pigment *pigment, const Spot *spot, bool waves);
 /* quilted: the Bézier curve through the two controls, of the distance from a cell's middle. */

@@ -9,6 +9,25 @@ static double next_frequency(uint32_t *state) {
     return (*state >> 16 & 0x7FFF) * 0.000030518509476 + 0.01;
 }
 
+/* Where the sources lie that waves have by default: the directions of the vector noise at (i, 0, 0). */
+static const Vec3 FIRST_SOURCES[] = {
+    {-0.60437821325775842, 0.49204840803398064, -0.62659024848028477},
+    {-0.55257310417457395, -0.24607533873593257, -0.79631017336768428},
+    {-0.44455108505476548, 0.62332898483857657, 0.64330032600391274},
+    {0.49658606690988161, 0.6689481632688099, 0.55309188478069393},
+    {-0.064371814202767927, -0.80595157786206306, -0.58847117489125611},
+    {0.24619021440605479, -0.91455678347985547, -0.32089915568863925},
+    {-0.66608895218544739, -0.59187856314479337, -0.4538780389775951},
+    {-0.52048920247506592, -0.38602713558619201, -0.76162591913483979},
+    {0.13794944733959097, -0.70464210668186833, -0.69602403081333342},
+    {0.5648967309620444, 0.72204051406461378, -0.39943607673531945},
+};
+
+Vec3 water_source(int i) {
+    if (i < (int)VTS_ARRAY_COUNT(FIRST_SOURCES)) return FIRST_SOURCES[i];
+    return vec3_normalize(noise_pov_vector(vec3(i, 0, 0)));
+}
+
 static double cycloid(double x) { return sin(2 * VTS_PI * (x - floor(x))); }
 
 typedef struct WaveSource {
@@ -18,7 +37,7 @@ typedef struct WaveSource {
 } WaveSource;
 
 static WaveSource wave_source(const Pigment *pigment, Vec3 p, int i, double frequency) {
-    Vec3 away = vec3_sub(p, vec3_normalize(noise_pov_vector(vec3(i, 0, 0))));
+    Vec3 away = vec3_sub(p, water_source(i));
     double length = vec3_length(away);
     if (length == 0) length = 1;
     return (WaveSource){vec3_scale(away, 1 / length), length, frequency,

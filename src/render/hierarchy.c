@@ -11,6 +11,7 @@ struct Hierarchy {
     const Cluster *all;
     bool clear; /* something lets light through */
     bool plain; /* no line of sight goes on from anything */
+    double reach; /* from the middle of what is bounded; 0: there is nothing */
 };
 
 enum { SOLIDS = 0, TRIANGLES = 1 }; /* geomID in a cluster */
@@ -74,7 +75,7 @@ static bool meet_item(const Query *query, const Item *item) {
     if (!met) return false;
     found->t = hit->t;
     found->normal = mat3_apply_transposed(&item->back.linear, hit->normal);
-    found->flat = mat3_apply_transposed(&item->back.linear, hit->flat);
+    found->flat = item->body ? mat3_apply_transposed(&item->back.linear, hit->flat) : found->normal;
     found->cluster = NULL;
     keep_path(query, item);
     return true;
@@ -240,6 +241,7 @@ Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags) {
     Hierarchy *h = arena_new(arena, Hierarchy);
     clusters_build(scene, arena, diags, &h->set);
     h->all = h->set.clusters.items[h->set.clusters.count - 1];
+    if (!box3_is_empty(h->all->bounds)) h->reach = vec3_length(vec3_sub(h->all->bounds.max, h->all->bounds.min)) / 2;
     h->clear = !h->set.default_look->opaque;
     h->plain = h->set.default_look->plain;
     for (size_t i = 0; i < h->set.looks.slot_count; i++) {
@@ -280,10 +282,7 @@ bool hierarchy_bounds(const Hierarchy *h, Box3 *box) {
 }
 
 double hierarchy_coarseness(const Hierarchy *h, Vec3 point) {
-    const Cluster *all = h->all;
-    if (box3_is_empty(all->bounds)) return 0;
-    double reach = vec3_length(vec3_sub(all->bounds.max, all->bounds.min)) / 2;
-    return 1e-6 * fmin(vec3_length(vec3_sub(point, all->origin)), reach);
+    return h->reach > 0 ? 1e-6 * double_min(vec3_length(vec3_sub(point, h->all->origin)), h->reach) : 0;
 }
 bool hierarchy_is_plain(const Hierarchy *h) { return h->plain; }
 bool hierarchy_is_clear(const Hierarchy *h) { return h->clear; }

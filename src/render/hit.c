@@ -230,7 +230,9 @@ void hit_finish(const ClusterSet *set, Found *found, const Ray *ray, bool places
         normal = mat3_apply_transposed(&found->path[i]->back.linear, normal);
         flat = mat3_apply_transposed(&found->path[i]->back.linear, flat);
     }
-    normal = vec3_normalize(normal), flat = vec3_normalize(flat);
+    bool same = normal.x == flat.x && normal.y == flat.y && normal.z == flat.z;
+    normal = vec3_normalize(normal);
+    flat = same ? normal : vec3_normalize(flat);
     out->t = found->t;
     out->leaving = vec3_dot(flat, ray->direction) > 0;
     out->flat = out->leaving ? vec3_negate(flat) : flat;

@@ -343,11 +343,23 @@ static float step_like(Vec3f before, Vec3f after) {
     return most > 0 ? float_clamp(1.4f - 2 * vec3f_dot(before, after) / most, SMOOTH, 1) : 0;
 }
 
+/* Whether all around looks exactly the same. */
+static bool is_even(const Sampler *sp, int index) {
+    static const int around[] = {-EDGE - 1, -EDGE, -EDGE + 1, -1, 1, EDGE - 1, EDGE, EDGE + 1};
+    Vec3f here = sp->cells[index].first;
+    for (int k = 0; k < 8; k++) {
+        Vec3f other = sp->cells[index + around[k]].mean;
+        if (other.x != here.x || other.y != here.y || other.z != here.z) return false;
+    }
+    return true;
+}
+
 /* The largest second difference of the middle's light with those on both sides, as a squared error. */
 static float contrast_of(const Sampler *sp, int index) {
     static const int across[] = {1, EDGE, EDGE + 1, EDGE - 1};
     Vec3f here = sp->cells[index].first;
     float most = 0;
+    if (is_even(sp, index)) return 0;
     for (int k = 0; k < 4; k++) {
         Vec3f after = vec3f_sub(sp->cells[index + across[k]].mean, here), before = vec3f_sub(here, sp->cells[index - across[k]].mean);
         most = float_max(most, mean_square(vec3f_sub(after, before)) * step_like(before, after));
@@ -492,8 +504,9 @@ static void see_middles(Sampler *sp) {
             begin_cell(&sp->cells[row * EDGE + column], m ? m : &own);
         }
     middles_leave(sp->middles, sp->x0 / FILM_TILE, sp->y0 / FILM_TILE);
+    bool at_border = sp->x0 == 0 || sp->y0 == 0 || sp->x0 + sp->columns == view->width || sp->y0 + sp->rows == view->height;
     /* Beyond the picture's border lies what lies along it. */
-    for (int row = 0; row <= sp->rows + 1; row++)
+    for (int row = 0; at_border && row <= sp->rows + 1; row++)
         for (int column = 0; column <= sp->columns + 1; column++) {
             int x = int_clamp(sp->x0 + column - 1, 0, view->width - 1) - sp->x0 + 1, y = int_clamp(sp->y0 + row - 1, 0, view->height - 1) - sp->y0 + 1;
             if (x != column || y != row) sp->cells[row * EDGE + column] = sp->cells[y * EDGE + x];

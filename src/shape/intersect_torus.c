@@ -24,8 +24,8 @@ static Value distance_at(const void *context, double t) {
 }
 
 /* A zero between a and b, where f has different signs: Newton's steps as long as they stay between and shrink, halving
- * otherwise. */
-static double zero_between(LineFunction f, const void *context, double a, double b) {
+ * otherwise, until one is no longer than `close`. */
+static double zero_between(LineFunction f, const void *context, double a, double b, double close) {
     bool negative = f(context, a).value < 0;
     double t = a + (b - a) / 2, last = b - a;
     for (int i = 0; i < 200; i++) {
@@ -36,7 +36,7 @@ static double zero_between(LineFunction f, const void *context, double a, double
         else
             b = t;
         double next = t - at.value / at.slope;
-        if (fabs(next - t) <= 2e-16) return double_clamp(next, fmin(a, b), fmax(a, b)); /* no more than rounding: the ring has the size 1 */
+        if (fabs(next - t) <= close) return double_clamp(next, double_min(a, b), double_max(a, b));
         bool slow = !(fabs(next - t) < last / 2);
         if (slow || !(next > fmin(a, b) && next < fmax(a, b))) next = a + (b - a) / 2;
         last = fabs(next - t);
@@ -51,6 +51,10 @@ static Value cubic_at(const void *context, double t) {
     const double *c = context;
     return (Value){((c[3] * t + c[2]) * t + c[1]) * t + c[0], (3 * c[3] * t + 2 * c[2]) * t + c[1]};
 }
+
+/* The ring has the size 1: of its surface all that doubles can tell; of a stationary point less will do, since the distance is nearly the same
+ * around it. */
+static const double CLOSE = 2e-16, CLOSE_STATION = 1e-9;
 
 /* Real zeros of a t² + 2 b t + c within (lo, hi), ascending; a > 0. */
 static int quadratic_zeros(double a, double b, double c, double lo, double hi, double *out) {
@@ -72,7 +76,7 @@ static int cubic_zeros(const double c[4], double lo, double hi, double *out) {
     for (int i = 0; i + 1 < station_count; i++) {
         double a = stations[i], b = stations[i + 1];
         if ((cubic_at(c, a).value < 0) != (cubic_at(c, b).value < 0))
-            out[count++] = zero_between(cubic_at, c, a, b);
+            out[count++] = zero_between(cubic_at, c, a, b, CLOSE_STATION);
     }
     return count;
 }
@@ -120,7 +124,7 @@ int intersect_torus(Vec3 origin, Vec3 direction, double major, double minor, dou
     bool inside = false;
     for (int i = 1; i < station_count; i++) {
         bool next = i + 1 < station_count && distance_at(&line, stations[i]).value < 0;
-        if (next != inside) t[count++] = zero_between(distance_at, &line, stations[i - 1], stations[i]);
+        if (next != inside) t[count++] = zero_between(distance_at, &line, stations[i - 1], stations[i], CLOSE);
         inside = next;
     }
     return count;

@@ -1,5 +1,7 @@
 /* Patterns against POV-Ray's own values. */
+#include "pattern/numbers.h"
 #include "pattern/pattern.h"
+#include "tape/noise.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -74,9 +76,19 @@ static void gives_povrays_values(void **state) {
     assert_int_equal(wrong, 0);
 }
 
+/* Those that are written down are those of the noise. */
+static void water_comes_from_the_noise(void **state) {
+    (void)state;
+    for (int i = 0; i < 20; i++) {
+        Vec3 source = water_source(i), noise = vec3_normalize(noise_pov_vector(vec3(i, 0, 0)));
+        assert_true(vec3_length(vec3_sub(source, noise)) < 1e-15);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gives_povrays_values),
+        cmocka_unit_test(water_comes_from_the_noise),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -162,7 +162,7 @@ static void directions(void **state) {
     for (int flat = 0; flat < 2; flat++) {
         GeoFrame frame;
         GeoPlace place = {47.2, 9.1, 700}, north = {47.2 + 1e-5, 9.1, 700}, higher = {47.2, 9.1, 701};
-        Vec3 at, to, above, d, up;
+        Vec3 at = {0}, to = {0}, above = {0}, d = {0}, up = {0};
         assert_true(geo_frame_init(&frame, origin, flat));
         assert_true(geo_to_scene(&frame, place, &at) && geo_to_scene(&frame, north, &to) && geo_to_scene(&frame, higher, &above));
         assert_true(geo_direction_to_scene(&frame, place, vec3(0, 0, 1), &d) && geo_direction_to_scene(&frame, place, vec3(0, 1, 0), &up));
@@ -247,7 +247,7 @@ static void place_line(FILE *out, uint64_t i) {
 
 static void check_scene(uint64_t i, const char *text) {
     GeoFrame frame;
-    Vec3 p;
+    Vec3 p = {0};
     double east, north, up;
     assert_int_equal(sscanf(text, "%lf %lf %lf", &east, &north, &up), 3);
     assert_true(geo_frame_init(&frame, origin, false) && geo_to_scene(&frame, nasty_or_random(i), &p));

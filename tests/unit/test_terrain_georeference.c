@@ -208,7 +208,7 @@ static void projected(void **state) {
     /* Lambert 93, in a turned and sheared map. */
     const double matrix[16] = {20, 5, 0, 700000, 4, -25, 0, 6600000, 0, 0, 0, 0, 0, 0, 0, 1};
     r = take_tags(&(Tags){.keys = KEYS({1024, 1}, {1025, 1}, {3072, 2154}), .matrix = matrix});
-    double x, y;
+    double x = 0, y = 0;
     assert_true(georeference_to_geo(&r, 3, 2, &place) && projection_forward(&r.projection, place, &x, &y));
     assert_near(x, 700000 + 20 * 3.5 + 5 * 2.5, 1e-5);
     assert_near(y, 6600000 + 4 * 3.5 - 25 * 2.5, 1e-5);

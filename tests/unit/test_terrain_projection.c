@@ -77,7 +77,7 @@ static void utm_codes(void **state) {
         for (int south = 0; south < 2; south++) {
             Projection p;
             UtmPlace utm;
-            double x, y;
+            double x = 0, y = 0;
             GeoPlace place = {south ? -33.3 : 41.7, 6 * zone - 184.9, 0};
             take_epsg(&p, (south ? 32700 : 32600) + zone);
             assert_true(utm_from_geo(place, &utm) && projection_forward(&p, place, &x, &y));
@@ -88,7 +88,7 @@ static void utm_codes(void **state) {
     for (int code = 32661; code <= 32761; code += 100) {
         Projection p;
         UtmPlace utm;
-        double x, y;
+        double x = 0, y = 0;
         GeoPlace place = {code == 32661 ? 87.1 : -85.2, 133, 0};
         take_epsg(&p, code);
         assert_true(utm_from_geo(place, &utm) && projection_forward(&p, place, &x, &y));

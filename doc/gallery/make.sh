@@ -14,7 +14,7 @@ find_program() {
 size_of() {
   case $1 in
     meadow_ball) echo 400x400 ;;
-    hillside) echo 480x320 ;;
+    hillside | sundial) echo 480x320 ;;
     teddy) echo 480x480 ;;
     tree) echo 400x320 ;;
     still_life) echo 400x300 ;;

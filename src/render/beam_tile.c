@@ -181,9 +181,18 @@ typedef struct PixelSum {
     float alpha;
 } PixelSum;
 
+/* How wrong voxels make a pixel of which the sight is a part: relative to all of its samples. */
+static double voxels_error(const BeamTracer *tr, const Sight *sight) {
+    const CompiledScene *compiled = tr->compiled;
+    if (!sight->beyond || !(compiled->voxel_error > 0)) return 0;
+    double nearer = compiled->all_exact_to / fmax((double)sight->t, compiled->all_exact_to);
+    return compiled->voxel_error * nearer * sight->count / tr->samples;
+}
+
 /* Sights come pixel by pixel; *k is the first of this one's, and becomes that of the next. */
 static PixelSum see_pixel(BeamTracer *tr, int pixel, uint32_t *k) {
     PixelSum sum = {{0, 0, 0}, {0, 0, 0}, 0};
+    double wrong = 0;
     for (; *k < tr->sight_count && tr->sights[*k].pixel == pixel; ++*k) {
         const Sight *s = &tr->sights[*k];
         Radiance seen;
@@ -192,7 +201,9 @@ static PixelSum see_pixel(BeamTracer *tr, int pixel, uint32_t *k) {
         sum.all = vec3f_madd(sum.all, seen.color, (float)s->count);
         sum.odd = vec3f_madd(sum.odd, odd, (float)s->odd);
         sum.alpha += seen.alpha * (float)s->count;
+        wrong += voxels_error(tr, s);
     }
+    if (tr->before == 0) tr->squared_error += wrong * wrong;
     return sum;
 }
 

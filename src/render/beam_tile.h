@@ -27,7 +27,7 @@ BeamTracer *beam_tracer_create(const CompiledScene *compiled, const BeamPlan *pl
 /* What the pixels of [x0, x1) × [y0, y1), at most BEAM_TILE each way, see; rows of `out` are x1 − x0 long; and so those of `aovs`, unless NULL, to
  * which what they see is added. */
 void beam_tile(BeamTracer *tracer, int x0, int y0, int x1, int y1, Radiance *out, AovSum *aovs);
-/* The expected square of the error of what was drawn, summed over *pixels pixels: of noise alone. */
+/* The expected square of the error of what was drawn, summed over *pixels pixels: of noise, and where compiled->voxel_error is known of voxels. */
 double beam_tracer_error(const BeamTracer *tracer, uint64_t *pixels);
 void beam_tracer_count(const BeamTracer *tracer, TraceCounters *sum);
 

@@ -179,6 +179,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     CompileStatus status = build_texels(options, detail, diags, out);
     if (status != COMPILE_OK) return status;
     out->skin_tree = tree_over_skins(out);
+    beam_pilot(out);
     if (options->exact && out->skin_count) out->exact = exact_skins_build(out->skins, out->skin_count, hierarchy_device(out->hierarchy));
     if (options->exact && out->skin_count && !out->exact) memory_budget_fail(options->memory);
     out->build_seconds = stopwatch_wall() - start;

@@ -52,6 +52,7 @@ typedef struct CompiledScene {
     Box3 exact_bounds;    /* of the skins that beams draw, those of `rigid` not counted */
     double all_exact_to;  /* the least exact_to of all skins, 0 of those that are voxels alone */
     double nearest;       /* nearer to the eye than this nothing is drawn by beams */
+    double voxel_error;   /* expected RMSE of pixels at the distance all_exact_to that are drawn from voxels, falling with it; < 0: not known */
 } CompiledScene;
 
 typedef enum CompileStatus { COMPILE_OK, COMPILE_FAILED /* see diags */, COMPILE_INTERRUPTED } CompileStatus;
@@ -84,6 +85,11 @@ bool texel_build(BuiltTexel *texel, const CompileOptions *options, CompiledScene
 bool beam_build_texel(BuiltTexel *texel, CompiledScene *compiled, DiagList *diags);
 /* Up to which distance the skin is drawn as exact geometry; `everything`: to the last. beam_plan.c */
 void beam_plan_skin(CompiledSkin *skin, bool everything, CompiledScene *compiled);
+/* Moves the distances at which voxels begin to where they are as right as max_error asks, by what a few pixels tell; sets voxel_error. When all
+ * else is compiled. beam_pilot.c */
+void beam_pilot(CompiledScene *compiled);
+/* Voxels are built for distances from this part of the planned one on. */
+#define EARLIEST_VOXELS 0.4
 /* Of the scene's knob `detail`. */
 typedef enum Detail { DETAIL_AUTO, DETAIL_EXACT, DETAIL_VOXELS, DETAIL_SLAB } Detail;
 /* A layer's triangles in compiled->scratch; false after a diagnostic. */

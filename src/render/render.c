@@ -82,7 +82,7 @@ static void count_workers(const Frame *frame, int workers, RenderStats *stats) {
     }
     squares += tally.squared_error, pixels += tally.pixels;
     stats->split_pixels = tally.refined;
-    bool known = frame->beams ? isinf(frame->compiled->all_exact_to) : frame->compiled->skin_count == 0;
+    bool known = frame->beams ? isinf(frame->compiled->all_exact_to) || frame->compiled->voxel_error >= 0 : frame->compiled->skin_count == 0;
     stats->error_estimate = !known ? -1 : pixels ? sqrt(squares / (double)pixels) : 0;
 }
 

@@ -433,7 +433,7 @@ enum { SKY_RESOLUTION = 32 };
 
 void skin_ask_voxels(CompiledSkin *skin, const CompileOptions *options, const CompiledScene *compiled) {
     bool all_exact = skin->boxes && !isfinite(skin->exact_to) && !compiled->secondary, sky = compiled->scene->settings.sky_light;
-    double from = skin->boxes && isfinite(skin->exact_to) ? 0.7 * skin->exact_to : 0;
+    double from = skin->boxes && isfinite(skin->exact_to) ? EARLIEST_VOXELS * 0.7 * skin->exact_to : 0;
     for (size_t i = 0; i < skin->texel_count; i++)
         for (size_t k = 0; k < skin->texels[i].family_size; k++) {
             BuiltTexel *texel = skin->texels[i].family[k];

@@ -9,14 +9,14 @@ typedef double Function(double x);
 /* Of a rising function, whose value at both bounds is within INTERVAL_ULPS; within [least, most], its exact range. */
 static Interval rising(Interval a, Function *f, double least, double most) {
     if (interval_is_never(a)) return a;
-    return (Interval){fmax(least, widen_down(f(a.low))), fmin(most, widen_up(f(a.high))), a.nan};
+    return (Interval){bound_max(least, widen_down(f(a.low))), bound_min(most, widen_up(f(a.high))), a.nan};
 }
 
 /* The part of a within [low, high]; what is outside has no value. */
 static Interval within_domain(Interval a, double low, double high) {
     if (interval_is_never(a)) return a;
     bool outside = a.low < low || a.high > high;
-    Interval part = {fmax(a.low, low), fmin(a.high, high), a.nan || outside};
+    Interval part = {bound_max(a.low, low), bound_min(a.high, high), a.nan || outside};
     return interval_is_never(part) ? interval_never() : part;
 }
 
@@ -55,7 +55,7 @@ static Interval wave(Interval a, Function *f, double crest) {
     if (!(fabs(a.low) < LARGEST_ANGLE && fabs(a.high) < LARGEST_ANGLE)) return (Interval){-1, 1, nan};
     double at_low = f(a.low), at_high = f(a.high);
     bool up = may_hold_crest(a.low, a.high, crest, 2 * VTS_PI), down = may_hold_crest(a.low, a.high, crest + VTS_PI, 2 * VTS_PI);
-    return (Interval){down ? -1 : fmax(-1, widen_down(fmin(at_low, at_high))), up ? 1 : fmin(1, widen_up(fmax(at_low, at_high))), nan};
+    return (Interval){down ? -1 : bound_max(-1, widen_down(bound_min(at_low, at_high))), up ? 1 : bound_min(1, widen_up(bound_max(at_low, at_high))), nan};
 }
 
 Interval interval_SIN(Interval a) { return wave(a, scalar_SIN, VTS_PI / 2); }
@@ -76,12 +76,12 @@ Interval interval_ATAN2(Interval y, Interval x) {
     bool nan = y.nan || x.nan;
     if (x.low <= 0 && interval_has_zero(y)) return (Interval){widen_down(-VTS_PI), widen_up(VTS_PI), nan};
     double a = scalar_ATAN2(y.low, x.low), b = scalar_ATAN2(y.low, x.high), c = scalar_ATAN2(y.high, x.low), d = scalar_ATAN2(y.high, x.high);
-    return (Interval){widen_down(fmin(fmin(a, b), fmin(c, d))), widen_up(fmax(fmax(a, b), fmax(c, d))), nan};
+    return (Interval){widen_down(bound_min(bound_min(a, b), bound_min(c, d))), widen_up(bound_max(bound_max(a, b), bound_max(c, d))), nan};
 }
 
 static Interval power_corners(double a0, double a1, double b0, double b1) {
     double p = scalar_POW(a0, b0), q = scalar_POW(a0, b1), r = scalar_POW(a1, b0), s = scalar_POW(a1, b1);
-    return (Interval){fmax(0, widen_down(fmin(fmin(p, q), fmin(r, s)))), widen_up(fmax(fmax(p, q), fmax(r, s))), false};
+    return (Interval){bound_max(0, widen_down(bound_min(bound_min(p, q), bound_min(r, s)))), widen_up(bound_max(bound_max(p, q), bound_max(r, s))), false};
 }
 
 /* For a base above 0 the power is monotone in base and exponent; below 0 it has a value for whole exponents only. A power of
@@ -94,9 +94,9 @@ Interval interval_POW(Interval a, Interval b) {
     bool nan = a.nan || b.nan;
     Interval out = {HUGE_VAL, -HUGE_VAL, false};
     if (nan) out = interval_point(1);
-    if (a.high >= 0) out = interval_hull(out, power_corners(fmax(a.low, 0), a.high, b.low, b.high));
+    if (a.high >= 0) out = interval_hull(out, power_corners(bound_max(a.low, 0), a.high, b.low, b.high));
     if (a.low < 0 || (a.low == 0 && b.low < 0)) { /* −0 to a negative odd power is −∞ */
-        Interval size = power_corners(fmax(-a.high, 0), -a.low, b.low, b.high);
+        Interval size = power_corners(bound_max(-a.high, 0), -a.low, b.low, b.high);
         bool whole = interval_is_point(b) && b.low == floor(b.low), even = whole && (isinf(b.low) || fmod(b.low, 2) == 0);
         nan |= !whole && isfinite(b.low) && isfinite(b.high);
         nan |= !isfinite(b.low) || !isfinite(b.high);
@@ -112,14 +112,14 @@ Interval interval_MOD(Interval a, Interval b) {
     if (interval_is_never(a) || interval_is_never(b)) return interval_never();
     bool nan = a.nan || b.nan || interval_has_infinity(a) || interval_has_zero(b);
     Interval size = interval_ABS(b);
-    double most = fmin(size.high, fmax(fabs(a.low), fabs(a.high)));
+    double most = bound_min(size.high, bound_max(fabs(a.low), fabs(a.high)));
     if (interval_is_point(b) && isfinite(a.low) && isfinite(a.high) && b.low != 0) {
         double low = fmod(a.low, b.low), high = fmod(a.high, b.low);
         /* No jump between: the remainders are as far apart as what they are of. */
         bool same_side = a.low >= 0 || a.high <= 0;
         if (same_side && a.high - a.low < size.high && low <= high && fabs((high - low) - (a.high - a.low)) <= 0.25 * size.high) return (Interval){low, high, nan};
     }
-    if (fmax(fabs(a.low), fabs(a.high)) < size.low) return (Interval){a.low, a.high, nan};
+    if (bound_max(fabs(a.low), fabs(a.high)) < size.low) return (Interval){a.low, a.high, nan};
     return (Interval){a.low < 0 ? -most : 0, a.high > 0 ? most : 0, nan};
 }
 
@@ -135,7 +135,7 @@ static Interval bitwise(Interval a, Interval b, double (*op)(double a, double b)
         out.nan |= nan;
         return out;
     }
-    double bits = 1, most = fmax(fmax(fabs(a.low), fabs(a.high)), fmax(fabs(b.low), fabs(b.high)));
+    double bits = 1, most = bound_max(bound_max(fabs(a.low), fabs(a.high)), bound_max(fabs(b.low), fabs(b.high)));
     while (bits <= most && bits < 0x1p63) bits *= 2;
     return (Interval){a.low >= 0 && b.low >= 0 ? 0 : -bits, bits, nan};
 }

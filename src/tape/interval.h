@@ -21,6 +21,10 @@ typedef struct Interval {
 /* Elementary functions, ours and C's, are within one unit in the last place (C's: two); see elementary.h. */
 #define INTERVAL_ULPS 4
 
+/* Of two numbers; C's fmin() and fmax() are calls, since they look for what is none. */
+static inline double bound_min(double a, double b) { return a < b ? a : b; }
+static inline double bound_max(double a, double b) { return a > b ? a : b; }
+
 static inline Interval interval(double low, double high) { return (Interval){low, high, false}; }
 static inline Interval interval_point(double x) { return x == x ? interval(x, x) : (Interval){HUGE_VAL, -HUGE_VAL, true}; }
 static inline Interval interval_all(bool nan) { return (Interval){-HUGE_VAL, HUGE_VAL, nan}; }
@@ -29,7 +33,7 @@ static inline bool interval_is_never(Interval a) { return !(a.low <= a.high); }
 static inline bool interval_is_point(Interval a) { return a.low == a.high && !a.nan; }
 static inline bool interval_holds(Interval a, double x) { return x == x ? a.low <= x && x <= a.high : a.nan; }
 static inline Interval interval_hull(Interval a, Interval b) {
-    return (Interval){fmin(a.low, b.low), fmax(a.high, b.high), a.nan || b.nan};
+    return (Interval){bound_min(a.low, b.low), bound_max(a.high, b.high), a.nan || b.nan};
 }
 
 /* The next double or the one after it, in few operations: |x|·2⁻⁵² is one or two units, the least double is for zeros. An
@@ -45,7 +49,7 @@ static inline double bound_product(double a, double b) { return a == 0 || b == 0
 
 /* The hull of four bounds of a rounded operation. */
 static inline Interval interval_corners(double a, double b, double c, double d, bool nan) {
-    return (Interval){round_down(fmin(fmin(a, b), fmin(c, d))), round_up(fmax(fmax(a, b), fmax(c, d))), nan};
+    return (Interval){round_down(bound_min(bound_min(a, b), bound_min(c, d))), round_up(bound_max(bound_max(a, b), bound_max(c, d))), nan};
 }
 
 static inline bool interval_has_zero(Interval a) { return a.low <= 0 && a.high >= 0; }
@@ -88,26 +92,26 @@ static inline Interval interval_DIV(Interval a, Interval b) {
 static inline Interval interval_ABS(Interval a) {
     if (interval_is_never(a) || a.low >= 0) return a;
     if (a.high <= 0) return interval_NEG(a);
-    return (Interval){0, fmax(-a.low, a.high), a.nan};
+    return (Interval){0, bound_max(-a.low, a.high), a.nan};
 }
 
 static inline Interval interval_SQR(Interval a) {
     Interval m = interval_ABS(a);
     if (interval_is_never(m)) return m;
-    return (Interval){m.low == 0 ? 0 : fmax(0, round_down(m.low * m.low)), round_up(m.high * m.high), m.nan};
+    return (Interval){m.low == 0 ? 0 : bound_max(0, round_down(m.low * m.low)), round_up(m.high * m.high), m.nan};
 }
 
 /* a < b ? a : b is b where either is no number. */
 static inline Interval interval_MIN(Interval a, Interval b) {
     if (interval_is_never(b)) return b;
     if (interval_is_never(a)) return b;
-    return (Interval){fmin(a.low, b.low), a.nan ? b.high : fmin(a.high, b.high), b.nan};
+    return (Interval){bound_min(a.low, b.low), a.nan ? b.high : bound_min(a.high, b.high), b.nan};
 }
 
 static inline Interval interval_MAX(Interval a, Interval b) {
     if (interval_is_never(b)) return b;
     if (interval_is_never(a)) return b;
-    return (Interval){a.nan ? b.low : fmax(a.low, b.low), fmax(a.high, b.high), b.nan};
+    return (Interval){a.nan ? b.low : bound_max(a.low, b.low), bound_max(a.high, b.high), b.nan};
 }
 
 /* ---- truths: 1 or 0; comparisons with what is no number are false, but for != ---- */

@@ -71,11 +71,9 @@ double noise_perlin_gradient(Vec3 p, double gradient[3]) {
 }
 
 /* At a place of a cell each corner gives at most the sum of the two largest distances from it along the axes, times its weight.
- * The largest sum of the eight is 1.0363539 (test_tape_interval.c). */
-static const double MOST_PERLIN = 1.03636;
-
+ * The largest sum of the eight is 1.0363539 (test_tape_interval.c): NOISE_PERLIN_MOST. */
 Interval interval_PERLIN(Interval a, Interval b, Interval c) {
-    return lattice_over_box(find_corners, fade, MOST_PERLIN, (Interval[3]){a, b, c});
+    return lattice_over_box(find_corners, fade, NOISE_PERLIN_MOST, (Interval[3]){a, b, c});
 }
 
 void row_PERLIN(double *restrict out, const double *restrict a, const double *restrict b,

@@ -11,7 +11,7 @@ static const double SLACK = 0x1p-46;
 static Interval mix(Interval t, Interval a, Interval b) {
     double near_low = a.low + t.low * (b.low - a.low), far_low = a.low + t.high * (b.low - a.low);
     double near_high = a.high + t.low * (b.high - a.high), far_high = a.high + t.high * (b.high - a.high);
-    return interval(fmin(near_low, far_low), fmax(near_high, far_high));
+    return interval(bound_min(near_low, far_low), bound_max(near_high, far_high));
 }
 
 static Interval scaled(double k, Interval x) { return k >= 0 ? interval(k * x.low, k * x.high) : interval(k * x.high, k * x.low); }
@@ -53,8 +53,8 @@ Interval lattice_over_box(LatticeFind *find, LatticeCurve *curve, double most, c
             for (double k = 0; k < count[2]; k++) {
                 int32_t cell[3] = {(int32_t)(first[0] + i), (int32_t)(first[1] + j), (int32_t)(first[2] + k)};
                 Interval place[3];
-                for (int a = 0; a < 3; a++) place[a] = interval(fmax(0, box[a].low - cell[a]), fmin(1, box[a].high - cell[a]));
+                for (int a = 0; a < 3; a++) place[a] = interval(bound_max(0, box[a].low - cell[a]), bound_min(1, box[a].high - cell[a]));
                 out = interval_hull(out, in_cell(find, curve, cell, place));
             }
-    return (Interval){fmax(whole.low, out.low - SLACK), fmin(whole.high, out.high + SLACK), whole.nan};
+    return (Interval){bound_max(whole.low, out.low - SLACK), bound_min(whole.high, out.high + SLACK), whole.nan};
 }

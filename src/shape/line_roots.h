@@ -1,0 +1,30 @@
+/* Where a function of the place changes its sign along a line: every place, found with bounds instead of samples.
+ *
+ * A piece of the line is given up when bounds prove that the function has no zero on it; else it is cut to where its linear
+ * bounds allow one, and halved when that does not help (Gamito & Maddock 2007, figure 1 and equation 16; what is cut is
+ * evaluated again before it counts: otherwise 3 % of their hits are false or early). */
+#ifndef VTS_SHAPE_LINE_ROOTS_H
+#define VTS_SHAPE_LINE_ROOTS_H
+
+#include "scene/scene.h"
+
+/* How bounds are had: by intervals; by affine forms without and with the cut of equation 16. */
+typedef enum LineMethod { LINE_INTERVAL, LINE_AFFINE, LINE_AFFINE_OPTIMISED } LineMethod;
+
+typedef struct Line {
+    const Tape *tape;      /* of three inputs, the place, and one output */
+    double level;          /* zeros of the function less this are sought */
+    Vec3 origin, direction;
+    LineMethod method;
+} Line;
+
+typedef struct LineWork {
+    uint64_t bounds, values; /* evaluations of either kind; added to */
+} LineWork;
+
+/* The first place in (from, to) where the function passes from above `level` to not above it, or back; false: there is none. What
+ * is no number counts as above. Places closer than what doubles tell apart there are one; where function and level only touch
+ * there is none. *falling: it is not above behind the place. `work` may be NULL. */
+bool line_first_root(const Line *line, double from, double to, double *t, bool *falling, LineWork *work);
+
+#endif

@@ -198,6 +198,16 @@ ImageSpec output_spec(const OiioPicture &picture) {
     return spec;
 }
 
+/* OpenImageIO 2.4 says that it has read tiles of 64-bit floats of a TIFF, and leaves the memory as it was. */
+bool tiles_arrive(ImageInput &input, const ImageSpec &spec) {
+    if (spec.tile_width <= 0 || spec.format.basetype != TypeDesc::DOUBLE) return true;
+    std::vector<unsigned char> tile(spec.tile_bytes(true), 0xA5);
+    if (!input.read_native_tile(0, 0, spec.x, spec.y, 0, tile.data())) return true; /* to be told when it is read */
+    for (unsigned char byte : tile)
+        if (byte != 0xA5) return true;
+    return false;
+}
+
 bool shim_open(const char *path, OiioReader **out, OiioHeader *header, char error[OIIO_ERROR_SIZE]) try {
     stay_single_threaded();
     ImageSpec wish;
@@ -208,6 +218,7 @@ bool shim_open(const char *path, OiioReader **out, OiioHeader *header, char erro
     const ImageSpec &spec = reader->input->spec();
     if (spec.deep) return fail(error, "deep pictures are not supported");
     if (spec.depth > 1) return fail(error, "it is a volume, not a picture");
+    if (!tiles_arrive(*reader->input, spec)) return fail(error, "this OpenImageIO does not read tiles of 64-bit floats: convert it to 32 bits, or to strips");
     for (const std::string &name : spec.channelnames) reader->names.push_back(keep(*reader, name));
     collect_attributes(*reader, spec);
     std::string space = spec.get_string_attribute("oiio:ColorSpace");

@@ -54,7 +54,7 @@ static bool is_dense(const MapLayer *layer, const MapTile *more) {
     double sum = (double)more->columns * more->rows;
     for (size_t i = 0; i < layer->tiles.count; i++) sum += (double)layer->tiles.items[i].columns * layer->tiles.items[i].rows;
     box_with(layer, more, box);
-    return (double)(box[2] - box[0]) * (double)(box[3] - box[1]) <= 64 * sum + 1e6 && box[2] - box[0] < 1 << 28 && box[3] - box[1] < 1 << 28;
+    return (double)(box[2] - box[0]) * (double)(box[3] - box[1]) <= 16 * sum + 1e6 && box[2] - box[0] < 1 << 28 && box[3] - box[1] < 1 << 28;
 }
 
 bool map_layer_add(MapLayer *layer, const char *path, const Georeference *place, int columns, int rows, Arena *arena) {

@@ -74,7 +74,7 @@ bool map_survey(const char *path, MapSurvey *survey, Arena *arena, StrBuf *error
     survey->place = file.place;
     survey->remark = text_in(arena, &file.misplaced);
     survey->is_picture = !file.place.placed && (strcmp(file.format, "picture") == 0 || strcmp(file.format, "TIFF") == 0);
-    bool good = measure_heights(survey, &file, error);
+    bool good = survey->is_picture || measure_heights(survey, &file, error);
     map_file_close(&file);
     if (good && survey->place.placed) measure_place(survey, path, arena);
     return good;

@@ -8,7 +8,7 @@
 typedef struct MapSurvey {
     const char *format, *samples;
     const char *remark; /* why it has no place, what was taken for granted, or NULL */
-    bool is_picture;    /* neither format nor place make it a map */
+    bool is_picture;    /* neither format nor place make it a map: its samples are not looked at */
     int columns, rows;
     Georeference place;
     const char *system;     /* NULL without a place */

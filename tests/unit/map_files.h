@@ -80,7 +80,7 @@ static inline const char *made_grid(Made *m, const char *name, const char *heade
 
 typedef enum MadeSample { MADE_U16, MADE_I16, MADE_F32, MADE_F64 } MadeSample;
 
-/* A GeoTIFF, little-endian, one strip. */
+/* A GeoTIFF, little-endian; one strip, or square tiles. */
 typedef struct MadeTiff {
     MadeSample sample;
     int columns, rows;
@@ -90,6 +90,7 @@ typedef struct MadeTiff {
     int key_count;
     const char *nodata, *metadata; /* or NULL */
     int height_told;               /* 0: rows */
+    int tile;                      /* side of its tiles, 0: none */
 } MadeTiff;
 
 typedef struct MadeTag {
@@ -114,16 +115,24 @@ static inline const char *made_tiff(Made *m, const char *name, const MadeTiff *t
     uint16_t keys[17][4] = {{1, 1, 0, (uint16_t)t->key_count}}, one = 1, black = 1;
     memcpy(keys[1], t->keys, sizeof t->keys);
     uint32_t columns = (uint32_t)t->columns, rows = (uint32_t)(t->height_told ? t->height_told : t->rows), at = 8;
-    uint32_t bytes = columns * (uint32_t)t->rows * bits[t->sample] / 8;
+    uint32_t across = t->tile ? (columns + (uint32_t)t->tile - 1) / (uint32_t)t->tile : 1, down = t->tile ? (uint32_t)((t->rows + t->tile - 1) / t->tile) : 1;
+    uint32_t tile_columns = t->tile ? (uint32_t)t->tile : columns, tile_rows = (uint32_t)(t->tile ? t->tile : t->rows);
+    uint32_t bytes = tile_columns * tile_rows * bits[t->sample] / 8, parts = across * down, begins[64], sizes[64];
+    assert_true(parts <= 64);
+    for (uint32_t i = 0; i < parts; i++) begins[i] = 8 + i * bytes, sizes[i] = bytes;
     MadeTag tags[] = {{256, LONG, 1, &columns, 4},
                       {257, LONG, 1, &rows, 4},
                       {258, SHORT, 1, &bits[t->sample], 2},
                       {259, SHORT, 1, &one, 2},
                       {262, SHORT, 1, &black, 2},
-                      {273, LONG, 1, &at, 4},
+                      {273, LONG, t->tile ? 0 : 1, &at, 4},
                       {277, SHORT, 1, &one, 2},
-                      {278, LONG, 1, &rows, 4},
-                      {279, LONG, 1, &bytes, 4},
+                      {278, LONG, t->tile ? 0 : 1, &rows, 4},
+                      {279, LONG, t->tile ? 0 : 1, &bytes, 4},
+                      {322, LONG, t->tile ? 1 : 0, &tile_columns, 4},
+                      {323, LONG, t->tile ? 1 : 0, &tile_rows, 4},
+                      {324, LONG, t->tile ? parts : 0, begins, 4 * (size_t)parts},
+                      {325, LONG, t->tile ? parts : 0, sizes, 4 * (size_t)parts},
                       {339, SHORT, 1, &formats[t->sample], 2},
                       {33550, DOUBLE, t->scale ? 3 : 0, t->scale, 24},
                       {33922, DOUBLE, t->tie ? 6 : 0, t->tie, 48},
@@ -133,16 +142,17 @@ static inline const char *made_tiff(Made *m, const char *name, const MadeTiff *t
                       {42113, ASCII, t->nodata ? (uint32_t)strlen(t->nodata) + 1 : 0, t->nodata, t->nodata ? strlen(t->nodata) + 1 : 0}};
     uint16_t tag_count = 0;
     for (size_t i = 0; i < VTS_ARRAY_COUNT(tags); i++) tag_count = (uint16_t)(tag_count + (tags[i].count > 0));
-    uint32_t directory = 8 + (bytes + 1) / 2 * 2, behind = directory + 2 + 12u * tag_count + 4, none = 0;
+    uint32_t directory = 8 + (parts * bytes + 1) / 2 * 2, behind = directory + 2 + 12u * tag_count + 4, none = 0;
     strbuf_add(&file, "II*\0", 4);
     strbuf_add(&file, (const char *)&directory, 4);
-    for (int r = 0; r < t->rows; r++)
-        for (int c = 0; c < t->columns; c++) {
-            unsigned char sample[8];
-            size_t size = made_sample(t, t->height(c, r), sample);
-            strbuf_add(&file, (const char *)sample, size);
-        }
-    if (bytes % 2) strbuf_add(&file, "\0", 1);
+    for (uint32_t i = 0; i < parts * tile_columns * tile_rows; i++) {
+        uint32_t part = i / (tile_columns * tile_rows), within = i % (tile_columns * tile_rows);
+        int c = (int)(part % across * tile_columns + within % tile_columns), r = (int)(part / across * tile_rows + within / tile_columns);
+        unsigned char sample[8];
+        size_t size = made_sample(t, c < t->columns && r < t->rows ? t->height(c, r) : 0, sample);
+        strbuf_add(&file, (const char *)sample, size);
+    }
+    if (parts * bytes % 2) strbuf_add(&file, "\0", 1);
     strbuf_add(&file, (const char *)&tag_count, 2);
     for (size_t i = 0; i < VTS_ARRAY_COUNT(tags); i++) {
         if (!tags[i].count) continue;

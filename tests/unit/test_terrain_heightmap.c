@@ -116,6 +116,31 @@ static void samples_of_tiffs_are_read_as_they_are_stored(void **state) {
     made_end(&m);
 }
 
+/* Rows are asked for one after the other, whatever the file keeps together. */
+static void tiles_within_a_file_are_rows(void **state) {
+    (void)state;
+    static const double scale[] = {0.1, 0.1, 0}, tie[] = {0, 0, 0, 10, 50, 0};
+    static const MadeSample samples[] = {MADE_I16, MADE_F32, MADE_F64}; /* the last is not read by every OpenImageIO: then it is refused */
+    Made m;
+    made_begin(&m);
+    for (size_t k = 0; k < VTS_ARRAY_COUNT(samples); k++) {
+        char name[16];
+        snprintf(name, sizeof name, "%zu.tif", k);
+        MadeTiff t = {.sample = samples[k], .columns = 70, .rows = 45, .height = bumps, .scale = scale, .tie = tie, .tile = 16,
+                      .keys = {{MODEL, 0, 1, 2}, {RASTER, 0, 1, 2}, {GEOGRAPHIC, 0, 1, 4326}}, .key_count = 3};
+        const char *path = made_tiff(&m, name, &t);
+        const Heightmap *map = made_open(&m, NULL, &path, 1);
+        if (!map) {
+            assert_true(samples[k] == MADE_F64);
+            assert_non_null(strstr(m.diags.last->message, "64-bit floats"));
+            continue;
+        }
+        for (int r = 0; r < 45; r++)
+            for (int c = 0; c < 70; c++) assert_true(heightmap_post(map, c, r) == (k == 0 ? (float)(int)bumps(c, r) : (float)bumps(c, r)));
+    }
+    made_end(&m);
+}
+
 static double high(int column, int row) { return 40000 + column + row; }
 
 static void large_unsigned_samples_are_no_negative_ones(void **state) {
@@ -273,6 +298,7 @@ int main(void) {
         cmocka_unit_test(corners_and_middles_of_cells_are_told_apart),
         cmocka_unit_test(one_post_and_one_row_are_plates),
         cmocka_unit_test(samples_of_tiffs_are_read_as_they_are_stored),
+        cmocka_unit_test(tiles_within_a_file_are_rows),
         cmocka_unit_test(large_unsigned_samples_are_no_negative_ones),
         cmocka_unit_test(scale_offset_feet_and_voids),
         cmocka_unit_test(what_is_no_height_is_void),

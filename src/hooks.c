@@ -5,6 +5,7 @@
 #include "shape/extent.h"
 #include "shape/mesh_file.h"
 #include "terrain/sun.h"
+#include "terrain/ground.h"
 #include "volume/grid_file.h"
 
 #include <string.h>
@@ -150,6 +151,51 @@ static bool geo(void *context, const GeoOrigin *origin, const EvalGeoRequest *re
     if (geo_frame_init(&frame, place_of(origin->place), origin->flat) && geo_answer(&frame, request, answer, error)) return true;
     if (error->size == 0) strbuf_adds(error, "this is no place on the globe");
     return false;
+/* ---- terrains ---- */
+
+static bool map_place(const EvalTerrainPlace *in, HeightmapPlace *out) {
+    *out = (HeightmapPlace){.west_south = {in->west_south[0], in->west_south[1]}, .east_north = {in->east_north[0], in->east_north[1]}, .area = in->area};
+    if (in->utm) return projection_utm(&out->projection, in->zone, in->north);
+    projection_lonlat(&out->projection);
+    return true;
+}
+
+/* The middle of the map, where its posts have places. */
+static bool middle_of(const Heightmap *map, Vec3 *out) {
+    const HeightmapExtent *extent = heightmap_extent(map);
+    GeoPlace place;
+    if (!heightmap_to_geo(map, 0.5 * (extent->columns - 1), 0.5 * (extent->rows - 1), &place)) return false;
+    *out = vec3(place.latitude, place.longitude, 0);
+    return true;
+}
+
+static const Ground *make_ground(const Heightmap *map, EvalTerrainRequest *request, Arena *arena) {
+    GeoOrigin *origin = &request->origin;
+    GeoFrame frame;
+    if (!origin->set && !middle_of(map, &origin->place)) return NULL;
+    origin->set = true;
+    const GeoPlace at = {origin->place.x, origin->place.y, origin->place.z};
+    return geo_frame_init(&frame, at, origin->flat) ? ground_create(map, &frame, request->exaggeration, arena) : NULL;
+}
+
+static bool terrain(void *context, Arena *arena, EvalTerrainRequest *request, DiagList *diags, Span span, Terrain *out) {
+    (void)context;
+    HeightmapPlace place;
+    HeightmapOptions options = {.voids = request->holes ? HEIGHTMAP_HOLES : HEIGHTMAP_FILL, .has_nodata = request->has_nodata,
+                                .nodata = request->nodata, .geoid = request->geoid};
+    if (request->place) {
+        if (!map_place(request->place, &place)) {
+            diag_error(diags, span, "there is no zone %d of UTM", request->place->zone);
+            return false;
+        }
+        options.place = &place;
+    }
+    const Heightmap *map = heightmap_open(request->paths, request->count, &options, arena, diags, span);
+    const Ground *ground = map ? make_ground(map, request, arena) : NULL;
+    if (map && !ground) diag_error(diags, span, "the map has no place in the scene's frame");
+    if (!ground) return false;
+    *out = (Terrain){.hash = ground_hash(ground), .origin = request->origin.place, .bounds = ground->bounds, .ground = ground, .ops = &ground_ops};
+    return true;
 }
 
 EvalGeometry hooks_geometry(Arena *arena, TexelCache *texels) {
@@ -167,5 +213,6 @@ EvalGeometry hooks_geometry(Arena *arena, TexelCache *texels) {
         .picture_file = picture_file,
         .density_grid = density_grid,
         .geo = geo,
+        .terrain = terrain,
     };
 }

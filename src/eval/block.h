@@ -89,6 +89,7 @@ typedef struct BuildContext {
     double assumed_gamma; /* of global_settings, or GAMMA_SRGB; 0: not given */
     bool old_gamma;      /* #version is below 3.7: colours are what screens are sent unless assumed_gamma is given */
     GeoOrigin geo_origin; /* of global_settings, or of the first terrain */
+    bool has_terrain;     /* a terrain was made: it decided whether the scene's earth is round */
     int wave_count;      /* number_of_waves of global_settings; 0: not given */
     bool names_missing;  /* an include was not found: what it declares is missing, without a word */
     void *eval;          /* for the evaluator itself */

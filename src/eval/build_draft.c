@@ -40,6 +40,7 @@ struct SceneDraft {
     } rainbows;
     Color background;
     GlobalSettings settings;
+    bool has_terrain;
 };
 
 SceneDraft *scene_draft_create(BuildContext *context, const char *scene_name) {
@@ -147,6 +148,7 @@ static void walk_texel(SceneDraft *draft, BuildContext *context, const TexelDef 
 static void walk_surface(SceneDraft *draft, BuildContext *context, const Surface *surface) {
     if (!visit(draft, context, surface)) return;
     warn_inert(draft, context, surface->inert);
+    draft->has_terrain |= surface->kind == SURFACE_TERRAIN;
     walk_texture(draft, context, surface->texture);
     if (surface->object) walk_object(draft, context, surface->object);
 }
@@ -189,7 +191,7 @@ static void add_light(void *target, BuildContext *context, const Light *light) {
 }
 
 static bool surface_is_modelled(const Surface *surface) {
-    return surface->kind == SURFACE_PATCHES || surface->object->kind != OBJECT_UNMODELLED;
+    return surface->kind != SURFACE_OBJECT || surface->object->kind != OBJECT_UNMODELLED;
 }
 
 static bool texel_is_modelled(const TexelDef *texel) { return texel->layer_count || texel->choice_count; }
@@ -368,6 +370,7 @@ const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context, double
                      .rainbow_count = draft->rainbows.count,
                      .default_texture = draft->first_default,
                      .settings = draft->settings,
+                     .has_terrain = draft->has_terrain,
                      .clock = clock,
                      .time = clock};
     scene->settings.assumed_gamma = build_assumed_gamma(context);

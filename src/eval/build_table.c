@@ -49,7 +49,7 @@ static const struct BlockWord {
     {"text", build_text},
     {"lsystem", build_lsystem},
     {"volume", build_unmodelled},
-    {"terrain", build_unmodelled},
+    {"terrain", build_terrain},
     {"cloth", build_unmodelled},
     /* looks */
     {"texture", build_texture},

@@ -35,6 +35,26 @@ typedef struct EvalDensityRequest {
     uint32_t seed;
 } EvalDensityRequest;
 
+/* Where a map lies, by the scene's word: the corners of the outer edges of its pixels (area), or its outer posts. */
+typedef struct EvalTerrainPlace {
+    bool utm; /* else longitude and latitude */
+    int zone; /* 1 to 60; 0: polar */
+    bool north;
+    double west_south[2], east_north[2];
+    bool area;
+} EvalTerrainPlace;
+
+typedef struct EvalTerrainRequest {
+    const char **paths;
+    size_t count;
+    const EvalTerrainPlace *place; /* NULL: as the files say */
+    GeoOrigin origin;              /* of the scene's frame; not set: the middle of the map, height 0 */
+    double exaggeration;
+    const char *geoid;             /* or NULL */
+    bool holes, has_nodata, every_post;
+    double nodata;
+} EvalTerrainRequest;
+
 typedef struct EvalMeshPart {
     const MeshData *mesh;
     bool colored; /* the file gives it `color` */
@@ -77,6 +97,8 @@ typedef struct EvalGeometry {
     bool (*density_grid)(void *context, Arena *arena, const char *path, const EvalDensityRequest *request, DensityGrid *out, StrBuf *error);
     /* Loads the picture at image->path into `arena`, as image->gamma says, and adds its content to image->hash. False with a line of text in `error`. */
     bool (*picture_file)(void *context, Arena *arena, ImageMap *image, StrBuf *error);
+    /* The ground of maps, in `arena`; sets request->origin. False after a report at `span`. */
+    bool (*terrain)(void *context, Arena *arena, EvalTerrainRequest *request, DiagList *diags, Span span, Terrain *out);
     /* A pattern as a function of place: 3 inputs, 1 output; otherwise the same. */
     bool (*pattern_function)(void *context, Arena *arena, const Pigment *pattern, TapeExternal *out);
     /* Geography, with the scene's origin on the globe. False with a line of text in `error`. */

@@ -31,6 +31,8 @@ Value eval_geo_inverse(Eval *ev, const Node *call);
 Value eval_geodesic(Eval *ev, const Node *call);
 Value eval_utm(Eval *ev, const Node *call);
 Value eval_sun_direction(Eval *ev, const Node *call);
+/* terrain_height() (eval_terrain.c). */
+Value eval_terrain_height(Eval *ev, const Node *call);
 
 /* A function that is nothing but one external. */
 Value external_function(Eval *ev, const Node *node, const TapeExternal *external);

@@ -141,6 +141,7 @@ static const KnownFunction known_functions[] = {
     {"geodesic", 2, false, NULL, eval_geodesic},
     {"utm", 1, false, NULL, eval_utm},
     {"sun_direction", 2, false, NULL, eval_sun_direction},
+    {"terrain_height", 2, false, NULL, eval_terrain_height},
 };
 
 const KnownFunction *known_function_find(Name name) {

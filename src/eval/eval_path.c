@@ -191,3 +191,12 @@ bool picture_file_load(const BuildContext *context, ImageMap *image, Span span) 
     refuse_file(context, "picture", image->path, span, &error);
     return false;
 }
+
+bool terrain_load(const BuildContext *context, EvalTerrainRequest *request, const Span *spans, Span span, Terrain *out) {
+    const EvalGeometry *geometry = geometry_of(context);
+    for (size_t i = 0; i < request->count; i++)
+        if (!(request->paths[i] = data_file_find(context, "heightmap", request->paths[i], spans[i]))) return false;
+    if (geometry && geometry->terrain) return geometry->terrain(geometry->context, context->arena, request, context->diags, span, out);
+    diag_error(context->diags, span, "maps are not read here");
+    return false;
+}

@@ -3,6 +3,7 @@
 #include "base/stopwatch.h"
 #include "render/beam_rigid.h"
 #include "render/exact_skin.h"
+#include "render/terrain_view.h"
 
 #include <string.h>
 
@@ -91,6 +92,8 @@ static void choose_detail(double max_error, OpacityModel opacity, RayPath path, 
     out->split = (int)double_clamp(round(4 * pow(e, -0.35)), 2, 12);
 }
 
+enum { MOST_TERRAIN_VERTICES = 64000000 };
+
 static bool interrupted(const CompileOptions *options) { return options->interrupted && *options->interrupted; }
 
 /* Exact geometry where it may be seen, and voxels where the rest is; none of either that nothing needs. */
@@ -162,6 +165,9 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     choose_detail(scene->settings.max_error > 0 ? scene->settings.max_error : DEFAULT_MAX_ERROR, opacity,
                   path_of(scene->settings.ray_path), out);
     out->march.slab = out->shadow_march.slab = detail_of(scene->settings.detail) == DETAIL_SLAB;
+    const TerrainViewOptions terrains = {options->pool, out->max_error, options->exact, MOST_TERRAIN_VERTICES, skin_longest_cell};
+    out->scene = scene = terrains_as_seen(scene, &out->view, &terrains, arena, diags);
+    if (!scene) return COMPILE_FAILED;
     out->hierarchy = hierarchy_build(scene, arena, diags);
     if (!out->hierarchy) return COMPILE_FAILED;
     out->clear_shadows = hierarchy_is_clear(out->hierarchy);

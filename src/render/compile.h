@@ -68,6 +68,8 @@ void compiled_scene_print(const CompiledScene *compiled, StrBuf *out);
 
 /* Cells, and what lies on them; of the texels only their looks. skin_build.c */
 bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, CompiledSkin *out);
+/* The longest cells that show all that changes along the skin: 0 where no length is told, HUGE_VAL where nothing changes. */
+double skin_longest_cell(const Skin *skin);
 /* Asks the skin's texels for the resolution that the view can see where voxels are drawn. */
 void skin_ask_voxels(CompiledSkin *skin, const CompileOptions *options, const CompiledScene *compiled);
 /* When the texels are built: what only they tell, and the hierarchy over the cells. False when Embree is out of memory. */

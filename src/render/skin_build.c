@@ -243,8 +243,13 @@ static void mean_lengths(const SurfaceMesh *mesh, double *along_u, double *along
     *along_v = weight > 0 ? sum_v / weight : 1;
 }
 
-static void repeats(const SkinMapping *mapping, const SurfaceMesh *mesh, double *u, double *v) {
+static void repeats(const SkinMapping *mapping, const Surface *surface, const SurfaceMesh *mesh, double *u, double *v) {
     *u = mapping->repeat_u, *v = mapping->repeat_v;
+    if (surface->length_u > 0 && surface->length_v > 0) { /* u and v are lengths */
+        *u = mapping->by_tile_size ? 1 / mapping->tile_size : *u / surface->length_u;
+        *v = mapping->by_tile_size ? 1 / mapping->tile_size : *v / surface->length_v;
+        return;
+    }
     if (!mapping->by_tile_size) return;
     double along_u, along_v;
     mean_lengths(mesh, &along_u, &along_v);
@@ -293,7 +298,7 @@ static void make_cells(const Skin *skin, const SurfaceMesh *mesh, double time, A
     SkinVertex *vertex = arena_new_array(arena, SkinVertex, mesh->vertex_count);
     for (size_t i = 0; i < mesh->vertex_count; i++) vertex[i] = make_vertex(skin, mesh, i, out->top, time);
     double repeat_u, repeat_v;
-    repeats(&skin->mapping, mesh, &repeat_u, &repeat_v);
+    repeats(&skin->mapping, skin->surface, mesh, &repeat_u, &repeat_v);
     out->cells = arena_new_array(arena, SkinCell, mesh->cell_count);
     out->cell_count = mesh->cell_count;
     out->bounds = box3_empty();
@@ -404,6 +409,13 @@ static double longest_cell(const Skin *skin) {
     for (size_t i = 0; i < VTS_ARRAY_COUNT(noise); i++)
         if (noise[i]->amplitude != 0) shortest = fmin(shortest, noise[i]->scale);
     return isfinite(shortest) ? shortest / 4 : 0;
+}
+
+double skin_longest_cell(const Skin *skin) {
+    const SkinMapping *m = &skin->mapping;
+    if (m->height_function || m->height_pigment || m->comb_function || m->w_function) return 0;
+    double wave = longest_cell(skin);
+    return wave > 0 ? wave : HUGE_VAL;
 }
 
 bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, CompiledSkin *out) {

@@ -449,7 +449,31 @@ struct TexelDef {
     const InertNote *inert;       /* phases: no layers then either */
 };
 
-typedef enum SurfaceKind { SURFACE_PATCHES, SURFACE_OBJECT } SurfaceKind;
+/* A landscape from maps of heights. Its points stand in the scene's frame, or in that of the object that it is. */
+typedef struct Terrain {
+    Span span;
+    Hash128 hash;
+    const char *file;       /* of its first map */
+    bool every_post;        /* drawn with all of its posts, not as many as the view needs */
+    Vec3 origin;            /* latitude, longitude and height of the frame's origin */
+    Box3 bounds;
+    const struct Ground *ground; /* terrain/ground.h */
+    const struct TerrainOps *ops;
+} Terrain;
+
+/* What others ask of a ground; thread-safe. */
+typedef struct TerrainOps {
+    /* The y of the ground over or under p; false outside of the map and in a hole. */
+    bool (*height)(const struct Ground *ground, Vec3 p, double *y);
+    /* The first crossing of the ray with t_min < t < t_max, from above or below; t in lengths of its direction. */
+    bool (*meet)(const struct Ground *ground, const Ray *ray, double t_min, double t_max, double *t);
+    /* The unit normal, upwards, of the ground at a point of it. */
+    Vec3 (*normal)(const struct Ground *ground, Vec3 p);
+    /* All of the ground as triangles, nowhere further than `tolerance` from it. False where these would be more than `most`. */
+    bool (*mesh)(const struct Ground *ground, double tolerance, size_t most_vertices, Arena *arena, MeshData *out);
+} TerrainOps;
+
+typedef enum SurfaceKind { SURFACE_PATCHES, SURFACE_OBJECT, SURFACE_TERRAIN } SurfaceKind;
 typedef enum SurfaceUv { SURFACE_UV_MESH, SURFACE_UV_PLANAR, SURFACE_UV_CYLINDRICAL, SURFACE_UV_SPHERICAL } SurfaceUv;
 
 struct Surface {
@@ -467,6 +491,9 @@ struct Surface {
     int subdivide;                 /* 0 = auto */
     const Tape *deform;            /* (x, y, z) → 3 outputs; NULL: none */
     const Vec3 *object_height_vectors; /* one for each vertex of an OBJECT_TRIANGLES mesh; NULL */
+    const Terrain *terrain;        /* SURFACE_TERRAIN */
+    /* > 0: (u, v) are lengths, the surface reaches so far along them; else they go from 0 to 1 */
+    double length_u, length_v;
     const Texture *texture;        /* NULL: default */
     const InertNote *inert;
     Transform transform;           /* surface space → scene; an object { SURFACE transform } folds into the object's own */
@@ -671,6 +698,7 @@ typedef struct Scene {
     GlobalSettings settings;
     double clock;
     double time;                      /* seconds: what winds run by */
+    bool has_terrain;                 /* some object or skin is one, or may hold one */
     const NamedTexel *named_texels; /* by name */
     size_t named_texel_count;
 } Scene;

@@ -100,6 +100,7 @@ static Box3 intersection_bounds(const Object *o, const Transform *t) {
 static Box3 surface_bounds(const Surface *s, const Transform *t) {
     Transform all = transform_then(&s->transform, t);
     if (s->kind == SURFACE_OBJECT) return bounds_under(s->object, &all);
+    if (s->kind == SURFACE_TERRAIN) return box3_transform(&all, s->terrain->bounds);
     Box3 box = box3_empty();
     size_t count = ((size_t)s->nu + 1) * ((size_t)s->nv + 1);
     for (size_t i = 0; i < count; i++) box = box3_add_point(box, transform_point(&all, s->points[i]));

@@ -361,6 +361,10 @@ void surface_rehash(Surface *s) {
         hash_add_u64(&h, (uint64_t)s->nu << 32 | (uint64_t)s->nv);
         add_vectors(&h, s->points, count);
         add_vectors(&h, s->height_vectors, count);
+    } else if (s->kind == SURFACE_TERRAIN) {
+        hash_add_hash(&h, s->terrain->hash);
+        hash_add_u64(&h, (uint64_t)s->subdivide);
+        add_tape(&h, s->deform);
     } else {
         hash_add_hash(&h, object_geometry_hash(s->object));
         hash_add_u64(&h, s->uv);

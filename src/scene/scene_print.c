@@ -363,6 +363,14 @@ static void print_surface(Printer *p, const Surface *s) {
         add_vector(p, "from", s->points[0]);
         add_vector(p, "to", s->points[((size_t)s->nu + 1) * ((size_t)s->nv + 1) - 1]);
         add_flag(p, "height_vectors", s->height_vectors != NULL);
+    } else if (s->kind == SURFACE_TERRAIN) {
+        const Terrain *terrain = s->terrain;
+        strbuf_addf(p->out, " terrain \"%s\"", terrain->file);
+        add_vector(p, "origin", terrain->origin);
+        add_vector(p, "from", terrain->bounds.min);
+        add_vector(p, "to", terrain->bounds.max);
+        add_flag(p, "full", terrain->every_post);
+        add_flag(p, "deform", s->deform != NULL);
     } else {
         strbuf_addf(p->out, " uv %s", uv_names[s->uv]);
         if (s->uv == SURFACE_UV_PLANAR || s->uv == SURFACE_UV_CYLINDRICAL) add_vector(p, "axis", s->uv_axis);

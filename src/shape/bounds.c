@@ -134,6 +134,8 @@ static Box3 surface_bounds(const Surface *surface) {
     if (surface->deform) return shape_bounds_infinite();
     if (surface->kind == SURFACE_OBJECT) {
         box = child_bounds(surface->object);
+    } else if (surface->kind == SURFACE_TERRAIN) {
+        box = surface->terrain->bounds;
     } else {
         size_t count = (size_t)(surface->nu + 1) * (size_t)(surface->nv + 1);
         for (size_t i = 0; i < count; i++) box = box3_add_point(box, surface->points[i]);

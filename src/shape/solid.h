@@ -55,6 +55,7 @@ const SolidOps *solid_ops(const Object *object);
 extern const SolidOps solid_sphere_ops, solid_box_ops, solid_torus_ops, solid_plain_ops; /* solid_plain.c: sphere box cylinder cone plane disc torus */
 extern const SolidOps solid_mesh_ops, solid_triangle_ops;      /* solid_mesh.c: triangles of all kinds */
 extern const SolidOps solid_surface_ops;                       /* solid_surface.c: what skins lie on */
+extern const SolidOps solid_terrain_ops;                       /* solid_terrain.c */
 extern const SolidOps solid_prism_ops, solid_polygon_ops;      /* solid_flat.c */
 extern const SolidOps solid_lathe_ops, solid_sor_ops;          /* solid_turned.c */
 extern const SolidOps solid_quadric_ops, solid_polynomial_ops; /* solid_algebraic.c */

@@ -21,6 +21,8 @@ static const SolidOps *const rare[] = {
     [SOLID_HEIGHT_FIELD] = &solid_height_ops,
 };
 
+static bool is_ground(const Surface *surface) { return surface->kind == SURFACE_TERRAIN && !surface->deform; }
+
 const SolidOps *solid_ops(const Object *object) {
     switch (object->kind) {
     case OBJECT_SPHERE: return &solid_sphere_ops;
@@ -34,7 +36,7 @@ const SolidOps *solid_ops(const Object *object) {
         return object->as.mesh->single && object->as.mesh->triangle_count == 1
                    ? &solid_triangle_ops
                    : &solid_mesh_ops;
-    case OBJECT_SURFACE: return &solid_surface_ops;
+    case OBJECT_SURFACE: return is_ground(object->as.surface) ? &solid_terrain_ops : &solid_surface_ops;
     case OBJECT_SOLID: return rare[object->as.solid->kind];
     case OBJECT_UNION:
     case OBJECT_INTERSECTION:

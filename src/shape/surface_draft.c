@@ -79,6 +79,21 @@ static double stretched_tolerance(const Surface *surface, double tolerance) {
     return stretch > 0 ? tolerance / stretch : HUGE_VAL;
 }
 
+/* For those who have no view. */
+static bool draft_terrain(const Surface *surface, double tolerance, int parts, Arena *arena, SurfaceDraft *out, ShapeRefusal *refusal) {
+    const Terrain *terrain = surface->terrain;
+    MeshData mesh;
+    *refusal = (ShapeRefusal){surface->span, "the terrain has too many triangles"};
+    if (!terrain->ops->mesh(terrain->ground, tolerance, MOST_CELLS, arena, &mesh)) return false;
+    const Object triangles = {.span = surface->span, .kind = OBJECT_TRIANGLES, .as.mesh = &mesh};
+    const TessellateOptions options = {.tolerance = tolerance};
+    TriangleSoup soup = {0};
+    if (!tessellate(&triangles, NULL, &options, arena, &soup, refusal)) return false;
+    soup_split(arena, &soup, (SoupMark){0, 0}, parts);
+    draft_soup(&soup, arena, out);
+    return true;
+}
+
 static bool draft_object(const Surface *surface, double tolerance, int parts, Arena *arena, SurfaceDraft *out,
                          ShapeRefusal *refusal) {
     TessellateOptions options = {.tolerance = tolerance, .parts = surface->subdivide};
@@ -182,6 +197,7 @@ static int parts_for_edges(const Surface *surface, const SurfaceDraft *draft, do
 static bool draft_parts(const Surface *surface, double tolerance, int parts, Arena *arena, SurfaceDraft *out,
                         ShapeRefusal *refusal) {
     if (surface->kind == SURFACE_OBJECT) return draft_object(surface, tolerance, parts, arena, out, refusal);
+    if (surface->kind == SURFACE_TERRAIN) return draft_terrain(surface, tolerance, parts, arena, out, refusal);
     draft_patches(surface, parts * int_max(surface->subdivide, 1), arena, out);
     return true;
 }

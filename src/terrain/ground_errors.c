@@ -1,5 +1,8 @@
 #include "terrain/ground_errors.h"
 
+#include <float.h>
+#include <limits.h>
+
 /* Errors are kept as logarithms in steps of an eighth of an octave above a millimetre, rounded up. */
 enum { CODE_HOLE = 255, CODE_MOST = 254 };
 static const double LEAST = 1e-3;
@@ -12,28 +15,44 @@ static uint8_t code_of(double error) {
 
 static double error_of(uint8_t code) { return code == 0 || code == CODE_HOLE ? 0 : LEAST * exp2((code - 1) / 8.0); }
 
-double ground_cell_error(const GroundSource *s, int column, int row) {
-    double twist = ground_source_post(s, column, row) + ground_source_post(s, column + 1, row + 1) - ground_source_post(s, column + 1, row) - ground_source_post(s, column, row + 1);
+/* The posts of a tile at hand, or all of them one by one. */
+typedef struct Window {
+    const GroundSource *source;
+    const float *posts; /* TILE_POSTS in a row; NULL: the source is asked */
+    int column, row;    /* of the first */
+} Window;
+
+enum { TILE_LEVEL = 7, TILE_SIDE = 1 << TILE_LEVEL, TILE_POSTS = TILE_SIDE + 1 };
+
+static inline double post(const Window *w, int column, int row) {
+    return w->posts ? (double)w->posts[(row - w->row) * TILE_POSTS + column - w->column] : ground_source_post(w->source, column, row);
+}
+
+static inline double cell_error(const Window *w, int column, int row) {
+    double twist = post(w, column, row) + post(w, column + 1, row + 1) - post(w, column + 1, row) - post(w, column, row + 1);
     return fabs(twist) / 4;
 }
+
+double ground_cell_error(const GroundSource *s, int column, int row) { return cell_error(&(Window){.source = s}, column, row); }
 
 typedef struct Square {
     int x, y, side; /* in posts */
     bool rising;    /* the diagonal of its triangles runs from (x, y) on */
 } Square;
 
-static double middle_error(const GroundSource *s, int x, int y, int x0, int y0, int x1, int y1) {
-    double miss = ground_source_post(s, x, y) - 0.5 * (ground_source_post(s, x0, y0) + ground_source_post(s, x1, y1));
-    return isfinite(miss) ? fabs(miss) : 0;
+static inline double miss(double middle, double a, double b) {
+    double off = fabs(middle - 0.5 * (a + b));
+    return off <= DBL_MAX ? off : 0;
 }
 
 /* What the first halvings of the triangles of a square move: of the diagonal, and then of the sides. */
-static double own_error(const GroundSource *s, const Square *q) {
+static double own_error(const Window *w, const Square *q) {
     int x0 = q->x, y0 = q->y, x1 = x0 + q->side, y1 = y0 + q->side, x = x0 + q->side / 2, y = y0 + q->side / 2;
-    double centre = q->rising ? middle_error(s, x, y, x0, y0, x1, y1) : middle_error(s, x, y, x1, y0, x0, y1);
-    double sides = fmax(fmax(middle_error(s, x, y0, x0, y0, x1, y0), middle_error(s, x, y1, x0, y1, x1, y1)),
-                        fmax(middle_error(s, x0, y, x0, y0, x0, y1), middle_error(s, x1, y, x1, y0, x1, y1)));
-    return centre + sides;
+    double corner[4] = {post(w, x0, y0), post(w, x1, y0), post(w, x1, y1), post(w, x0, y1)};
+    double centre = miss(post(w, x, y), corner[!q->rising], corner[2 + !q->rising]);
+    double north = miss(post(w, x, y0), corner[0], corner[1]), south = miss(post(w, x, y1), corner[3], corner[2]);
+    double west = miss(post(w, x0, y), corner[0], corner[3]), east = miss(post(w, x1, y), corner[1], corner[2]);
+    return centre + fmax(fmax(north, south), fmax(west, east));
 }
 
 /* What is known of the quarters of a square. */
@@ -42,9 +61,9 @@ typedef struct Quarters {
     bool some, gaps;
 } Quarters;
 
-static void add_cell(const GroundSource *s, int column, int row, Quarters *out) {
-    if (column >= s->columns - 1 || row >= s->rows - 1) return;
-    double error = ground_cell_error(s, column, row);
+static void add_cell(const Window *w, int column, int row, Quarters *out) {
+    if (column >= w->source->columns - 1 || row >= w->source->rows - 1) return;
+    double error = cell_error(w, column, row);
     if (isnan(error)) out->gaps = true;
     else out->some = true, out->error = fmax(out->error, error);
 }
@@ -56,33 +75,52 @@ static void add_square(const GroundErrors *e, int level, int column, int row, Qu
     else out->some = true, out->error = fmax(out->error, error_of(code));
 }
 
-static uint8_t square_code(const GroundSource *s, const GroundErrors *e, int level, int column, int row) {
+static uint8_t square_code(const Window *w, const GroundErrors *e, int level, int column, int row) {
     Quarters quarters = {0};
     for (int k = 0; k < 4; k++) {
         int c = 2 * column + (k & 1), r = 2 * row + (k >> 1);
-        if (level == 1) add_cell(s, c, r, &quarters);
+        if (level == 1) add_cell(w, c, r, &quarters);
         else add_square(e, level - 1, c, r, &quarters);
     }
     if (!quarters.some) return CODE_HOLE;
     const Square square = {column << level, row << level, 1 << level, (column + row) % 2 == 0};
-    double error = own_error(s, &square) + quarters.error;
-    if (quarters.gaps) error = fmax(error, s->spacing * square.side);
+    double error = own_error(w, &square) + quarters.error;
+    if (quarters.gaps) error = fmax(error, w->source->spacing * square.side);
     return code_of(error);
 }
 
-typedef struct LevelJob {
+typedef struct TileJob {
     const GroundSource *source;
     GroundErrors *errors;
-    int level;
-} LevelJob;
+    int across; /* tiles */
+} TileJob;
 
-static void code_row(void *context, size_t row, int worker) {
+static void code_squares(const Window *w, GroundErrors *e, int level, int column0, int row0, int column1, int row1) {
+    for (int r = row0; r < int_min(row1, e->rows[level]); r++)
+        for (int c = column0; c < int_min(column1, e->columns[level]); c++)
+            e->codes[level][(size_t)r * (size_t)e->columns[level] + (size_t)c] = square_code(w, e, level, c, r);
+}
+
+static void read_tile(const GroundSource *s, int column, int row, float *posts) {
+    if (s->block && column + TILE_POSTS <= s->columns && row + TILE_POSTS <= s->rows) {
+        s->block(s->map, column, row, TILE_POSTS, TILE_POSTS, posts);
+        return;
+    }
+    for (int r = 0; r < TILE_POSTS; r++)
+        for (int c = 0; c < TILE_POSTS; c++) posts[r * TILE_POSTS + c] = (float)ground_source_post(s, column + c, row + r);
+}
+
+static void code_tile(void *context, size_t index, int worker) {
     (void)worker;
-    const LevelJob *job = context;
-    GroundErrors *e = job->errors;
-    int columns = e->columns[job->level];
-    uint8_t *codes = e->codes[job->level] + row * (size_t)columns;
-    for (int c = 0; c < columns; c++) codes[c] = square_code(job->source, e, job->level, c, (int)row);
+    const TileJob *job = context;
+    int column = (int)index % job->across, row = (int)index / job->across;
+    float posts[TILE_POSTS * TILE_POSTS];
+    const Window window = {job->source, posts, column * TILE_SIDE, row * TILE_SIDE};
+    read_tile(job->source, window.column, window.row, posts);
+    for (int level = 1; level <= int_min(TILE_LEVEL, job->errors->levels); level++) {
+        int side = TILE_SIDE >> level;
+        code_squares(&window, job->errors, level, column * side, row * side, (column + 1) * side, (row + 1) * side);
+    }
 }
 
 static int squares_across(int posts, int level) {
@@ -97,9 +135,11 @@ void ground_errors_build(const GroundSource *source, Pool *pool, Arena *arena, G
         out->columns[level] = squares_across(source->columns, level);
         out->rows[level] = squares_across(source->rows, level);
         out->codes[level] = arena_new_array(arena, uint8_t, (size_t)out->columns[level] * (size_t)out->rows[level]);
-        LevelJob job = {source, out, level};
-        pool_run(pool, (size_t)out->rows[level], code_row, &job);
     }
+    const Window all = {.source = source};
+    TileJob job = {source, out, squares_across(source->columns, TILE_LEVEL)};
+    pool_run(pool, (size_t)job.across * (size_t)squares_across(source->rows, TILE_LEVEL), code_tile, &job);
+    for (int level = TILE_LEVEL + 1; level <= out->levels; level++) code_squares(&all, out, level, 0, 0, INT_MAX, INT_MAX);
 }
 
 static uint8_t code_at(const GroundErrors *e, int level, int column, int row) {

@@ -326,6 +326,6 @@ bool ground_mesh_build(const GroundSource *source, const GroundErrors *errors, c
     Output out = {.r = &r, .scratch = scratch};
     for (int i = 0; i < 2 && fits; i++) emit_leaves(&out, roots[i]);
     if (fits) keep_mesh(&out, arena, mesh);
-    arena_reset_to(scratch, mark);
+    if (scratch != arena) arena_reset_to(scratch, mark);
     return fits;
 }

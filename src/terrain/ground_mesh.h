@@ -18,7 +18,8 @@ typedef struct GroundDetail {
 } GroundDetail;
 
 /* Builds the mesh in `arena`; its texture coordinates are x and z. Normals are those of the ground, averaged over the triangles around.
- * False when there are more vertices than allowed; *out is then empty. `scratch` is reset to where it was. */
+ * False when there are more vertices than allowed; *out is then empty. `scratch` is reset to where it was, unless
+ * it is `arena`. */
 bool ground_mesh_build(const GroundSource *source, const GroundErrors *errors, const GroundDetail *detail, Arena *scratch, Arena *arena,
                        MeshData *out);
 

@@ -9,6 +9,8 @@ typedef struct GroundSource {
     int columns, rows; /* posts; at least 2 each */
     /* The height of a post, in metres; NaN: there is none. Thread-safe. */
     double (*height)(const void *map, int column, int row);
+    /* The same for columns x rows posts from (column, row) on, all within the map, one row after the other. May be NULL. */
+    void (*block)(const void *map, int column, int row, int columns, int rows, float *heights);
     /* Where the point of this height stands, in the frame of the scene; columns and rows may be fractions. Thread-safe. */
     Vec3 (*place)(const void *map, double column, double row, double height);
     const void *map;

@@ -1,0 +1,223 @@
+#include "render/terrain_view.h"
+
+#include "scene/scene_hash.h"
+#include "shape/tessellate.h"
+#include "terrain/ground.h"
+
+#include <string.h>
+
+/* How far the ground may be from where it is drawn, in pixels, for the default error; what is out of the picture shows by its shadows,
+ * in mirrors, and through its skin. */
+static const double PIXELS_OFF = 0.15, PIXELS_OFF_EXACT = 0.03, DEFAULT_MAX_ERROR = 1.0 / 255;
+static const double OUTSIDE = 8;
+/* Cells of skins: what changes along a skin changes over them. */
+static const double CELL_PIXELS = 8;
+
+/* One terrain at one place. */
+typedef struct Stand {
+    const Terrain *terrain;
+    Transform to_world;
+    double longest_side; /* of cells, scene units; HUGE_VAL: no skin on it */
+    const MeshData *mesh;
+} Stand;
+
+/* A group of objects that was looked through. */
+typedef struct SeenGroup {
+    const ObjectGroup *group;
+    bool has_terrain;
+} SeenGroup;
+
+typedef struct Lowering {
+    const Scene *scene;
+    const View *view;
+    const TerrainViewOptions *options;
+    Arena *arena;
+    DiagList *diags;
+    struct { Stand *items; size_t count, capacity; } stands;
+    struct { SeenGroup *items; size_t count, capacity; } groups; /* open addressing */
+    double spread, width; /* of the narrowest pixel: growth with the distance, and at the camera */
+    bool failed;
+} Lowering;
+
+/* ---- how fine ---- */
+
+/* The least of the pixels' widths: those of a flat picture's corners are smaller than those of its middle. */
+static void measure_pixels(Lowering *l) {
+    enum { STEPS = 4 };
+    l->spread = l->width = HUGE_VAL;
+    for (int j = 0; j <= STEPS; j++)
+        for (int i = 0; i <= STEPS; i++) {
+            Cone cone = view_cone(l->view, (double)i / STEPS * l->view->width, (double)j / STEPS * l->view->height, 1);
+            if (vec3_length_squared(cone.direction) == 0) continue;
+            l->spread = fmin(l->spread, cone.spread);
+            l->width = fmin(l->width, cone.width);
+        }
+    if (!isfinite(l->spread)) l->spread = l->width = 0;
+}
+
+typedef struct Allowance {
+    const Lowering *lowering;
+    const Stand *stand;
+    double stretch, pixels_off;
+} Allowance;
+
+static void allow(const void *context, Vec3 centre, double radius, double *error, double *side) {
+    const Allowance *a = context;
+    const Lowering *l = a->lowering;
+    Vec3 at = transform_point(&a->stand->to_world, centre);
+    double reach = radius * a->stretch, distance = fmax(0, vec3_length(vec3_sub(at, l->view->camera.location)) - reach);
+    double pixel = (l->width + l->spread * distance) / a->stretch;
+    const Box3 box = {vec3_sub(at, vec3_splat(reach)), vec3_add(at, vec3_splat(reach))};
+    if (!l->options->exact && view_misses(l->view, box)) pixel *= OUTSIDE;
+    *error = pixel * a->pixels_off;
+    *side = isfinite(a->stand->longest_side) ? fmax(CELL_PIXELS * pixel, a->stand->longest_side / a->stretch) : HUGE_VAL;
+}
+
+static double pixels_off(const TerrainViewOptions *options) {
+    if (options->exact) return PIXELS_OFF_EXACT;
+    return double_clamp(PIXELS_OFF * sqrt(options->max_error / DEFAULT_MAX_ERROR), PIXELS_OFF_EXACT, 1);
+}
+
+static const MeshData *mesh_of(Lowering *l, Stand *stand) {
+    if (stand->mesh) return stand->mesh;
+    const Ground *ground = stand->terrain->ground;
+    const Allowance allowance = {l, stand, tessellate_stretch(&stand->to_world.linear), pixels_off(l->options)};
+    const GroundDetail detail = {.allow = allow, .context = &allowance, .every_post = stand->terrain->every_post, .most_vertices = l->options->most_vertices};
+    MeshData *mesh = arena_new(l->arena, MeshData);
+    GroundErrors errors;
+    ground_errors_build(&ground->source, l->options->pool, l->arena, &errors);
+    if (!ground_mesh_build(&ground->source, &errors, &detail, l->arena, l->arena, mesh)) {
+        Diagnostic *d = diag_error(l->diags, stand->terrain->span, "this terrain needs more than %zu vertices", l->options->most_vertices);
+        if (stand->terrain->every_post) diag_hint(l->diags, d, "it has %d x %d posts: 'detail auto' draws those that are seen", ground->source.columns, ground->source.rows);
+        l->failed = true;
+    }
+    mesh_rehash(mesh);
+    return stand->mesh = mesh;
+}
+
+/* ---- what stands where ---- */
+
+static bool same_transform(const Transform *a, const Transform *b) {
+    return memcmp(&a->linear, &b->linear, sizeof a->linear) == 0 && memcmp(&a->offset, &b->offset, sizeof a->offset) == 0;
+}
+
+static Stand *stand_of(Lowering *l, const Terrain *terrain, const Transform *to_world) {
+    for (size_t i = 0; i < l->stands.count; i++) {
+        Stand *stand = &l->stands.items[i];
+        if (stand->terrain == terrain && same_transform(&stand->to_world, to_world)) return stand;
+    }
+    Stand *stand = list_push(l->arena, &l->stands);
+    *stand = (Stand){terrain, *to_world, HUGE_VAL, NULL};
+    return stand;
+}
+
+/* ---- surfaces and objects ---- */
+
+static const Object *mesh_object(const Lowering *l, const Surface *s, const MeshData *mesh) {
+    const Object object = {.span = s->span, .kind = OBJECT_TRIANGLES, .depth = 1, .texture = s->texture, .as.mesh = mesh};
+    return object_keep(l->arena, &object, NULL);
+}
+
+static const Surface *lower_surface(Lowering *l, const Surface *s, const Transform *outer) {
+    if (s->kind != SURFACE_TERRAIN) return s;
+    Transform to_world = transform_then(&s->transform, outer);
+    Surface *out = arena_copy(l->arena, s, sizeof *s);
+    out->kind = SURFACE_OBJECT;
+    out->uv = SURFACE_UV_MESH;
+    out->subdivide = int_max(1, s->subdivide);
+    out->object = mesh_object(l, s, mesh_of(l, stand_of(l, s->terrain, &to_world)));
+    surface_rehash(out);
+    return out;
+}
+
+/* A surface of triangles as they are is a mesh. */
+static const Object *lower_surface_object(Lowering *l, const Object *object, const Transform *to_world) {
+    if (object->as.surface->kind != SURFACE_TERRAIN) return object;
+    const Surface *s = lower_surface(l, object->as.surface, to_world);
+    Object out = object_copy(object);
+    Transform place = object_transform(object);
+    out.as.surface = s;
+    if (s->deform || s->subdivide > 1) return object_keep(l->arena, &out, NULL);
+    place = transform_then(&s->transform, &place);
+    out.kind = OBJECT_TRIANGLES;
+    out.as.mesh = s->object->as.mesh;
+    if (!out.texture) out.texture = s->texture;
+    return object_keep(l->arena, &out, &place);
+}
+
+static SeenGroup *find_group(Lowering *l, const ObjectGroup *group) {
+    for (size_t i = ((uintptr_t)group >> 4) % l->groups.capacity;; i = (i + 1) % l->groups.capacity)
+        if (!l->groups.items[i].group || l->groups.items[i].group == group) return &l->groups.items[i];
+}
+
+static void grow_groups(Lowering *l) {
+    SeenGroup *old = l->groups.items;
+    size_t capacity = l->groups.capacity;
+    l->groups.capacity = capacity ? 2 * capacity : 256;
+    l->groups.items = arena_new_array(l->arena, SeenGroup, l->groups.capacity);
+    for (size_t i = 0; i < capacity; i++)
+        if (old[i].group) *find_group(l, old[i].group) = old[i];
+}
+
+static bool has_terrain(Lowering *l, const Object *object) {
+    if (object->kind == OBJECT_SURFACE) return object->as.surface->kind == SURFACE_TERRAIN;
+    if (!object_has_group(object)) return false;
+    const ObjectGroup *group = object->as.group;
+    if (2 * l->groups.count >= l->groups.capacity) grow_groups(l);
+    const SeenGroup *seen = find_group(l, group);
+    if (seen->group) return seen->has_terrain;
+    bool has = false;
+    for (size_t i = 0; i < group->count && !has; i++) has = has_terrain(l, group->items[i]);
+    if (2 * l->groups.count >= l->groups.capacity) grow_groups(l);
+    *find_group(l, group) = (SeenGroup){group, has};
+    l->groups.count++;
+    return has;
+}
+
+/* Recursion is as deep as objects are nested. */
+static const Object *lower_object(Lowering *l, const Object *object, const Transform *outer) {
+    if (!has_terrain(l, object)) return object;
+    Transform own = object_transform(object), to_world = transform_then(&own, outer);
+    if (object->kind == OBJECT_SURFACE) return lower_surface_object(l, object, &to_world);
+    ObjectGroup *group = arena_copy(l->arena, object->as.group, sizeof *group);
+    const Object **items = arena_new_array(l->arena, const Object *, group->count);
+    for (size_t i = 0; i < group->count; i++) items[i] = lower_object(l, object->as.group->items[i], &to_world);
+    group->items = items;
+    group->hashed = false;
+    Object out = object_copy(object);
+    out.as.group = group;
+    return object_keep(l->arena, &out, NULL);
+}
+
+/* ---- the scene ---- */
+
+static void ask_for_cells(Lowering *l, const Skin *skin) {
+    const Surface *s = skin->surface;
+    if (s->kind != SURFACE_TERRAIN) return;
+    Stand *stand = stand_of(l, s->terrain, &s->transform);
+    stand->longest_side = fmin(stand->longest_side, l->options->skin_side(skin));
+}
+
+static const Skin *lower_skin(Lowering *l, const Skin *skin) {
+    const Transform identity = transform_identity();
+    if (skin->surface->kind != SURFACE_TERRAIN) return skin;
+    Skin *out = arena_copy(l->arena, skin, sizeof *skin);
+    out->surface = lower_surface(l, skin->surface, &identity);
+    return out;
+}
+
+const Scene *terrains_as_seen(const Scene *scene, const View *view, const TerrainViewOptions *options, Arena *arena, DiagList *diags) {
+    const Transform identity = transform_identity();
+    if (!scene->has_terrain) return scene;
+    Lowering l = {.scene = scene, .view = view, .options = options, .arena = arena, .diags = diags};
+    measure_pixels(&l);
+    for (size_t i = 0; i < scene->skin_count; i++) ask_for_cells(&l, scene->skins[i]);
+    const Object **objects = arena_new_array(arena, const Object *, scene->object_count);
+    for (size_t i = 0; i < scene->object_count; i++) objects[i] = lower_object(&l, scene->objects[i], &identity);
+    const Skin **skins = arena_new_array(arena, const Skin *, scene->skin_count);
+    for (size_t i = 0; i < scene->skin_count; i++) skins[i] = lower_skin(&l, scene->skins[i]);
+    Scene *out = arena_copy(arena, scene, sizeof *scene);
+    out->objects = objects;
+    out->skins = skins;
+    return l.failed ? NULL : out;
+}

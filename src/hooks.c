@@ -151,6 +151,8 @@ static bool geo(void *context, const GeoOrigin *origin, const EvalGeoRequest *re
     if (geo_frame_init(&frame, place_of(origin->place), origin->flat) && geo_answer(&frame, request, answer, error)) return true;
     if (error->size == 0) strbuf_adds(error, "this is no place on the globe");
     return false;
+}
+
 /* ---- terrains ---- */
 
 static bool map_place(const EvalTerrainPlace *in, HeightmapPlace *out) {

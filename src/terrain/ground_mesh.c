@@ -1,6 +1,7 @@
 #include "terrain/ground_mesh.h"
 
 #include "terrain/ground_nodes.h"
+#include "terrain/ground_normals.h"
 
 enum { MOST_PASSES = 6 };
 
@@ -253,34 +254,48 @@ static void emit_leaves(Output *out, Triangle t) {
 
 /* ---- all of it ---- */
 
-/* 1 or -1: whether the normals of triangles as they wind look up. All do if one does: neither maps nor projections fold. */
-static double upwards(const Output *out, const Vec3 *normals) {
-    const GroundSource *s = out->r->source;
-    for (size_t i = 0; i < out->r->nodes.count; i++) {
-        const GroundNode *n = &out->r->nodes.items[i];
-        if (n->vertex == GROUND_NO_NODE) continue;
-        double column = fmin((double)n->x / GROUND_PARTS, s->columns - 1), row = fmin((double)n->y / GROUND_PARTS, s->rows - 1);
-        double up = vec3_dot(normals[n->vertex], vec3_sub(s->place(s->map, column, row, n->height + 1), n->place));
-        if (up != 0) return up > 0 ? 1 : -1;
-    }
-    return 1;
+/* How long the sides are that meet in each vertex, in posts, on the average. */
+static double *sides_around(const Output *out, const uint32_t *node_of) {
+    size_t count = out->vertices.count;
+    double *sum = arena_new_array(out->scratch, double, count), *met = arena_new_array(out->scratch, double, count);
+    for (size_t i = 0; i < out->triangles.count; i++)
+        for (int k = 0; k < 3; k++) {
+            uint32_t from = out->triangles.items[i][k], to = out->triangles.items[i][(k + 1) % 3];
+            const GroundNode *a = node(out->r, node_of[from]), *b = node(out->r, node_of[to]);
+            double length = hypot((double)a->x - b->x, (double)a->y - b->y) / GROUND_PARTS;
+            sum[from] += length, sum[to] += length, met[from] += 1, met[to] += 1;
+        }
+    for (size_t i = 0; i < count; i++) sum[i] /= fmax(1, met[i]);
+    return sum;
 }
 
-static const Vec3 *smooth_normals(const Output *out, Arena *arena) {
+static Vec3 *normals_of(const Output *out, Arena *arena) {
     size_t count = out->vertices.count;
-    const Vec3 *p = out->vertices.items;
+    uint32_t *node_of = arena_new_array(out->scratch, uint32_t, count);
+    for (uint32_t i = 0; i < out->r->nodes.count; i++)
+        if (node(out->r, i)->vertex != GROUND_NO_NODE) node_of[node(out->r, i)->vertex] = i;
     Vec3 *normals = arena_new_array(arena, Vec3, count);
-    for (size_t i = 0; i < out->triangles.count; i++) {
-        const uint32_t *t = out->triangles.items[i];
-        Vec3 n = vec3_cross(vec3_sub(p[t[1]], p[t[0]]), vec3_sub(p[t[2]], p[t[0]]));
-        for (int k = 0; k < 3; k++) normals[t[k]] = vec3_add(normals[t[k]], n);
-    }
-    double sign = upwards(out, normals);
+    const double *sides = sides_around(out, node_of);
+    GroundAxes *axes = ground_axes_create(out->r->source, out->scratch);
     for (size_t i = 0; i < count; i++) {
-        double length = vec3_length(normals[i]);
-        normals[i] = length > 0 ? vec3_scale(normals[i], sign / length) : vec3(0, 1, 0);
+        const GroundNode *n = node(out->r, node_of[i]);
+        normals[i] = ground_normal(axes, (double)n->x / GROUND_PARTS, (double)n->y / GROUND_PARTS, sides[i]);
     }
     return normals;
+}
+
+/* Where no slope was found the triangles around tell the normal. */
+static void complete_normals(const Output *out, Vec3 *normals) {
+    const Vec3 *p = out->vertices.items;
+    for (size_t i = 0; i < out->triangles.count; i++) {
+        const uint32_t *t = out->triangles.items[i];
+        Vec3 n = vec3_normalize(vec3_cross(vec3_sub(p[t[1]], p[t[0]]), vec3_sub(p[t[2]], p[t[0]])));
+        for (int k = 0; k < 3; k++) {
+            if (vec3_length_squared(normals[t[k]]) > 0) continue;
+            Vec3 up = vec3_length_squared(normals[t[(k + 1) % 3]]) > 0 ? normals[t[(k + 1) % 3]] : vec3(0, 1, 0);
+            normals[t[k]] = vec3_dot(n, up) < 0 ? vec3_negate(n) : n;
+        }
+    }
 }
 
 static const Vec3 *places_as_uv(const Vec3 *places, size_t count, Arena *arena) {
@@ -295,7 +310,9 @@ static void keep_mesh(const Output *out, Arena *arena, MeshData *mesh) {
     if (!count) return;
     mesh->vertices = arena_copy(arena, out->vertices.items, count * sizeof(Vec3));
     mesh->triangles = arena_copy(arena, out->triangles.items, out->triangles.count * sizeof *out->triangles.items);
-    mesh->normals = smooth_normals(out, arena);
+    Vec3 *normals = normals_of(out, arena);
+    complete_normals(out, normals);
+    mesh->normals = normals;
     mesh->uvs = places_as_uv(mesh->vertices, count, arena);
 }
 

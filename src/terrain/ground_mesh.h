@@ -17,7 +17,8 @@ typedef struct GroundDetail {
     size_t most_vertices; /* 0: no limit */
 } GroundDetail;
 
-/* Builds the mesh in `arena`; its texture coordinates are x and z. Normals are those of the ground, averaged over the triangles around.
+/* Builds the mesh in `arena`; its texture coordinates are x and z. Normals are slopes of the ground over as
+ * much of it as the triangles reach (ground_normals.h).
  * False when there are more vertices than allowed; *out is then empty. `scratch` is reset to where it was, unless
  * it is `arena`. */
 bool ground_mesh_build(const GroundSource *source, const GroundErrors *errors, const GroundDetail *detail, Arena *scratch, Arena *arena,

@@ -260,6 +260,12 @@ static bool finish_object(Reader *reader, SurfaceDraft *draft) {
     return !reader->failed;
 }
 
+static bool finish_terrain(Reader *reader, const SurfaceDraft *draft) {
+    if (draft->has_uv) reader_error(reader, reader->block->word_span, "'uv' has no meaning for a terrain: its u and v are metres to the east and north");
+    if (draft->height_list) reader_error(reader, draft->height_span, "'height_vectors' have no meaning for a terrain");
+    return !reader->failed;
+}
+
 static bool finish(Reader *reader, SurfaceDraft *draft) {
     Surface *s = &draft->surface;
     if (draft->has_grid) return finish_grid(reader, draft);
@@ -269,6 +275,7 @@ static bool finish(Reader *reader, SurfaceDraft *draft) {
         return false;
     }
     if (s->kind == SURFACE_OBJECT && s->object) return finish_object(reader, draft);
+    if (s->kind == SURFACE_TERRAIN) return finish_terrain(reader, draft);
     if (s->kind == SURFACE_PATCHES && s->points) return true; /* a copy of a declared one */
     reader_error(reader, reader->block->word_span,
                  "this surface has no shape: it needs an object or a 'patch_grid'");

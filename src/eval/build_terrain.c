@@ -54,7 +54,7 @@ static void read_utm(Reader *reader, const Word *word, void *target) {
     if (!word_arguments(reader, word, 1, 1) || !word_int(reader, word, 0, &place->zone)) return;
     if (place->zone < 0 || place->zone > 60) {
         reader_error(reader, word->arguments[0].span, "a zone of UTM is a number from 1 to 60 (0 near the poles), found %d", place->zone);
-        return;
+        place->zone = 0;
     }
     if (!reader_take_word(reader, "north", &side) && !reader_take_word(reader, "south", &side)) {
         reader_expect_word(reader, word, "north or south, and two corners");

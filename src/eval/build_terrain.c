@@ -183,9 +183,5 @@ bool build_terrain(BuildContext *context, const EvalBlock *block, Value *out) {
         reader_error(&reader, block->word_span, "'terrain' needs a heightmap");
         return false;
     }
-    if (!isfinite(draft.request.exaggeration)) {
-        reader_error(&reader, block->word_span, "'exaggeration' is not a finite number");
-        return false;
-    }
     return load(&reader, &draft) && object_make(&reader, &draft.common, out);
 }

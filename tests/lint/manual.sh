@@ -29,7 +29,7 @@ blessed_page() {
 # Runs the example in a folder of its own, where it may write.
 say() {
   rm -rf "$folder/run" && mkdir "$folder/run" && cp "$1" "$folder/run/example.vts" || exit 2
-  (cd "$folder/run" && "$vts" "$2" --allow-write . example.vts </dev/null 2>&1)
+  (cd "$folder/run" && "$vts" "$2" --allow-write . -I "$root/examples" example.vts </dev/null 2>&1)
 }
 
 try_example() {

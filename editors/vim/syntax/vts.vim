@@ -12,8 +12,8 @@ syn keyword vtsFunction abs acos acosh asc asin asinh atan atan2 atanh bitwise_a
 syn keyword vtsFunction cos cosh cube datetime defined degrees dimension_size dimensions div exp fbm file_exists floor geo
 syn keyword vtsFunction geo_inverse geodesic inside int internal ln log lsystem_count lsystem_string max max_extent min
 syn keyword vtsFunction min_extent mod perlin pow prod radians rand seed select sin sinh sparse_convolution sqr sqrt str
-syn keyword vtsFunction strcmp strlen strlwr strupr substr sum sun_direction tan tanh trace utm val vaxis_rotate vcross
-syn keyword vtsFunction vdot vlength vnormalize vrotate vstr vturbulence wind_at worley
+syn keyword vtsFunction strcmp strlen strlwr strupr substr sum sun_direction tan tanh terrain_height trace utm val
+syn keyword vtsFunction vaxis_rotate vcross vdot vlength vnormalize vrotate vstr vturbulence wind_at worley
 syn keyword vtsConstant clock clock_delta clock_on false final_clock final_frame frame_number image_height image_width
 syn keyword vtsConstant initial_clock initial_frame no now off on pi t true u v version x y yes z
 syn keyword vtsColor color colour rgb rgbf rgbft rgbt srgb srgbf srgbft srgbt

@@ -185,16 +185,14 @@ static bool terrain(void *context, Arena *arena, EvalTerrainRequest *request, Di
     HeightmapPlace place;
     HeightmapOptions options = {.voids = request->holes ? HEIGHTMAP_HOLES : HEIGHTMAP_FILL, .has_nodata = request->has_nodata,
                                 .nodata = request->nodata, .geoid = request->geoid};
+    bool placed = true;
     if (request->place) {
-        if (!map_place(request->place, &place)) {
-            diag_error(diags, span, "there is no zone %d of UTM", request->place->zone);
-            return false;
-        }
+        placed = map_place(request->place, &place);
         options.place = &place;
     }
-    const Heightmap *map = heightmap_open(request->paths, request->count, &options, arena, diags, span);
+    const Heightmap *map = !placed ? NULL : heightmap_open(request->paths, request->count, &options, arena, diags, span);
     const Ground *ground = map ? make_ground(map, request, arena) : NULL;
-    if (map && !ground) diag_error(diags, span, "the map has no place in the scene's frame");
+    if ((map || !placed) && !ground) diag_error(diags, span, "the map has no place in the scene's frame");
     if (!ground) return false;
     *out = (Terrain){.hash = ground_hash(ground), .origin = request->origin.place, .bounds = ground->bounds, .ground = ground, .ops = &ground_ops};
     return true;

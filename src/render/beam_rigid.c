@@ -350,11 +350,11 @@ static uint32_t new_facet(const Seeing *s, const RigidCopy *copy, uint32_t trian
     const TexelCluster *cluster = &copy->copy.texel->beam->clusters[number / CLUSTER_TRIANGLES];
     BeamFacet *f = &draft->facets[draft->facet_count++];
     *f = (BeamFacet){.skin = copy->skin, .cell = copy->cell, .placed = copy->placed, .copy = copy->copy, .cluster = cluster,
-                     .triangle = (int)(number % CLUSTER_TRIANGLES)};
+                     .triangle = (int)(number % CLUSTER_TRIANGLES), .from_a = copy->a_0, .from_b = copy->b_0, .size = 1};
     for (int i = 0; i < 3; i++) {
         int v = cluster->triangles[f->triangle][i];
         double x = (double)cluster->x[v], y = (double)cluster->y[v], z = (double)cluster->z[v];
-        f->corner[i] = vec3f((float)(copy->a_x * x + copy->a_z * z + copy->a_0), (float)(copy->b_x * x + copy->b_z * z + copy->b_0), (float)(copy->w_y * y + copy->w_0));
+        f->corner[i] = vec3f((float)(copy->a_x * x + copy->a_z * z), (float)(copy->b_x * x + copy->b_z * z), (float)(copy->w_y * y + copy->w_0));
     }
     return draft->facet_count;
 }

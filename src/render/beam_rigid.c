@@ -60,17 +60,28 @@ static bool place_in_cell(const SkinCell *cell, double u, double v, double *a, d
     return isfinite(*a) && isfinite(*b);
 }
 
-/* Whether a cell goes on as the first does. */
+/* Whether a cell goes on as the first does: then it is the same map within, whatever the shape of the cell. */
 static bool goes_on(const SkinCell *first, const SkinCell *cell) {
     double size = vec3_length(first->foot.c[1]) + vec3_length(first->foot.c[2]), a, b;
-    if (!cell_is_affine(cell) || !vanishes(vec3_sub(cell->height.c[0], first->height.c[0]), vec3_length(first->height.c[0]))) return false;
     for (int i = 0; i < (cell->triangle ? 3 : 4); i++) {
         SkinCorner corner = skin_cell_corner(cell, i);
         if (!place_in_cell(first, corner.u, corner.v, &a, &b)) return false;
-        Vec3 there = skin_cell_position(first, a, b, 0, NULL);
-        if (!vanishes(vec3_sub(there, corner.foot), size * (1 + fabs(a) + fabs(b)))) return false;
+        Vec3 there = skin_cell_position(first, a, b, 0, NULL), high = first->height.c[0];
+        if (!vanishes(vec3_sub(there, corner.foot), size * (1 + fabs(a) + fabs(b))) || !vanishes(vec3_sub(corner.height, high), vec3_length(high))) return false;
+        if (fabs(corner.w_foot - first->w_foot.c[0]) > ROUNDING || fabs(corner.w_tip - first->w_tip.c[0]) > ROUNDING) return false;
     }
     return true;
+}
+
+/* Of a cell in texture space. */
+static double tiles_in_cell(const SkinCell *cell) {
+    int corners = cell->triangle ? 3 : 4;
+    double twice = 0;
+    for (int i = 0; i < corners; i++) {
+        SkinCorner p = skin_cell_corner(cell, i), q = skin_cell_corner(cell, (i + 1) % corners);
+        twice += p.u * q.v - q.u * p.v;
+    }
+    return fabs(twice) / 2;
 }
 
 /* The tiles of a surface that is a rectangle of whole tiles. */
@@ -83,7 +94,7 @@ static bool whole_tiles(const CompiledSkin *skin, TileRect *rect) {
     for (size_t i = 0; i < skin->cell_count; i++) {
         const SkinCell *cell = &skin->cells[i];
         if (cell->rim) continue;
-        area += (cell->triangle ? 0.5 : 1) * fabs(cell->u.c[1] * cell->v.c[2] - cell->u.c[2] * cell->v.c[1]);
+        area += tiles_in_cell(cell);
         for (int k = 0; k < (cell->triangle ? 3 : 4); k++) {
             SkinCorner corner = skin_cell_corner(cell, k);
             lo[0] = fmin(lo[0], corner.u), hi[0] = fmax(hi[0], corner.u);

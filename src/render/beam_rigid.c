@@ -390,24 +390,42 @@ static void take_hits(Seeing *s, Bundle *bundle) {
     bundle_clear(bundle);
 }
 
+/* Lines of samples: `shift` is from the origin of the copies to that of the lines. */
+typedef struct SampleLines {
+    Vec3 corner, right, down, direction, shift;
+} SampleLines;
+
+static void add_sample(const RigidCopies *copies, const Beam *beam, const SampleLines *lines, uint32_t i, Bundle *bundle) {
+    const BeamSamples *s = &beam->samples;
+    Vec3 to = vec3_madd(vec3_madd(lines->corner, lines->right, (double)s->x[i]), lines->down, (double)s->y[i]);
+    if (!beam->perspective) {
+        bundle_add(bundle, vec3f_from(vec3_add(to, lines->shift)), vec3f_from(lines->direction), 0, -s->key[i], i);
+        return;
+    }
+    float far = 1 / s->key[i];
+    if (s->limit[i] > 0) far = float_min(far, (float)(copies->exact_to / (double)s->limit[i]));
+    bundle_add(bundle, vec3f_from(lines->shift), vec3f_from(to), (float)beam->nearest, far, i);
+}
+
 uint64_t rigid_see(const RigidCopies *copies, BeamDraft *draft, Vec3 corner, Vec3 right, Vec3 down, Vec3 direction) {
     const Beam *beam = draft->beam;
     const BeamSamples *s = &beam->samples;
     Seeing seeing = {.copies = copies, .draft = draft};
-    uint32_t count = s->first[s->columns * s->rows];
     uint64_t rays = 0;
     Bundle bundle;
     if (!rigid_meets(copies, beam)) return 0;
     bundle_clear(&bundle);
-    Vec3 shift = beam->perspective ? vec3_sub(beam->origin, copies->origin) : vec3_negate(copies->origin);
-    for (uint32_t i = 0; i < count && !beam_is_interrupted(draft); i++) {
-        Vec3 to = vec3_madd(vec3_madd(corner, right, (double)s->x[i]), down, (double)s->y[i]);
-        float near = beam->perspective ? (float)beam->nearest : 0, far = beam->perspective ? 1 / s->key[i] : -s->key[i];
-        if (beam->perspective && s->limit[i] > 0) far = float_min(far, (float)(copies->exact_to / (double)s->limit[i]));
-        bundle_add(&bundle, vec3f_from(beam->perspective ? shift : vec3_add(to, shift)), vec3f_from(beam->perspective ? to : direction), near, far, i);
-        if (bundle.count < WIDE) continue;
-        rays += WIDE;
-        take_hits(&seeing, &bundle);
+    const SampleLines lines = {corner, right, down, direction, beam->perspective ? vec3_sub(beam->origin, copies->origin) : vec3_negate(copies->origin)};
+    for (int pixel = 0; pixel < s->columns * s->rows && !beam_is_interrupted(draft); pixel++) {
+        float middle_x = (float)(pixel % s->columns) + 0.5f, middle_y = (float)(pixel / s->columns) + 0.5f;
+        for (int quarter = 0; quarter < 4; quarter++) /* those that lie together go the same ways */
+            for (uint32_t i = s->first[pixel]; i < s->first[pixel + 1]; i++) {
+                if (2 * (s->y[i] >= middle_y) + (s->x[i] >= middle_x) != quarter) continue;
+                add_sample(copies, beam, &lines, i, &bundle);
+                if (bundle.count < WIDE) continue;
+                rays += WIDE;
+                take_hits(&seeing, &bundle);
+            }
     }
     take_hits(&seeing, &bundle);
     return rays;

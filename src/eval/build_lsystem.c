@@ -1,4 +1,4 @@
-/* lsystem { axiom … rule … }: grown when its block ends; and lsystem { Plant parts branches|symbols }. */
+/* lsystem { axiom … rule … }: grown when its block ends; and lsystem { Plant parts branches|symbols ["L"] }. */
 #include "eval/build_parts.h"
 #include "grow/turtle.h"
 
@@ -203,17 +203,20 @@ static const Object *union_of(const BuildContext *context, const PartList *parts
 static const Object *plant_object(const BuildContext *context, const LSystemDraft *draft, const LSystemWord *word, const TurtleDrawing *drawing) {
     Plant *plant = arena_new(context->arena, Plant);
     PartList branches = {0}, symbols = {0}, both = {0};
+    char *letters = arena_new_array(context->arena, char, (size_t)drawing->colors + drawing->places.count + 1);
     for (int color = 0; color < drawing->colors; color++) {
         const TurtleBranches *b = &drawing->branches[color];
         if (b->count) add_part(context, draft, (Object){.kind = OBJECT_BRANCHES, .as.branches = {b->items, b->count}}, color, &branches);
         add_leaves(context, draft, &drawing->leaves[color], color, &symbols);
     }
+    memset(letters, '{', symbols.count);
     for (size_t i = 0; i < drawing->places.count; i++) {
         const TurtlePlace *place = &drawing->places.items[i];
+        letters[symbols.count] = place->letter;
         *list_push(context->arena, &symbols) = placed(context, object_of(draft, place->letter), place);
     }
     Span span = draft->common.object.span;
-    *plant = (Plant){.letters = word->letters, .first = word->first, .parameters = word->parameters, .count = word->count};
+    *plant = (Plant){.letters = word->letters, .first = word->first, .parameters = word->parameters, .count = word->count, .symbol_letters = letters};
     plant->branches = union_of(context, &branches, plant, span);
     plant->symbols = union_of(context, &symbols, plant, span);
     *list_push(context->arena, &both) = plant->branches;
@@ -260,12 +263,23 @@ static bool build_new(BuildContext *context, const EvalBlock *block, Value *out)
     return object_make(&reader, &draft.common, out);
 }
 
+/* The symbols whose letters stand in a string behind the word; all without one. */
+static const ObjectGroup *symbols_of(Reader *reader, const Word *word, const Plant *plant) {
+    const ObjectGroup *all = plant->symbols->as.group;
+    const char *wanted;
+    if (word->count == 0 || !word_arguments(reader, word, 1, 1) || !word_string(reader, word, 0, &wanted)) return all;
+    PartList parts = {0};
+    for (size_t i = 0; i < all->count; i++)
+        if (strchr(wanted, plant->symbol_letters[i])) *list_push(reader->context->arena, &parts) = all->items[i];
+    return union_of(reader->context, &parts, plant, word->span)->as.group;
+}
+
 static void read_parts(Reader *reader, const Word *word, void *target) {
     ObjectDraft *draft = target;
     const Plant *plant = draft->object.as.group->plant;
     Word next;
     if (word->count == 0 && reader_take_word(reader, "branches", &next)) draft->object.as.group = plant->branches->as.group;
-    else if (word->count == 0 && reader_take_word(reader, "symbols", &next)) draft->object.as.group = plant->symbols->as.group;
+    else if (word->count == 0 && reader_take_word(reader, "symbols", &next)) draft->object.as.group = symbols_of(reader, &next, plant);
     else reader_expect_word(reader, word, "branches or symbols");
 }
 

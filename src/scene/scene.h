@@ -323,6 +323,7 @@ typedef struct Plant {
     const double *parameters;
     size_t count;
     const Object *branches, *symbols; /* unions; what `parts` takes */
+    const char *symbol_letters;       /* of each object in `symbols`, what it stands for; polygons: { */
 } Plant;
 
 typedef struct Surface Surface;

@@ -156,10 +156,12 @@ static bool choose_weighted(Derivation *d, size_t i, uint32_t from, uint32_t to,
     return true;
 }
 
+static bool has_production(const LSystem *s, char letter) { return s->first[(unsigned char)letter] < s->first[(unsigned char)letter + 1]; }
+
+/* Leaves *choice alone where nothing fits. */
 static bool choose(Derivation *d, size_t i, uint16_t *choice) {
     const LSystem *s = d->system;
     unsigned char letter = (unsigned char)d->word.letters[i];
-    *choice = IDENTITY;
     for (uint32_t k = s->first[letter]; k < s->first[letter + 1]; k++) {
         double weight;
         Fit fit = fit_of(d, &s->productions[k], i, &weight);
@@ -201,7 +203,8 @@ static bool choose_all(Derivation *d, uint16_t *choices, Growth *growth) {
     memset(d->letters_added, 0, (d->system->production_count + 1) * sizeof *d->letters_added);
     for (size_t i = 0; i < d->word.count; i++) {
         if ((i & 0xfff) == 0 && d->interrupted && *d->interrupted) return false;
-        if (!choose(d, i, &choices[i])) return false;
+        choices[i] = IDENTITY;
+        if (has_production(d->system, d->word.letters[i]) && !choose(d, i, &choices[i])) return false;
         if (choices[i] == IDENTITY) {
             growth->letters++;
             growth->parameters += d->word.first[i + 1] - d->word.first[i];
@@ -278,16 +281,22 @@ static bool push_successor(Derivation *d, const Production *p, size_t i, LSystem
     return true;
 }
 
+/* Letters from `from` to before `to` stay as they are: most do, where a long word has few buds. */
+static void copy_letters(const LSystemWord *w, size_t from, size_t to, LSystemWord *next) {
+    uint32_t first = next->first[next->count], shift = first - w->first[from];
+    memcpy(next->letters + next->count, w->letters + from, to - from);
+    if (w->first[to] > w->first[from]) memcpy(next->parameters + first, w->parameters + w->first[from], (w->first[to] - w->first[from]) * sizeof *w->parameters);
+    for (size_t i = from; i < to; i++) next->first[++next->count] = w->first[i + 1] + shift;
+}
+
 static bool rewrite(Derivation *d, const uint16_t *choices, LSystemWord *next) {
     const LSystemWord *w = &d->word;
-    for (size_t i = 0; i < w->count; i++) {
-        if (choices[i] != IDENTITY) {
-            if (!push_successor(d, &d->system->productions[choices[i]], i, next)) return false;
-            continue;
-        }
-        uint32_t count = w->first[i + 1] - w->first[i];
-        if (count) memcpy(next->parameters + next->first[next->count], w->parameters + w->first[i], count * sizeof *w->parameters);
-        push_letter(next, w->letters[i], count);
+    for (size_t i = 0, from = 0; i < w->count; from = i) {
+        while (i < w->count && choices[i] == IDENTITY) i++;
+        if (i > from) copy_letters(w, from, i, next);
+        if (i == w->count) break;
+        if (!push_successor(d, &d->system->productions[choices[i]], i, next)) return false;
+        i++;
     }
     return true;
 }

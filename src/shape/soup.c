@@ -1,7 +1,24 @@
 #include "shape/soup.h"
 
+#include <string.h>
+
 SoupMark soup_mark(const TriangleSoup *soup) {
     return (SoupMark){soup->vertices.count, soup->triangles.count};
+}
+
+void soup_reserve(Arena *arena, TriangleSoup *soup, size_t vertices, size_t triangles) {
+    SoupVertexList *v = &soup->vertices;
+    SoupTriangleList *t = &soup->triangles;
+    if (v->count + vertices > v->capacity) {
+        SoupVertex *items = arena_new_array(arena, SoupVertex, v->count + vertices);
+        if (v->count) memcpy(items, v->items, v->count * sizeof *items);
+        *v = (SoupVertexList){items, v->count, v->count + vertices};
+    }
+    if (t->count + triangles > t->capacity) {
+        SoupTriangle *items = arena_new_array(arena, SoupTriangle, t->count + triangles);
+        if (t->count) memcpy(items, t->items, t->count * sizeof *items);
+        *t = (SoupTriangleList){items, t->count, t->count + triangles};
+    }
 }
 
 uint32_t soup_vertex(Arena *arena, TriangleSoup *soup, Vec3 position, Vec3 normal, double u, double v) {

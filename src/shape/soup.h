@@ -47,6 +47,8 @@ typedef struct SoupMark {
 } SoupMark;
 
 SoupMark soup_mark(const TriangleSoup *soup);
+/* Room for so many more at once, where a tessellation knows roughly what comes: lists that grow by and by are copied. */
+void soup_reserve(Arena *arena, TriangleSoup *soup, size_t vertices, size_t triangles);
 /* Returns the vertex's index. */
 uint32_t soup_vertex(Arena *arena, TriangleSoup *soup, Vec3 position, Vec3 normal, double u, double v);
 /* Two equal indices: nothing is added. */

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-enum { MOST_SKIPPED = 16 };
+enum { MOST_SKIPPED = 16, MOST_RESERVED_SIDES = 5 };
 /* Sharper bends than this (the cosine between what comes and what goes on) are not mitred: the mitre would become a thorn. */
 static const double SHARPEST = -0.3;
 /* Of the radius, where a place is left out: it is seen as area. */
@@ -140,6 +140,18 @@ static void push_branch(const BranchNode *nodes, const uint32_t *next, uint32_t 
     push_tube(tube, tolerance, arena, out);
 }
 
+/* As if no place were left out, and nothing very round: what is thick and straight needs less, and must not ask for too much. */
+static void reserve(const BranchNode *nodes, size_t count, double tolerance, Arena *arena, TriangleSoup *out) {
+    size_t vertices = 0, triangles = 0;
+    for (size_t i = 0; i < count; i++) {
+        size_t sides = (size_t)int_min(tessellate_sides(fabs(nodes[i].radius), tolerance), MOST_RESERVED_SIDES);
+        bool begins = nodes[i].previous == BRANCH_FIRST;
+        vertices += sides + 1 + (begins ? 2 * (sides + 2) : 0);
+        triangles += 2 * sides;
+    }
+    soup_reserve(arena, out, vertices, triangles);
+}
+
 void tessellate_branches(const Object *object, double tolerance, Arena *arena, TriangleSoup *out) {
     const BranchNode *nodes = object->as.branches.items;
     size_t count = object->as.branches.count, longest = 1;
@@ -152,6 +164,7 @@ void tessellate_branches(const Object *object, double tolerance, Arena *arena, T
         length[i] += length[nodes[i].previous];
         if (length[i] > longest) longest = length[i];
     }
+    reserve(nodes, count, tolerance, arena, out);
     Tube tube = {.rows = arena_new_array(arena, TubeRow, longest)};
     for (size_t i = 0; i < count; i++)
         if (nodes[i].previous == BRANCH_FIRST) push_branch(nodes, next, (uint32_t)i, &tube, tolerance, arena, out);

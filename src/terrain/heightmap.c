@@ -108,11 +108,16 @@ static bool box_in_layer(const Heightmap *map, const MapLayer *layer, const int 
     return true;
 }
 
-/* Where a box cannot be told in a layer's terms, or goes around the globe in it, all of the layer counts. */
+/* Where a box cannot be told in a layer's terms, or goes around the globe in it, all of the layer counts. A layer is continued by a post
+ * beyond its border, by no more than its posts differ. */
 static PostRange range_in_layer(const Heightmap *map, const MapLayer *layer, const int box[4]) {
     int own[4];
-    if (!layer->around && box_in_layer(map, layer, box, own)) return post_ranges_over(&layer->ranges, &layer->posts, own[0], own[1], own[2], own[3]);
-    return post_ranges_over(&layer->ranges, &layer->posts, 0, 0, layer->columns - 1, layer->rows - 1);
+    bool told = !layer->around && box_in_layer(map, layer, box, own);
+    PostRange range = told ? post_ranges_over(&layer->ranges, &layer->posts, own[0], own[1], own[2], own[3])
+                           : post_ranges_over(&layer->ranges, &layer->posts, 0, 0, layer->columns - 1, layer->rows - 1);
+    float rise = range.high - range.low;
+    if ((!told || !range.whole) && rise > 0) range.low -= rise, range.high += rise;
+    return range;
 }
 
 /* Of the geoid over a box: its nodes if they are few, else all that was ever added. */

@@ -176,18 +176,24 @@ static bool is_in_tiles(const MapLayer *layer, int column, int row) {
     return post_is_within(layer->rects.items, layer->rects.count, column, row);
 }
 
-/* A post, or the mean of those beside a place where no tile has one; NaN for voids. */
-static double post_or_neighbours(const MapLayer *layer, int column, int row) {
+/* A post where no tile has one, by going on straight from the two behind it, or level from one; means over the directions along the axes
+ * that have any, else over the diagonals. */
+static double continued(const MapLayer *layer, int column, int row) {
+    static const int steps[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
     double sum = 0;
     int count = 0;
-    if (is_in_tiles(layer, column, row)) return (double)posts_get(&layer->posts, column, row);
-    for (int k = 0; k < 9; k++) {
-        int c = column + k % 3 - 1, r = row + k / 3 - 1;
+    for (int k = 0; k < 8 && !(k == 4 && count > 0); k++) {
+        int c = column + steps[k][0], r = row + steps[k][1], c2 = c + steps[k][0], r2 = r + steps[k][1];
         if (!is_in_tiles(layer, c, r)) continue;
-        sum += (double)posts_get(&layer->posts, c, r);
+        double near = (double)posts_get(&layer->posts, c, r), far = (double)posts_get(&layer->posts, c2, r2);
+        sum += isnan(far) ? near : 2 * near - far;
         count++;
     }
     return count ? sum / count : (double)NAN;
+}
+
+static double post_or_continued(const MapLayer *layer, int column, int row) {
+    return is_in_tiles(layer, column, row) ? (double)posts_get(&layer->posts, column, row) : continued(layer, column, row);
 }
 
 /* How much of the square with the half side `reach` about a point is tiles, whose pixels end half a post beyond their posts. */
@@ -212,7 +218,7 @@ bool map_layer_blended(const MapLayer *layer, double column, double row, double 
     double u = column - c, v = row - r, sum = 0;
     for (int k = 0; k < 4; k++) {
         double part = (k & 1 ? u : 1 - u) * (k & 2 ? v : 1 - v);
-        if (part != 0) sum += part * post_or_neighbours(layer, c + (k & 1), r + (k >> 1));
+        if (part != 0) sum += part * post_or_continued(layer, c + (k & 1), r + (k >> 1));
     }
     *height = sum;
     return !isnan(sum);

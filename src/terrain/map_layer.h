@@ -49,7 +49,7 @@ bool map_layer_read(MapLayer *layer, const MapTile *tile, const double *nodata, 
 bool map_layer_from_geo(const MapLayer *layer, GeoPlace place, double *column, double *row);
 /* Bilinear between posts; false outside of the posts and where one is missing. */
 bool map_layer_height(const MapLayer *layer, double column, double row, double *height);
-/* The same, continued by a post beyond the layer's border, and how much it counts where other layers lie: from 0 there to 1 well inside. */
+/* The same, continued straight by a post beyond the layer's border, and how much it counts where other layers lie: from 0 there to 1 well inside. */
 bool map_layer_blended(const MapLayer *layer, double column, double row, double *height, double *weight);
 
 /* Whether two affine maps or systems are the same; by how much the second begins behind the first, in posts. */

@@ -129,6 +129,24 @@ static void maps_of_other_lattices_are_blended(void **state) {
     made_end(&m);
 }
 
+static double plane_coarse(int column, int row) { return 1000 + 20 * column - 30 * row; }
+static double plane_fine(int column, int row) { return 1000 + 20 * 10 + 10 * column - 15 * row; }
+
+/* Tiles of two resolutions with a common edge, of one slope: the slope goes on. */
+static void slopes_go_on_from_map_to_map(void **state) {
+    (void)state;
+    Made m;
+    made_begin(&m);
+    const char *paths[] = {made_hgt(&m, "N10E020.hgt", 11, 11, plane_coarse), made_hgt(&m, "N10E021.hgt", 21, 21, plane_fine)};
+    const Heightmap *map = made_open(&m, NULL, paths, 2);
+    assert_non_null(map);
+    assert_int_equal(heightmap_extent(map)->columns, 41);
+    for (int k = 0; k <= 400; k++)
+        for (int r = 0; r <= 10; r++)
+            WITHIN(made_ground(map, 11 - r / 10.0, 20 + k / 200.0), 1000 + k - 30 * r, 1e-2);
+    made_end(&m);
+}
+
 /* The lattice is that of the finest map; posts of the block are the ground. */
 static void blocks_are_the_ground_at_posts(void **state) {
     (void)state;
@@ -396,6 +414,7 @@ int main(void) {
         cmocka_unit_test(maps_cross_the_antimeridian),
         cmocka_unit_test(a_map_of_the_globe_closes),
         cmocka_unit_test(maps_of_other_lattices_are_blended),
+        cmocka_unit_test(slopes_go_on_from_map_to_map),
         cmocka_unit_test(blocks_are_the_ground_at_posts),
         cmocka_unit_test(voids_are_filled_from_their_rims),
         cmocka_unit_test(a_filled_void_has_no_seam_between_tiles),

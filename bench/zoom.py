@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 """A flight away from a lawn: does anything pop where voxels take the place of exact geometry?
 
-    bench/zoom.py [--vts PATH] [--frames N] [--from METRES] [--to METRES] [--size WxH] [--samples N] [OUT]
+    bench/zoom.py [--vts PATH] [--frames N] [--from METRES] [--to METRES] [--size WxH] [--samples N] [--stills] [OUT]
 
 One surface of 40 x 40 km under a texel of a metre, seen at 45 degrees from N distances, evenly spaced in the logarithm. Each frame
-is drawn as users get it, and with `detail exact` and many samples for the truth. Prints, for each frame: what voxels were built, the
-RMSE against the truth, the mean difference, and the flicker: the RMS over pixels of the change from one frame to the next of (picture
-- truth). OUT (default zoom-out) keeps the pictures.
+is drawn as users get it in a film, and twice with `detail exact` and many samples for the truth, whose own noise the two tell. Prints, for each
+frame: CPU seconds, the RMSE against the truth, the mean difference, and the flicker: the RMS over pixels of the
+change from one frame to the next of (picture - truth); the truth's noise is taken off. OUT (default zoom-out) keeps the pictures.
 """
 import argparse
 import array
-import json
+import glob
 import math
 import os
 import subprocess
@@ -47,11 +47,22 @@ def rms(values):
 
 
 def draw(options, distance, name, *more):
-    picture, report = (os.path.join(options.out, name + end) for end in (".pfm", ".json"))
-    command = [options.vts, "render", os.path.join(options.out, "zoom.vts"), "-s", options.size, "-D", "D=%.9g" % distance, "-o", picture]
-    subprocess.run(command + ["--report", report, "--progress", "none", *more], check=True)
-    with open(report) as f:
-        return read_pfm(picture), json.load(f)["frames"][0]
+    """The picture as a list of values, and the CPU seconds that it took."""
+    for old in glob.glob(os.path.join(options.out, name + "*.pfm")):
+        os.remove(old)
+    command = [options.vts, "render", os.path.join(options.out, "zoom.vts"), "-s", options.size, "-D", "D=%.9g" % distance]
+    before = os.times()
+    subprocess.run(command + ["-o", os.path.join(options.out, name + ".pfm"), "--progress", "none", *more], check=True)
+    after = os.times()
+    (picture,) = glob.glob(os.path.join(options.out, name + "*.pfm")) # a frame of a film has its number added
+    return read_pfm(picture), after.children_user + after.children_system - before.children_user - before.children_system
+
+
+def draw_truth(options, distance, name):
+    """The mean of two pictures, and the variance of its noise."""
+    exact = ["--set", "detail=exact", "--samples", options.samples]
+    a, b = (draw(options, distance, name + "-" + end + "-", *exact, "--seed", end)[0] for end in ("1", "2"))
+    return [(x + y) / 2 for x, y in zip(a, b)], sum((x - y) ** 2 for x, y in zip(a, b)) / (4 * len(a))
 
 
 def main():
@@ -61,24 +72,25 @@ def main():
     parser.add_argument("--from", dest="first", type=float, default=1)
     parser.add_argument("--to", dest="last", type=float, default=300)
     parser.add_argument("--size", default="96x72")
+    parser.add_argument("--stills", action="store_true", help="frames are pictures each for itself")
     parser.add_argument("--samples", default="64")
     parser.add_argument("out", nargs="?", default="zoom-out")
     options = parser.parse_args()
     os.makedirs(options.out, exist_ok=True)
     with open(os.path.join(options.out, "zoom.vts"), "w") as f:
         f.write(SCENE)
-    before, worst = None, (0, 0)
-    print("%10s %7s %8s %9s %9s %9s" % ("metres", "voxels", "CPU s", "RMSE", "mean", "flicker"))
+    before, worst, noise_before = None, (0, 0), 0
+    print("%10s %8s %9s %9s %9s" % ("metres", "CPU s", "RMSE", "mean", "flicker"))
     for i in range(options.frames):
         distance = options.first * (options.last / options.first) ** (i / max(options.frames - 1, 1))
-        picture, frame = draw(options, distance, "frame-%03d" % i)
-        truth, _ = draw(options, distance, "truth-%03d" % i, "--set", "detail=exact", "--samples", options.samples)
+        film = [] if options.stills else ["+KFI1", "+KFF%d" % (options.frames + 1), "+SF%d" % (i + 1), "+EF%d" % (i + 1)]
+        picture, seconds = draw(options, distance, "frame-%03d-" % i, *film)
+        truth, noise = draw_truth(options, distance, "truth-%03d" % i)
         error = [a - b for a, b in zip(picture, truth)]
-        flicker = rms([a - b for a, b in zip(error, before)]) if before else 0
-        before = error
+        flicker = math.sqrt(max(0, rms([a - b for a, b in zip(error, before)]) ** 2 - noise - noise_before)) if before else 0
+        before, noise_before = error, noise
         worst = max(worst, (flicker, distance))
-        built = frame["texels"][0]["built"]
-        print("%10.1f %7s %8.2f %9.5f %+9.5f %9.5f" % (distance, built or "none", frame["cpu_s"], rms(error), sum(error) / len(error), flicker), flush=True)
+        print("%10.1f %8.2f %9.5f %+9.5f %9.5f" % (distance, seconds, math.sqrt(max(0, rms(error) ** 2 - noise)), sum(error) / len(error), flicker), flush=True)
     print("largest flicker %.5f at %.1f metres" % worst)
 
 

@@ -230,6 +230,8 @@ static void pass_text(void *context, EvalStream stream, const char *text) {
     if (session->options.on_text) session->options.on_text(session->options.context, streams[stream], text);
 }
 
+static bool session_is_film(const VtsOptions *o) { return o->last_frame > o->first_frame || o->frame > 1; }
+
 VtsStatus session_evaluate(VtsSession *session, const char *path, EvalMode mode) {
     const VtsOptions *o = &session->options;
     struct EvalDeclare *declares = arena_new_array(&session->parse, struct EvalDeclare, o->declare_count);
@@ -237,7 +239,7 @@ VtsStatus session_evaluate(VtsSession *session, const char *path, EvalMode mode)
     EvalGeometry geometry = hooks_geometry(&session->scene_arena, session->texels);
     /* As in POV-Ray, what counts frames is 0 where there is no film; but a picture alone is the first of one, so that scenes which
      * take their part of a table by the frame's number can be read and drawn. */
-    bool film = o->last_frame > o->first_frame || o->frame > 1, counted = film || !mode.is_program;
+    bool film = session_is_film(o), counted = film || !mode.is_program;
     EvalOptions options = {.geometry = &geometry, .include_dirs = o->include_dirs, .include_dir_count = o->include_dir_count,
                            .stdlib_dir = session->stdlib.size ? session->stdlib.data : NULL,
                            .declares = declares, .declare_count = o->declare_count, .clock = o->clock, .clock_on = film || o->clock_set,
@@ -272,7 +274,7 @@ VtsStatus session_compile(VtsSession *session, bool exact, int texel_resolution)
     CompileOptions options = {.pool = session->pool, .memory = &session->memory, .texels = session->texels, .progress = &session->progress,
                               .width = session->options.width, .height = session->options.height,
                               .texel_resolution = texel_resolution,
-                              .interrupted = &session->interrupted, .exact = exact};
+                              .interrupted = &session->interrupted, .exact = exact, .film = session_is_film(&session->options)};
     CompileStatus result = compile_scene(session->scene, &options, &session->compiled_arena, &session->diags, &session->compiled);
     session_print_diagnostics(session);
     return result == COMPILE_OK ? VTS_OK : result == COMPILE_INTERRUPTED ? VTS_INTERRUPTED : VTS_ERROR_SCENE;

@@ -11,7 +11,7 @@ static const double NEAREST_BLOCK = 0.3, FARTHEST_BLOCK = 1.5;
 static const double EXACT_REACH = 2.2;
 /* Voxels may make this part of the error that is accepted: the rest is left to noise, and to what differs from frame to frame. Where exact geometry would be
  * noisier than that with all the samples it may have, voxels are better at any rate. */
-static const double VOXELS_SHARE = 0.6, VOXELS_SHARE_OF_NOISE = 0.9;
+static const double VOXELS_SHARE = 0.6, VOXELS_SHARE_OF_NOISE = 0.8;
 /* How the noise of what is small beside a pixel falls with the samples. */
 static const double NOISE_POWER = 0.6;
 /* How far the plan may be put off, relative to it: farther costs too much. */

@@ -21,6 +21,7 @@ typedef struct CompileOptions {
     int texel_resolution; /* to build texels at, as far as they allow it; 0: what the view can see */
     const atomic_bool *interrupted;
     bool exact; /* for the reference: texels and skins keep their geometry, no voxels are built */
+    bool film;  /* one of several pictures in a row: skins are drawn so much better that what changes between two is right to max_error */
 } CompileOptions;
 
 typedef struct CompiledScene {

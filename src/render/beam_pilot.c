@@ -10,8 +10,8 @@ static const double NEAREST_BLOCK = 0.3, FARTHEST_BLOCK = 1.5;
 /* So far all of a block's samples are drawn as exact geometry: beyond, far fields would cost too much. */
 static const double EXACT_REACH = 2.2;
 /* Voxels may make this part of the error that is accepted: the rest is left to noise, and to what differs from frame to frame. Where exact geometry would be
- * noisier than that with all the samples it may have, voxels are better at any rate. */
-static const double VOXELS_SHARE = 0.6, VOXELS_SHARE_OF_NOISE = 0.8;
+ * noisier than that error with all the samples it may have, they may make all of it. */
+static const double VOXELS_SHARE = 0.6;
 /* How the noise of what is small beside a pixel falls with the samples. */
 static const double NOISE_POWER = 0.6;
 /* How far the plan may be put off, relative to it: farther costs too much. */
@@ -114,8 +114,8 @@ void beam_pilot(CompiledScene *compiled) {
     if (count >= LEAST_BLOCKS) {
         for (int way = 0; way < 3; way++) draw_blocks(compiled, way < 2 ? EXACT_REACH : 0, way < 2 ? EXACT_SAMPLES : VOXEL_SAMPLES, way, blocks, count);
         double error = fmax(error_of_voxels(blocks, count), LEAST_ERROR * compiled->max_error);
-        double share = least_noise(compiled, blocks, count) > compiled->max_error ? VOXELS_SHARE_OF_NOISE : VOXELS_SHARE;
-        double factor = double_clamp(error / (share * compiled->max_error), EARLIEST_VOXELS, LATEST);
+        double accepted = compiled->max_error * (least_noise(compiled, blocks, count) > compiled->max_error ? 1 : VOXELS_SHARE);
+        double factor = double_clamp(error / accepted, EARLIEST_VOXELS, LATEST);
         for (size_t i = 0; i < compiled->skin_count; i++)
             if (compiled->skins[i].boxes) compiled->skins[i].exact_to *= factor;
         compiled->all_exact_to *= factor;

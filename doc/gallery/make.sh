@@ -18,7 +18,7 @@ size_of() {
     teddy) echo 480x480 ;;
     tree) echo 400x320 ;;
     still_life) echo 400x300 ;;
-    contents | deformed | forest | jitter | superimposed) echo 640x360 ;;
+    contents | deformed | forest | fur | jitter | superimposed) echo 640x360 ;;
     *) echo 480x360 ;;
   esac
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# make.sh [VTS]: draws every scene of examples/ small, as doc/gallery/NAME.jpg.
+# make.sh [VTS]: draws every scene of examples/ and of doc/gallery/ small, as doc/gallery/NAME.jpg.
 # VTS is the program; without it, the one in build/ is taken, else the newest in build*/.
 set -eu -o pipefail
 gallery=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -16,9 +16,10 @@ size_of() {
     meadow_ball) echo 400x400 ;;
     hillside | sundial) echo 480x320 ;;
     teddy) echo 480x480 ;;
+    skies) echo 640x290 ;;
     tree) echo 400x320 ;;
     still_life) echo 400x300 ;;
-    contents | deformed | forest | fur | jitter | superimposed) echo 640x360 ;;
+    contents | deformed | forest | fur | kinds | meadow | jitter | superimposed) echo 640x360 ;;
     *) echo 480x360 ;;
   esac
 }
@@ -26,7 +27,7 @@ size_of() {
 program=${1:-$(find_program)}
 [ -n "$program" ] || { echo "make.sh: no vts found; build it, or name it: make.sh path/to/vts" >&2; exit 2; }
 
-for scene in "$root"/examples/*.vts; do
+for scene in "$root"/examples/*.vts "$gallery"/*.vts; do
   name=$(basename "$scene" .vts)
   picture=$gallery/$name.jpg
   "$program" render "$scene" --size "$(size_of "$name")" --output "$picture" --progress none

@@ -17,9 +17,11 @@ size_of() {
     hillside | sundial) echo 480x320 ;;
     teddy) echo 480x480 ;;
     skies) echo 640x290 ;;
+    fur) echo 448x252 ;;
+    meadow) echo 512x288 ;;
     tree) echo 400x320 ;;
     still_life) echo 400x300 ;;
-    contents | deformed | forest | fur | kinds | meadow | jitter | superimposed) echo 640x360 ;;
+    contents | deformed | forest | kinds | jitter | superimposed) echo 640x360 ;;
     *) echo 480x360 ;;
   esac
 }

@@ -219,8 +219,9 @@ static const Object *plant_object(const BuildContext *context, const LSystemDraf
     *plant = (Plant){.letters = word->letters, .first = word->first, .parameters = word->parameters, .count = word->count, .symbol_letters = letters};
     plant->branches = union_of(context, &branches, plant, span);
     plant->symbols = union_of(context, &symbols, plant, span);
-    *list_push(context->arena, &both) = plant->branches;
-    *list_push(context->arena, &both) = plant->symbols;
+    /* What is empty has no end, and would take the bounds of the rest with it. */
+    if (branches.count) *list_push(context->arena, &both) = plant->branches;
+    if (symbols.count) *list_push(context->arena, &both) = plant->symbols;
     return union_of(context, &both, plant, span);
 }
 

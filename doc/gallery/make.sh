@@ -13,6 +13,7 @@ find_program() {
 # Not all pictures have one shape.
 size_of() {
   case $1 in
+    birches) echo 480x320 ;;
     meadow_ball) echo 400x400 ;;
     hillside | sundial) echo 480x320 ;;
     teddy) echo 480x480 ;;

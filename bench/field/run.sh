@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # A field of 22,400 blades of grass: speed and error of vts beside plain ray casting of triangles through Embree.
 #
-#   bench/field/run.sh [--quick] [--runs N] [--vts PATH] [PEERS_DIR [OUT]]
+#   bench/field/run.sh [--quick] [--scenes "lawn orchard"] [--runs N] [--vts PATH] [PEERS_DIR [OUT]]
 #
 # PEERS_DIR (or the variable VTS_PEERS) holds the peer: ref_field.c, which makes the scenes and renders them through Embree, and
 # to_vts.py, which writes them for vts. Scenes: lawn, 1400 rigid copies; near, mid and far, the same blades bent over a skin and seen
-# from three distances. OUT (default: field-out) keeps what was built and the references, which are rendered once for each size;
+# from three distances; orchard, 512 rigid trees. OUT (default: field-out) keeps what was built and the references, which are rendered once for each size;
 # remove it to begin anew. --quick: 384 × 288 and coarser references; otherwise 768 × 576, half an hour.
 #
 # Times are user and system seconds of the whole process, the least of N runs (3), all with the same number of threads (2).
@@ -15,10 +15,11 @@
 # table tells how far the two are apart. Prints tables, writes OUT/field-WxH.csv and, with gnuplot, OUT/field-WxH.svg.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
-size=768x576 truth=256 peer_truth=1024 runs=3 vts=$here/../../build/vts threads=2
+scenes="lawn near mid far orchard" size=768x576 truth=256 peer_truth=1024 runs=3 vts=$here/../../build/vts threads=2
 while [ $# -gt 0 ]; do
   case $1 in
   --quick) size=384x288 truth=64 ;;
+  --scenes) scenes=$2 && shift ;;
   --runs) runs=$2 && shift ;;
   --vts) vts=$2 && shift ;;
   -*) echo "usage: $0 [--quick] [--runs N] [--vts PATH] [PEERS_DIR [OUT]]" >&2 && exit 2 ;;
@@ -36,8 +37,8 @@ peer=$out/ref_field
 peer=$(readlink -f "$peer")
 csv=$out/field-$size.csv
 
-declare -A kind=([lawn]=lawn [near]=lawn_skin [mid]=lawn_skin [far]=lawn_skin)
-declare -A view=([lawn]='' [near]='' [mid]='-view 0 -40 12 0 15 2 40' [far]='-view 0 -400 60 0 17 2 30')
+declare -A kind=([orchard]=orchard [lawn]=lawn [near]=lawn_skin [mid]=lawn_skin [far]=lawn_skin)
+declare -A view=([orchard]='' [lawn]='' [near]='' [mid]='-view 0 -40 12 0 15 2 40' [far]='-view 0 -400 60 0 17 2 30')
 
 # peer SCENE SAMPLES SEED PICTURE
 peer() {
@@ -49,9 +50,9 @@ make_scene() { # the exporter wants both scenes side by side, for the blades tha
   local folder=$out/scenes/$1
   [ -f "$folder.vts" ] && return
   mkdir -p "$folder"
-  for s in lawn lawn_skin; do
+  for s in lawn lawn_skin "${kind[$1]}"; do
     # shellcheck disable=SC2086
-    "$peer" -scene $s ${view[$1]} -export "$folder/$s" >"$out/log"
+    "$peer" -scene "$s" ${view[$1]} -export "$folder/$s" >"$out/log"
   done
   python3 "$peers/to_vts.py" "$folder/${kind[$1]}" "$folder.vts"
 }
@@ -95,8 +96,8 @@ point() {
 }
 
 echo "scene,program,setting,cpu_s,rmse_to_straight,rmse_to_bent" >"$csv"
-for scene in lawn near mid far; do make_scene $scene; done
-for scene in lawn near mid far; do
+for scene in $scenes; do make_scene "$scene"; done
+for scene in $scenes; do
   make_truth $scene
   t=$out/truth/$scene-$size
   echo "# $scene: facets $(awk "BEGIN {a = $(error "$t-peer1.pfm" "$t-vts"); b = $(rmse "$t-peer1.pfm" "$t-peer2.pfm"); e = a * a - b * b / 2; printf \"%.5f\", (e > 0 ? sqrt(e) : 0)}")," \

@@ -23,7 +23,7 @@ static unsigned wrap(double whole) { return (unsigned)(whole - HASH_SIZE * floor
 
 typedef struct Lattice {
     unsigned cell[3];
-    double fraction[3], curve[3]; /* curve: 3t² - 2t³ */
+    double x, y, z, u, v, w; /* the place in the cell, and its curves, 3t² - 2t³ */
 } Lattice;
 
 /* The place in its cell, the cell's number modulo 4096 from the lattice's origin. Small coordinates, which all are, need no
@@ -39,19 +39,17 @@ static inline unsigned cell_at(double x, double *fraction) {
     return wrap(floor(x)) + LATTICE_ORIGIN;
 }
 
-static double curve_at(double t) { return t * t * (3 - 2 * t); }
+static inline double curve_at(double t) { return t * t * (3 - 2 * t); }
 
-static Lattice lattice_at(Vec3 p) {
-    Lattice l;
-    l.cell[0] = cell_at(p.x, &l.fraction[0]);
-    l.cell[1] = cell_at(p.y, &l.fraction[1]);
-    l.cell[2] = cell_at(p.z, &l.fraction[2]);
-    for (int k = 0; k < 3; k++) l.curve[k] = curve_at(l.fraction[k]);
-    return l;
+/* In line, so that nothing of it goes through memory. */
+static inline Lattice lattice_at(Vec3 p) {
+    double x, y, z;
+    unsigned i = cell_at(p.x, &x), j = cell_at(p.y, &y), k = cell_at(p.z, &z);
+    return (Lattice){{i, j, k}, x, y, z, curve_at(x), curve_at(y), curve_at(z)};
 }
 
 /* The weights of the eight corners: hashed in x and y first, which the layers share. */
-static void find_corners(const unsigned cell[3], LatticeCorners corners) {
+static inline void find_corners(const unsigned cell[3], LatticeCorners corners) {
     unsigned mask = HASH_SIZE - 1, near = pov_hash[cell[0] & mask], far = pov_hash[(cell[0] + 1) & mask];
     unsigned y = cell[1] & mask, above = (cell[1] + 1) & mask, z = cell[2] & mask,
              behind = (cell[2] + 1) & mask;
@@ -65,8 +63,7 @@ static void find_corners(const unsigned cell[3], LatticeCorners corners) {
 
 /* The rows of another output are four numbers further. */
 static inline double between_corners(const double *const corners[8], int skip, const Lattice *l) {
-    return lattice_between(corners, skip, l->fraction[0], l->fraction[1], l->fraction[2], l->curve[0],
-                           l->curve[1], l->curve[2]);
+    return lattice_between(corners, skip, l->x, l->y, l->z, l->u, l->v, l->w);
 }
 
 static double raw_noise(Vec3 p) {
@@ -90,8 +87,9 @@ double noise_pov_gradient3(Vec3 p, double gradient[3]) {
     LatticeCorners corners;
     double slope[3];
     find_corners(lattice.cell, corners);
-    for (int k = 0; k < 3; k++) slope[k] = 6 * lattice.fraction[k] * (1 - lattice.fraction[k]);
-    double raw = lattice_gradient(corners, lattice.fraction, lattice.curve, slope, gradient);
+    const double place[3] = {lattice.x, lattice.y, lattice.z}, curve[3] = {lattice.u, lattice.v, lattice.w};
+    for (int k = 0; k < 3; k++) slope[k] = 6 * place[k] * (1 - place[k]);
+    double raw = lattice_gradient(corners, place, curve, slope, gradient);
     for (int k = 0; k < 3; k++) gradient[k] *= 0.48985582;
     return (raw + 1.05242) * 0.48985582;
 }

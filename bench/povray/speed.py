@@ -1,27 +1,36 @@
 #!/usr/bin/env python3
-"""speed.py --work FOLDER [--vts PROGRAM] [--size WxH] [--runs N] [--patience SECONDS] [--prepare] [-o TABLE.md] [SCENE…]
+"""speed.py --work FOLDER [--vts PROGRAM] [--size WxH] [--runs N] [--patience SECONDS] [--prepare] [-o TABLE.md] [--points FILE] [SCENE…]
 
-Processor seconds of POV-Ray and of vts at equal error, one thread each, for the scenes of tests/scenes or those named. POV-Ray draws with
-+A0.3 +AM1 +R3, as its users do. The error of each program's picture is its distance from what the same program makes of the same scene with many
-rays for every pixel (RMSE over pixels and channels, linear light clamped to [0, 1]), so that it tells of sampling alone. vts gets the
-largest --max-error of the list in ERRORS with which its error is no larger than POV-Ray's. Times are the least of --runs runs, from the
-program's start to its end, and contain reading the scene.
+Processor seconds of POV-Ray and of vts at equal error, one thread each, for the scenes of tests/scenes or those named. Each program draws
+the scene with many settings: POV-Ray with those of POVRAY (both methods of anti-aliasing, thresholds, depths), vts with the --max-error
+of VTS. The error of a picture is its distance from what the same program makes of the scene with many rays for every pixel (RMSE over
+pixels and channels, linear light clamped to [0, 1]), so that it tells of sampling alone; the table says how far these two are apart.
+The best pictures have errors of their own, so that less than about 0.0015 cannot be told. For an error that is asked for, each program gets the time of its fastest setting that is as exact. Times are the least of --runs runs,
+from the program's start to its end, reading and writing included.
 
-Where POV-Ray's best picture takes longer than --patience the error of its picture is told by vts's best. The pictures of many rays stay in the work
-folder and are not drawn again; --prepare draws them and ends."""
+Scenes are left out whose best picture takes POV-Ray longer than --patience seconds, and those of which the two best pictures are further apart
+than APART: the programs do not draw the same. The pictures of many rays stay in the work folder and are
+not drawn again; --prepare draws them and ends. --points: all that was measured, a line each: scene, program, setting, seconds, error."""
 import argparse
 import glob
 import math
 import os
+import sys
 
 import pictures
 import programs
 
 SCENES = os.path.join(programs.TOP, 'tests', 'scenes')
+BEST = ('+A0.0', '+AM1', '+R8', '-J')
+BEST_SAMPLES = 128
 USUAL = ('+A0.3', '+AM1', '+R3', '-J')
-BEST = ('+A0.0', '+AM1', '+R5', '-J')
-BEST_SAMPLES = 64
-ERRORS = [0.1 / 1.5 ** k for k in range(15)]
+POVRAY = [('-A',), USUAL] + [('+A' + threshold, '+AM' + method, '+R' + depth, '-J') for method, depth, threshold in (
+    ('1', '3', '0.1'), ('1', '3', '0.03'), ('1', '5', '0.1'), ('1', '5', '0.03'), ('1', '7', '0.03'), ('2', '2', '0.3'), ('2', '2', '0.1'),
+    ('2', '3', '0.1'), ('2', '3', '0.03'), ('2', '4', '0.1'), ('2', '4', '0.03'), ('2', '4', '0.01'), ('2', '5', '0.1'), ('2', '5', '0.03'),
+    ('2', '5', '0.01'))]
+VTS = [0.1, 0.02, 0.012, 0.009, 0.006, 0.004, 0.0028, 0.002, 0.0014, 0.001]
+APART = 0.01
+ASKED = [4 / 255, 2 / 255, 1 / 255, 0.5 / 255]
 
 
 def arguments():
@@ -29,12 +38,39 @@ def arguments():
     parser.add_argument('--work', required=True)
     parser.add_argument('--vts', default=programs.VTS)
     parser.add_argument('--size', default='320x240')
-    parser.add_argument('--runs', type=int, default=3)
+    parser.add_argument('--runs', type=int, default=2)
     parser.add_argument('--patience', type=int, default=60)
     parser.add_argument('--prepare', action='store_true')
     parser.add_argument('-o', '--output')
+    parser.add_argument('--points')
     parser.add_argument('scenes', nargs='*')
     return parser.parse_args()
+
+
+class Point:
+    """A picture: how it was drawn, what it took, how far it is from the best."""
+    def __init__(self, setting, seconds, error):
+        self.setting, self.seconds, self.error = setting, seconds, error
+
+
+def fastest(points, error):
+    """The fastest that is as exact; None where none is."""
+    return min((p for p in points if p.error <= error), key=lambda p: p.seconds, default=None)
+
+
+class Row:
+    def __init__(self, name, povray, vts, apart):
+        self.name, self.povray, self.vts, self.apart = name, povray, vts, apart
+
+    def usual(self):
+        """POV-Ray's picture as its users draw it."""
+        return next(p for p in self.povray if p.setting == ' '.join(USUAL))
+
+    def pair(self, error):
+        """The fastest of both as exact; None where one is not. `error` None: as exact as POV-Ray's usual picture, and its time."""
+        theirs = self.usual() if error is None else fastest(self.povray, error)
+        ours = fastest(self.vts, theirs.error if error is None else error)
+        return (theirs, ours) if theirs and ours else None
 
 
 class Bench:
@@ -53,85 +89,94 @@ class Bench:
         return programs.vts(scene, out, self.size, options, program=self.options.vts, timeout=300)
 
     def best(self, scene, name):
-        """POV-Ray's picture of many rays and vts's; None for one that there is not."""
+        """POV-Ray's picture of many rays and vts's; None when one is missing."""
         theirs, late, ours = self.path(name, '-best.ppm'), self.path(name, '-late'), self.path(name, '-best.pfm')
-        if not os.path.exists(theirs) and not os.path.exists(late):
-            if self.povray(scene, theirs, BEST, self.options.patience).status != 0:
-                open(late, 'w', encoding='utf-8').close()
+        if not os.path.exists(theirs) and not os.path.exists(late) and self.povray(scene, theirs, BEST, self.options.patience).status != 0:
+            open(late, 'w', encoding='utf-8').close()
+        if not os.path.exists(theirs):
+            return None
         if not os.path.exists(ours):
             self.vts(scene, ours, ['--samples', str(BEST_SAMPLES)])
-        return (pictures.read_ppm(theirs) if os.path.exists(theirs) else None,
-                pictures.read_pfm(ours) if os.path.exists(ours) else None)
+        return (pictures.read_ppm(theirs), pictures.read_pfm(ours)) if os.path.exists(ours) else None
 
-    def least(self, render):
-        """The least seconds of some runs; None when one fails."""
-        found = []
+    def measure(self, setting, out, truth, read, render):
+        """The point of a setting; None when the program fails."""
+        seconds = math.inf
         for _ in range(self.options.runs):
             done = render()
             if done.status != 0:
                 return None
-            found.append(done.seconds)
-            if done.seconds > 5:
+            seconds = min(seconds, done.seconds)
+            if done.seconds > 3:
                 break
-        return min(found)
-
-    def equal(self, scene, name, truth, error):
-        """(max_error, error, picture's error) of the fastest picture of vts that is as exact."""
-        out = self.path(name, '-vts.pfm')
-        low, high = 0, len(ERRORS) - 1
-        found = {}
-
-        def error_of(k):
-            if k not in found:
-                done = self.vts(scene, out, ['--max-error', '%.5f' % ERRORS[k]])
-                found[k] = pictures.rmse(pictures.read_pfm(out), truth) if done.status == 0 else math.inf
-            return found[k]
-        while low < high:
-            middle = (low + high) // 2
-            if error_of(middle) <= error:
-                high = middle
-            else:
-                low = middle + 1
-        return ERRORS[low], error_of(low)
+        return Point(setting, seconds, pictures.rmse(read(out), truth))
 
     def row(self, scene):
-        """(name, seconds of POV-Ray, its error, max_error, seconds of vts, its error); None when a program fails."""
         name = os.path.basename(scene)[:-4]
-        theirs, ours = self.best(scene, name)
-        out = self.path(name, '-pov.ppm')
-        if ours is None:
+        best = self.best(scene, name)
+        if best is None:
             return None
-        first = self.least(lambda: self.povray(scene, out, USUAL, 300))
-        if first is None:
+        theirs, ours = self.path(name, '-pov.ppm'), self.path(name, '-vts.pfm')
+        povray = [self.measure(' '.join(quality), theirs, best[0], pictures.read_ppm, lambda q=quality: self.povray(scene, theirs, q, 300))
+                  for quality in POVRAY]
+        vts = [self.measure('%g' % error, ours, best[1], pictures.read_pfm, lambda e=error: self.vts(scene, ours, ['--max-error', '%g' % e]))
+               for error in VTS]
+        if None in povray or None in vts:
             return None
-        error = pictures.rmse(pictures.read_ppm(out), theirs or ours)
-        asked, reached = self.equal(scene, name, ours, error)
-        second = self.least(lambda: self.vts(scene, self.path(name, '-vts.pfm'), ['--max-error', '%.5f' % asked]))
-        return name, first, error, asked, second, reached
+        return Row(name, povray, vts, pictures.rmse(*best))
+
+
+def mean_ratio(pairs):
+    return math.exp(sum(math.log(theirs.seconds / ours.seconds) for theirs, ours in pairs) / len(pairs))
+
+
+def asked_name(error):
+    return "as `+A0.3 +AM1 +R3`" if error is None else '%.4f' % error
 
 
 def table(rows, size):
-    mean = math.exp(sum(math.log(row[1] / row[4]) for row in rows) / len(rows)) if rows else 0
-    total = sum(row[1] for row in rows) / max(sum(row[4] for row in rows), 1e-9)
-    yield '%d scenes, %s pixels: POV-Ray takes %.2f times as long as vts (geometric mean; all scenes together: %.2f times).' % (len(rows), size, mean, total)
+    asked = [None] + ASKED
+    yield '%d scenes, %s pixels. How many times as long POV-Ray takes, geometric mean:' % (len(rows), size)
     yield ''
-    yield '| scene | POV-Ray, s | its error | `--max-error` | vts, s | its error | times as fast |'
-    yield '|---|---|---|---|---|---|---|'
-    for name, theirs, error, asked, ours, reached in sorted(rows, key=lambda row: row[1] / row[4]):
-        yield '| %s | %.2f | %.4f | %.4f | %.2f | %.4f | %.2f |' % (name, theirs, error, asked, ours, reached, theirs / ours)
+    yield '| RMSE | scenes that both reach | POV-Ray over vts |'
+    yield '|---|---|---|'
+    for error in asked:
+        pairs = [pair for pair in (row.pair(error) for row in rows) if pair]
+        if pairs:
+            yield '| %s | %d | %.2f |' % (asked_name(error), len(pairs), mean_ratio(pairs))
+    yield ''
+    yield '| scene | apart | its usual error, s | vts, s | ' + ' | '.join('at ' + asked_name(error) for error in asked) + ' |'
+    yield '|---' * (4 + len(asked)) + '|'
+    for row in sorted(rows, key=lambda row: row.name):
+        usual = row.pair(None)
+        cells = []
+        for error in asked:
+            pair = row.pair(error)
+            cells.append('%.2f' % (pair[0].seconds / pair[1].seconds) if pair else '–')
+        yield '| %s | %.4f | %.4f, %.3f | %s | %s |' % (row.name, row.apart, row.usual().error, row.usual().seconds,
+                                                  '%.3f' % usual[1].seconds if usual else '–', ' | '.join(cells))
 
 
 def main():
     options = arguments()
     bench = Bench(options)
-    scenes = options.scenes or sorted(glob.glob(os.path.join(SCENES, '*.pov')))
-    if options.prepare:
-        for scene in scenes:
+    rows = []
+    for scene in options.scenes or sorted(glob.glob(os.path.join(SCENES, '*.pov'))):
+        if options.prepare:
             bench.best(scene, os.path.basename(scene)[:-4])
-        return
-    rows = [row for row in (bench.row(scene) for scene in scenes) if row]
-    text = '\n'.join(table(rows, options.size)) + '\n'
-    programs.put(text, options.output)
+            continue
+        row = bench.row(scene)
+        if not row or row.apart > APART:
+            print('left out: ' + scene, file=sys.stderr)
+            continue
+        rows.append(row)
+        if options.points:
+            with open(options.points, 'a', encoding='utf-8') as out:
+                for program, points in (('povray', row.povray), ('vts', row.vts)):
+                    for p in points:
+                        out.write('%s\t%s\t%s\t%.4f\t%.6f\n' % (row.name, program, p.setting, p.seconds, p.error))
+    if rows:
+        programs.put('\n'.join(table(rows, options.size)) + '\n', options.output)
 
 
 if __name__ == '__main__':

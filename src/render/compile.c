@@ -168,7 +168,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
                   path_of(scene->settings.ray_path), out);
     out->march.slab = out->shadow_march.slab = detail_of(scene->settings.detail) == DETAIL_SLAB;
     const TerrainViewOptions terrains = {options->pool, out->max_error, options->exact, MOST_TERRAIN_VERTICES, skin_longest_cell};
-    out->scene = scene = terrains_as_seen(scene, &out->view, &terrains, arena, diags);
+    out->scene = scene = terrains_as_seen(scene, &out->view, &terrains, &out->scratch, arena, diags);
     if (!scene) return COMPILE_FAILED;
     out->hierarchy = hierarchy_build(scene, arena, diags);
     if (!out->hierarchy) return COMPILE_FAILED;

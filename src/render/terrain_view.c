@@ -32,7 +32,7 @@ typedef struct Lowering {
     const Scene *scene;
     const View *view;
     const TerrainViewOptions *options;
-    Arena *arena;
+    Arena *arena, *scratch;
     DiagList *diags;
     struct { Stand *items; size_t count, capacity; } stands;
     struct { SeenGroup *items; size_t count, capacity; } groups; /* open addressing */
@@ -86,12 +86,14 @@ static const MeshData *mesh_of(Lowering *l, Stand *stand) {
     const GroundDetail detail = {.allow = allow, .context = &allowance, .every_post = stand->terrain->every_post, .most_vertices = l->options->most_vertices};
     MeshData *mesh = arena_new(l->arena, MeshData);
     GroundErrors errors;
-    ground_errors_build(&ground->source, l->options->pool, l->arena, &errors);
-    if (!ground_mesh_build(&ground->source, &errors, &detail, l->arena, l->arena, mesh)) {
+    ArenaMark mark = arena_mark(l->scratch);
+    ground_errors_build(&ground->source, l->options->pool, l->scratch, &errors);
+    if (!ground_mesh_build(&ground->source, &errors, &detail, l->scratch, l->arena, mesh)) {
         Diagnostic *d = diag_error(l->diags, stand->terrain->span, "this terrain needs more than %zu vertices", l->options->most_vertices);
         if (stand->terrain->every_post) diag_hint(l->diags, d, "it has %d x %d posts: 'detail auto' draws those that are seen", ground->source.columns, ground->source.rows);
         l->failed = true;
     }
+    arena_reset_to(l->scratch, mark);
     mesh_rehash(mesh);
     return stand->mesh = mesh;
 }
@@ -207,10 +209,11 @@ static const Skin *lower_skin(Lowering *l, const Skin *skin) {
     return out;
 }
 
-const Scene *terrains_as_seen(const Scene *scene, const View *view, const TerrainViewOptions *options, Arena *arena, DiagList *diags) {
+const Scene *terrains_as_seen(const Scene *scene, const View *view, const TerrainViewOptions *options, Arena *scratch, Arena *arena,
+                              DiagList *diags) {
     const Transform identity = transform_identity();
     if (!scene->has_terrain) return scene;
-    Lowering l = {.scene = scene, .view = view, .options = options, .arena = arena, .diags = diags};
+    Lowering l = {.scene = scene, .view = view, .options = options, .arena = arena, .scratch = scratch, .diags = diags};
     measure_pixels(&l);
     for (size_t i = 0; i < scene->skin_count; i++) ask_for_cells(&l, scene->skins[i]);
     const Object **objects = arena_new_array(arena, const Object *, scene->object_count);

@@ -14,8 +14,9 @@ typedef struct TerrainViewOptions {
     double (*skin_side)(const Skin *skin); /* the longest cells that a skin can do with; 0: none is short enough; HUGE_VAL: any */
 } TerrainViewOptions;
 
-/* The scene with meshes in place of its terrains, in `arena`; the scene itself if it has none. What stands at the same place, the ground
+/* The scene with meshes in place of its terrains, in `arena` (`scratch` is another, and reset); the scene itself if it has none. What stands at the same place, the ground
  * and the surface of its skin, is the same mesh. NULL after a diagnostic. */
-const Scene *terrains_as_seen(const Scene *scene, const View *view, const TerrainViewOptions *options, Arena *arena, DiagList *diags);
+const Scene *terrains_as_seen(const Scene *scene, const View *view, const TerrainViewOptions *options, Arena *scratch, Arena *arena,
+                              DiagList *diags);
 
 #endif

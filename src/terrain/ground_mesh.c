@@ -3,8 +3,6 @@
 #include "terrain/ground_nodes.h"
 #include "terrain/ground_normals.h"
 
-enum { MOST_PASSES = 6 };
-
 typedef struct Refinement {
     const GroundSource *source;
     const GroundErrors *errors;
@@ -149,7 +147,8 @@ static uint32_t halved_at(const Refinement *r, const Triangle *t) {
 
 static bool too_many(const Refinement *r) { return r->detail->most_vertices && r->nodes.count > r->detail->most_vertices; }
 
-/* No deeper than twice the levels. */
+/* No deeper than twice the levels. Halves that a neighbour demands are not asked again: their errors, sides and spheres lie within those of
+ * the whole, which was content. */
 static void refine(Refinement *r, Triangle t) {
     if (is_outside(r, &t) || too_many(r)) return;
     uint32_t middle = halved_at(r, &t), x, y;
@@ -316,14 +315,6 @@ static void keep_mesh(const Output *out, Arena *arena, MeshData *mesh) {
     mesh->uvs = places_as_uv(mesh->vertices, count, arena);
 }
 
-static void refine_all(Refinement *r, const Triangle roots[2]) {
-    for (int pass = 0; pass < MOST_PASSES; pass++) {
-        size_t before = r->nodes.count;
-        for (int i = 0; i < 2; i++) refine(r, roots[i]);
-        if (r->nodes.count == before || too_many(r)) return;
-    }
-}
-
 bool ground_mesh_build(const GroundSource *source, const GroundErrors *errors, const GroundDetail *detail, Arena *scratch, Arena *arena,
                        MeshData *mesh) {
     Refinement r = {.source = source, .errors = errors, .detail = detail, .last = (uint32_t)GROUND_PARTS << errors->levels};
@@ -338,7 +329,7 @@ bool ground_mesh_build(const GroundSource *source, const GroundErrors *errors, c
         r.nodes.items[corner[i]].corner = true;
     }
     const Triangle roots[2] = {{corner[0], corner[3], corner[1]}, {corner[3], corner[0], corner[2]}};
-    refine_all(&r, roots);
+    for (int i = 0; i < 2; i++) refine(&r, roots[i]);
     bool fits = !too_many(&r);
     Output out = {.r = &r, .scratch = scratch};
     for (int i = 0; i < 2 && fits; i++) emit_leaves(&out, roots[i]);

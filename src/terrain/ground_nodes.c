@@ -4,10 +4,15 @@
 
 enum { FIRST_TABLE = 1 << 12 };
 
+/* Neighbours of one level of the grid share lines of the cache. */
 static size_t slot_of(const GroundNodes *nodes, uint32_t x, uint32_t y) {
-    uint64_t key = (uint64_t)y << 32 | x;
+    enum { NEAR_BITS = 2, NEAR = 1 << NEAR_BITS };
+    const int level = x | y ? __builtin_ctz(x | y) : 0;
+    x >>= level, y >>= level;
+    uint64_t key = ((uint64_t)(y >> NEAR_BITS) << 32 | x >> NEAR_BITS) + ((uint64_t)level << 58);
     key = (key ^ key >> 31) * 0x9E3779B97F4A7C15u;
-    return (size_t)(key ^ key >> 29) & (nodes->table_size - 1);
+    const size_t within = (y % NEAR) * NEAR + x % NEAR;
+    return (size_t)((key ^ key >> 29) << (2 * NEAR_BITS) | within) & (nodes->table_size - 1);
 }
 
 static void clear_table(GroundNodes *nodes, size_t size) {

@@ -142,6 +142,18 @@ static void read_accuracy(Reader *reader, const Word *word, void *target) {
 static void read_max_gradient(Reader *reader, const Word *word, void *target) {
     read_one(reader, word, &draft_of(target)->max_gradient, target);
 }
+static void read_method(Reader *reader, const Word *word, void *target) {
+    static const char *const names[] = {"auto", "interval", "affine", "reduced_affine", "reduced_affine_optimised"};
+    (void)reader;
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(names); i++)
+        if (strcmp(names[i], word->text) == 0) draft_of(target)->method = (IsosurfaceMethod)i;
+    push_from(target, word, 0);
+}
+static void read_full(Reader *reader, const Word *word, void *target) {
+    (void)reader;
+    draft_of(target)->full_detail = true;
+    push_from(target, word, 0);
+}
 static void read_water_level(Reader *reader, const Word *word, void *target) {
     read_one(reader, word, &draft_of(target)->water_level, target);
 }
@@ -245,12 +257,12 @@ static const WordRule rules[] = {
     {"precompute", WORD_IGNORED, 0, NULL, false},
     {"method", WORD_IGNORED, 0, NULL, false},
     {"detail", WORD_IGNORED, 0, NULL, false},
-    {"interval", WORD_IGNORED, 0, NULL, false},
-    {"affine", WORD_IGNORED, 0, NULL, false},
-    {"reduced_affine", WORD_IGNORED, 0, NULL, false},
-    {"reduced_affine_optimised", WORD_IGNORED, 0, NULL, false},
-    {"auto", WORD_IGNORED, 0, NULL, false},
-    {"full", WORD_IGNORED, 0, NULL, false},
+    CUSTOM("interval", read_method),
+    CUSTOM("affine", read_method),
+    CUSTOM("reduced_affine", read_method),
+    CUSTOM("reduced_affine_optimised", read_method),
+    {"auto", WORD_IGNORED, 0, NULL, false}, /* of method and detail: what they are without it */
+    CUSTOM("full", read_full),
     {"gamma", WORD_IGNORED, 0, NULL, false},
 };
 

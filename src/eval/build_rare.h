@@ -18,6 +18,8 @@ typedef struct RareDraft {
         BlobPart *items;
         size_t count, capacity;
     } parts;
+    bool full_detail;
+    IsosurfaceMethod method;
     bool takes_parts, open, conic, smooth, hypercomplex;
     CurveKind curve;
     double threshold, accuracy, max_gradient, water_level, iterations;

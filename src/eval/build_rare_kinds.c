@@ -268,6 +268,8 @@ bool build_isosurface(BuildContext *context, const EvalBlock *block, Value *out)
     s->as.isosurface.accuracy = draft.accuracy;
     s->as.isosurface.max_gradient = draft.max_gradient;
     s->as.isosurface.open = draft.open;
+    s->as.isosurface.method = draft.method;
+    s->as.isosurface.full_detail = draft.full_detail;
     return rare_end(&draft, out);
 }
 

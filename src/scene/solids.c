@@ -130,7 +130,7 @@ void solid_rehash(Solid *s) {
             &h,
             (double[]){s->as.isosurface.threshold, s->as.isosurface.accuracy, s->as.isosurface.max_gradient},
             3);
-        hash_add_u64(&h, s->as.isosurface.open);
+        hash_add_u64(&h, (uint64_t)s->as.isosurface.method << 2 | (uint64_t)s->as.isosurface.full_detail << 1 | (uint64_t)s->as.isosurface.open);
         break;
     case SOLID_PARAMETRIC: add_parametric(&h, s); break;
     case SOLID_HEIGHT_FIELD: add_field(&h, s); break;

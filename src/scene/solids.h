@@ -70,6 +70,15 @@ typedef enum JuliaFunction {
     JULIA_PWR
 } JuliaFunction;
 
+/* How zeros of an isosurface's function are enclosed; see shape/line_roots.h. */
+typedef enum IsosurfaceMethod {
+    ISOSURFACE_AUTO,
+    ISOSURFACE_INTERVAL,
+    ISOSURFACE_AFFINE,
+    ISOSURFACE_REDUCED,
+    ISOSURFACE_OPTIMISED,
+} IsosurfaceMethod;
+
 typedef struct Solid {
     SolidKind kind;
     const char *word; /* the keyword that made it */
@@ -136,9 +145,10 @@ typedef struct Solid {
         } ovus;
         struct {
             const Tape *function;
-            const Object *container; /* a sphere or box, without a transform of its own */
+            const Object *container;
             double threshold, accuracy, max_gradient;
-            bool open;
+            bool open, full_detail; /* full: no octave is left out */
+            IsosurfaceMethod method;
         } isosurface;
         struct {
             const Tape *functions[3]; /* of u, v */

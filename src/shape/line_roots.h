@@ -7,6 +7,7 @@
 #define VTS_SHAPE_LINE_ROOTS_H
 
 #include "scene/scene.h"
+#include "tape/tape_lanes.h"
 
 /* How bounds are had: by intervals; by affine forms without and with the cut of equation 16. */
 typedef enum LineMethod { LINE_INTERVAL, LINE_AFFINE, LINE_AFFINE_OPTIMISED } LineMethod;
@@ -16,6 +17,7 @@ typedef struct Line {
     double level;          /* zeros of the function less this are sought */
     Vec3 origin, direction;
     LineMethod method;
+    const TapeSum *sum; /* of the tape, over a box that the line does not leave: bounds of many pieces at once, by LINE_AFFINE_OPTIMISED; or NULL */
 } Line;
 
 typedef struct LineWork {
@@ -26,5 +28,8 @@ typedef struct LineWork {
  * is no number counts as above. Places closer than what doubles tell apart there are one; where function and level only touch
  * there is none. *falling: it is not above behind the place. `work` may be NULL. */
 bool line_first_root(const Line *line, double from, double to, double *t, bool *falling, LineWork *work);
+
+/* Where the search goes on behind a root at t: far enough for the root not to be found again. */
+double line_behind(const Line *line, double t);
 
 #endif

@@ -1,16 +1,55 @@
 /* Surfaces of functions of the place: isosurface. */
+#include "shape/body.h"
 #include "shape/intersect.h"
+#include "shape/line_roots.h"
 #include "shape/roots.h"
 #include "shape/solid.h"
 #include "shape/solid_field.h"
+#include "tape/tape_interval.h"
 
-enum { PART_SURFACE, PART_CONTAINER_IN, PART_CONTAINER_OUT, MOST_STEPS = 200000, LEAST_STEPS = 32 };
+enum { PART_SURFACE, PART_CONTAINER, MOST_STEPS = 200000, LEAST_STEPS = 32, MOST_ENDS = 64, MOST_CHANGES = 100000 };
+
+typedef struct Field {
+    const Solid *solid;
+    Line line; /* but for the ray */
+    bool bounded;
+    const Body *container; /* NULL: it is a sphere or box */
+    Transform place;       /* of the container */
+    Box3 bounds;
+} Field;
+
+static const LineMethod methods[] = {
+    [ISOSURFACE_AUTO] = LINE_AFFINE_OPTIMISED, [ISOSURFACE_INTERVAL] = LINE_INTERVAL,         [ISOSURFACE_AFFINE] = LINE_AFFINE,
+    [ISOSURFACE_REDUCED] = LINE_AFFINE,        [ISOSURFACE_OPTIMISED] = LINE_AFFINE_OPTIMISED,
+};
+
+static void prepare_sum(Field *f, Arena *arena) {
+    TapeSum *sum = arena_new(arena, TapeSum);
+    Vec3 margin = vec3_scale(vec3_sub(f->bounds.max, f->bounds.min), 0x1p-20);
+    Vec3 low = vec3_sub(f->bounds.min, margin), high = vec3_add(f->bounds.max, margin);
+    const Interval box[3] = {interval(low.x, high.x), interval(low.y, high.y), interval(low.z, high.z)};
+    *sum = tape_sum_of(f->line.tape, box, arena);
+    f->line.sum = sum;
+}
 
 static const void *prepare(const Object *object, Arena *arena) {
     const Solid *s = object->as.solid;
-    ObjectKind kind = s->as.isosurface.container->kind;
-    (void)arena;
-    return kind == OBJECT_SPHERE || kind == OBJECT_BOX ? s : NULL;
+    const Object *container = s->as.isosurface.container;
+    Field *f = arena_new(arena, Field);
+    const Tape *tape = s->as.isosurface.function;
+    *f = (Field){.solid = s, .place = object_transform(container)};
+    f->line = (Line){.tape = tape, .level = s->as.isosurface.threshold, .method = methods[s->as.isosurface.method]};
+    Box3 bounds = shape_bounds(container);
+    if (container->kind != OBJECT_SPHERE && container->kind != OBJECT_BOX) {
+        f->container = body_of(shape_tracer_create(arena), container);
+        if (!f->container) return NULL;
+        bounds = body_bounds(f->container);
+    }
+    if (box3_is_empty(bounds) || !vec3_is_finite(bounds.min) || !vec3_is_finite(bounds.max)) return NULL;
+    f->bounds = box3_transform(&f->place, bounds);
+    f->bounded = tape_input_count(tape) == 3 && tape_output_count(tape) == 1 && tape_is_bounded(tape);
+    if (f->bounded && s->as.isosurface.method == ISOSURFACE_AUTO) prepare_sum(f, arena);
+    return f;
 }
 
 static double counted(const Solid *s, double value) {
@@ -38,11 +77,6 @@ void solid_isosurface_row(const Solid *s, Vec3 point, Vec3 step, size_t count, d
     }
     tape_eval_batch(tape, count, inputs, outputs);
     for (size_t i = 0; i < count; i++) out[i] = counted(s, out[i]);
-}
-
-static Ray container_ray(const Solid *s, const Ray *ray) {
-    Transform t = object_transform(s->as.isosurface.container);
-    return (Ray){transform_point_back(&t, ray->origin), transform_vector_back(&t, ray->direction)};
 }
 
 static double value_on(const Solid *s, const Ray *ray, double t) {
@@ -78,51 +112,113 @@ static void march(const Solid *s, const Ray *ray, double from, double to, SolidS
     }
 }
 
+/* Every change of sign in turn. Behind one the search goes on where doubles can tell its place from it. */
+static void search(const Field *f, const Ray *ray, double from, double to, SolidSink *sink) {
+    Line line = f->line;
+    line.origin = ray->origin, line.direction = ray->direction;
+    double t;
+    bool falling;
+    for (int k = 0; k < MOST_CHANGES && from < double_min(to, sink->t_max); k++) {
+        if (!line_first_root(&line, from, double_min(to, sink->t_max), &t, &falling, NULL)) return;
+        solid_offer(sink, t, (SolidTag){PART_SURFACE, 0, 0});
+        from = line_behind(&line, t);
+    }
+}
+
+/* ---- containers ---- */
+
+typedef struct Ends {
+    double t[MOST_ENDS];
+    SolidTag tags[MOST_ENDS]; /* u: the part of a sphere's or box's surface; else nothing */
+    int count;
+    Ray ray; /* in the container's space */
+} Ends;
+
+static void find_ends(const Field *f, const Ray *ray, Ends *ends) {
+    const Object *container = f->solid->as.isosurface.container;
+    ends->ray = (Ray){transform_point_back(&f->place, ray->origin), transform_vector_back(&f->place, ray->direction)};
+    ends->count = 0;
+    if (!f->container) {
+        ShapeCrossing crossings[SHAPE_MOST_CROSSINGS];
+        if (shape_crossings(container, &ends->ray, crossings) != 2) return;
+        for (int i = 0; i < 2; i++) ends->t[i] = crossings[i].t, ends->tags[i] = (SolidTag){PART_CONTAINER, crossings[i].part, 0};
+        ends->count = 2;
+        return;
+    }
+    BodyHit hit = {.t = 0};
+    double from = -VTS_INFINITY;
+    while (ends->count < MOST_ENDS && body_meet(f->container, container, &ends->ray, from, VTS_INFINITY, &hit)) {
+        ends->t[ends->count] = hit.t;
+        ends->tags[ends->count++] = (SolidTag){PART_CONTAINER, 0, hit.t};
+        from = hit.t;
+    }
+}
+
+static bool within(const Field *f, const Ends *ends, int k) {
+    double middle = ends->t[k] / 2 + ends->t[k + 1] / 2;
+    return !f->container || body_inside(f->container, vec3_madd(ends->ray.origin, ends->ray.direction, middle));
+}
+
 static void cross(const void *data, const Ray *ray, SolidSink *sink) {
-    const Solid *s = data;
-    ShapeCrossing ends[SHAPE_MOST_CROSSINGS];
-    Ray local = container_ray(s, ray);
-    if (shape_crossings(s->as.isosurface.container, &local, ends) != 2) return;
-    if (!s->as.isosurface.open)
-        for (uint32_t i = 0; i < 2; i++)
-            if (ends[i].t > sink->t_min && ends[i].t < sink->t_max && value_on(s, ray, ends[i].t) < 0)
-                solid_offer(sink, ends[i].t, (SolidTag){PART_CONTAINER_IN + i, ends[i].part, 0});
-    double from = double_max(ends[0].t, sink->t_min), to = double_min(ends[1].t, sink->t_max);
-    if (from < to) march(s, ray, from, to, sink);
+    const Field *f = data;
+    Ends ends;
+    find_ends(f, ray, &ends);
+    if (!f->solid->as.isosurface.open)
+        for (int i = 0; i < ends.count; i++)
+            if (ends.t[i] > sink->t_min && ends.t[i] < sink->t_max && value_on(f->solid, ray, ends.t[i]) < 0)
+                solid_offer(sink, ends.t[i], ends.tags[i]);
+    for (int i = 0; i + 1 < ends.count; i++) {
+        double from = double_max(ends.t[i], sink->t_min), to = double_min(ends.t[i + 1], sink->t_max);
+        if (!(from < to) || !within(f, &ends, i)) continue;
+        if (f->bounded)
+            search(f, ray, from, to, sink);
+        else
+            march(f->solid, ray, from, to, sink);
+    }
 }
 
 static double difference(const Solid *s, Vec3 p, Vec3 step, double h) {
     return (solid_isosurface_value(s, vec3_madd(p, step, h)) - solid_isosurface_value(s, vec3_madd(p, step, -h))) / (2 * h);
 }
 
-static Vec3 normal(const void *data, Vec3 p, const SolidTag *tag) {
-    const Solid *s = data;
-    const Object *container = s->as.isosurface.container;
-    if (tag->part != PART_SURFACE) {
-        Transform place = object_transform(container);
-        const Ray here = {transform_point_back(&place, p), vec3_splat(0)};
-        const ShapeCrossing crossing = {0, (uint8_t)tag->u, false};
-        return vec3_normalize(
-            transform_normal(&place, shape_hit_at(container, &here, &crossing).normal));
+static Vec3 container_normal(const Field *f, Vec3 p, const SolidTag *tag) {
+    const Object *container = f->solid->as.isosurface.container;
+    Vec3 local = transform_point_back(&f->place, p), out = vec3(0, 1, 0);
+    if (!f->container) {
+        out = shape_normal_at(container, local, (uint8_t)tag->u);
+    } else {
+        /* Met again, from a little way off along each axis: the nearest place has the normal. */
+        double nearest = VTS_INFINITY, reach = 1e-4 * vec3_length(vec3_sub(f->bounds.max, f->bounds.min));
+        for (int k = 0; k < 6; k++) {
+            Vec3 d = {0, 0, 0};
+            (k % 3 == 0 ? &d.x : k % 3 == 1 ? &d.y : &d.z)[0] = k < 3 ? reach : -reach;
+            const Ray ray = {vec3_sub(local, d), d};
+            BodyHit hit = {.t = 2};
+            if (!body_meet(f->container, container, &ray, 0, 2, &hit) || !(fabs(hit.t - 1) < nearest)) continue;
+            nearest = fabs(hit.t - 1), out = hit.normal;
+        }
     }
+    return vec3_normalize(transform_normal(&f->place, out));
+}
+
+static Vec3 normal(const void *data, Vec3 p, const SolidTag *tag) {
+    const Field *f = data;
+    if (tag->part != PART_SURFACE) return container_normal(f, p, tag);
     double h = 1e-6 * double_max(1, double_max(fabs(p.x), double_max(fabs(p.y), fabs(p.z))));
-    Vec3 g = {difference(s, p, vec3(1, 0, 0), h), difference(s, p, vec3(0, 1, 0), h),
-              difference(s, p, vec3(0, 0, 1), h)};
+    Vec3 g = {difference(f->solid, p, vec3(1, 0, 0), h), difference(f->solid, p, vec3(0, 1, 0), h),
+              difference(f->solid, p, vec3(0, 0, 1), h)};
     return vec3_is_finite(g) && vec3_length_squared(g) > 0 ? vec3_normalize(g) : vec3(0, 1, 0);
 }
 
 static bool inside(const void *data, Vec3 p) {
-    const Solid *s = data;
-    const Object *container = s->as.isosurface.container;
-    Transform place = object_transform(container);
-    return shape_inside(container, transform_point_back(&place, p)) != container->inverse && solid_isosurface_value(s, p) < 0;
+    const Field *f = data;
+    const Object *container = f->solid->as.isosurface.container;
+    Vec3 local = transform_point_back(&f->place, p);
+    bool held = f->container ? body_inside(f->container, local) : shape_inside(container, local) != container->inverse;
+    return held && solid_isosurface_value(f->solid, p) < 0;
 }
 
-static Box3 bounds(const void *data) {
-    const Object *container = ((const Solid *)data)->as.isosurface.container;
-    Transform place = object_transform(container);
-    return box3_transform(&place, shape_bounds(container));
-}
+static Box3 bounds(const void *data) { return ((const Field *)data)->bounds; }
 
 const SolidOps solid_isosurface_ops = {
     .prepare = prepare, .cross = cross, .normal = normal, .inside = inside, .bounds = bounds};

@@ -8,7 +8,7 @@ static bool is_kind(const Object *object, SolidKind kind) {
 
 bool solid_holds(const ExactSurface *surface, Vec3 p) {
     if (!surface->data || !surface->ops->inside) return false;
-    if (is_kind(surface->object, SOLID_ISOSURFACE)) return solid_isosurface_value(surface->data, p) < 0;
+    if (is_kind(surface->object, SOLID_ISOSURFACE)) return solid_isosurface_value(surface->object->as.solid, p) < 0;
     return surface->ops->inside(surface->data, p);
 }
 

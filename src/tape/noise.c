@@ -1,6 +1,7 @@
 /* Perlin, Improving noise, SIGGRAPH 2002. */
 #include "tape/noise.h"
 #include "tape/noise_interval.h"
+#include "tape/noise_taylor.h"
 #include "tape/tape_rows.h"
 
 #include "base/random.h"
@@ -69,6 +70,14 @@ double noise_perlin_gradient(Vec3 p, double gradient[3]) {
     for (int k = 0; k < 3; k++) curve[k] = fade(place[k]), slope[k] = fade_slope(place[k]);
     return lattice_gradient(corners, place, curve, slope, gradient);
 }
+
+static inline void fade_taylor(double t, double out[3]) {
+    out[0] = fade(t);
+    out[1] = fade_slope(t);
+    out[2] = 30 * t * (2 * t * t - 3 * t + 1);
+}
+
+void noise_perlin_taylor(const TaylorWay *way, TaylorTerms *out) { taylor_along(way, find_corners, fade_taylor, out); }
 
 /* At a place of a cell each corner gives at most the sum of the two largest distances from it along the axes, times its weight.
  * The largest sum of the eight is 1.0363539 (test_tape_interval.c): NOISE_PERLIN_MOST. */

@@ -57,6 +57,16 @@ static inline double lattice_gradient(const double *const corners[8], const doub
     return lattice_mix(w, low, high);
 }
 
+/* ---- along pieces of lines ---- */
+
+/* Taylor's coefficients, to the second order, of the mixture of two linear functions a and b (value, slope) by a curve u. */
+static inline void lattice_taylor_mix(const double u[3], const double a[3], const double b[3], double out[3]) {
+    double d0 = b[0] - a[0], d1 = b[1] - a[1], d2 = b[2] - a[2];
+    out[0] = a[0] + u[0] * d0;
+    out[1] = a[1] + (u[0] * d1 + u[1] * d0);
+    out[2] = a[2] + (u[0] * d2 + u[1] * d1 + u[2] * d0);
+}
+
 /* ---- arrays ---- */
 
 enum { LATTICE_LANES = 64, LATTICE_RUN = 4 /* shorter runs in one cell are not worth a vector loop */ };

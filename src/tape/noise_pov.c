@@ -7,6 +7,7 @@
  *   random   the Mersenne twister MT19937 with its default seed 5489. */
 #include "tape/noise.h"
 #include "tape/noise_interval.h"
+#include "tape/noise_taylor.h"
 #include "tape/tape_rows.h"
 
 #include "tape/noise_pov_tables.inc"
@@ -98,6 +99,21 @@ static void find_near(const int32_t cell[3], LatticeCorners corners) {
     unsigned moved[3];
     for (int k = 0; k < 3; k++) moved[k] = (unsigned)cell[k] + LATTICE_ORIGIN;
     find_corners(moved, corners);
+}
+
+static inline void curve_taylor(double t, double out[3]) {
+    out[0] = curve_at(t);
+    out[1] = 6 * t * (1 - t);
+    out[2] = 3 - 6 * t;
+}
+
+void noise_pov_taylor(const TaylorWay *way, TaylorTerms *out) {
+    taylor_along(way, find_near, curve_taylor, out);
+    for (int l = 0; l < TAYLOR_LANES; l++) {
+        out->value[l] = (out->value[l] + 1.05242) * 0.48985582;
+        out->first[l] *= 0.48985582;
+        out->second[l] *= 0.48985582;
+    }
 }
 
 void row_POV_NOISE(double *restrict out, const double *restrict a, const double *restrict b,

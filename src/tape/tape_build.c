@@ -245,8 +245,8 @@ static TapeRef inline_node(TapeBuilder *builder, const TapeNode *node, const Tap
     }
 }
 
-void tape_inline(TapeBuilder *builder, const Tape *callee, const TapeRef *inputs, TapeRef *outputs) {
-    TapeRef *map = arena_new_array(builder->arena, TapeRef, callee->node_count), results[TAPE_CALL_MAX];
+void tape_inline_nodes(TapeBuilder *builder, const Tape *callee, const TapeRef *inputs, TapeRef *map) {
+    TapeRef results[TAPE_CALL_MAX];
     for (size_t i = 0; i < callee->node_count; i++) {
         const TapeNode *node = &callee->nodes[i];
         Span span = callee->spans[i];
@@ -262,5 +262,10 @@ void tape_inline(TapeBuilder *builder, const Tape *callee, const TapeRef *inputs
         else
             map[i] = inline_node(builder, node, inputs, map, span);
     }
+}
+
+void tape_inline(TapeBuilder *builder, const Tape *callee, const TapeRef *inputs, TapeRef *outputs) {
+    TapeRef *map = arena_new_array(builder->arena, TapeRef, callee->node_count);
+    tape_inline_nodes(builder, callee, inputs, map);
     map_refs(map, callee->outputs, callee->output_count, outputs);
 }

@@ -27,4 +27,7 @@ struct TapeBuilder {
     size_t share_size;
 };
 
+/* tape_inline() of all values: map[i] gets the value of the callee's node i. */
+void tape_inline_nodes(TapeBuilder *builder, const Tape *callee, const TapeRef *inputs, TapeRef *map);
+
 #endif

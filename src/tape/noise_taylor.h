@@ -1,0 +1,94 @@
+/* Lattice noises along straight pieces of lines, several pieces at once: what bounds of the second order are made of. */
+#ifndef VTS_TAPE_NOISE_TAYLOR_H
+#define VTS_TAPE_NOISE_TAYLOR_H
+
+#include "tape/noise_lattice.h"
+
+enum { TAYLOR_LANES = 8 };
+
+/* Places at + s·way, s in [-1, 1], of TAYLOR_LANES pieces. */
+typedef struct TaylorWay {
+    double at[3][TAYLOR_LANES], way[3][TAYLOR_LANES];
+} TaylorWay;
+
+/* Of the noise there: value + first·s + second·s² and what follows. NaN where a coordinate is too large for cells of 32 bits. */
+typedef struct TaylorTerms {
+    double value[TAYLOR_LANES], first[TAYLOR_LANES], second[TAYLOR_LANES];
+    double room[TAYLOR_LANES]; /* above 0: all of the piece is this far from the borders of its cell of the lattice, at least */
+} TaylorTerms;
+
+void noise_perlin_taylor(const TaylorWay *way, TaylorTerms *out);
+/* Of POV-Ray's noise before it is clamped to [0, 1]. */
+void noise_pov_taylor(const TaylorWay *way, TaylorTerms *out);
+
+/* Bounds for the first and third derivatives along any unit direction, whatever the lattices hold: NOISE_…_CURVATURE in noise.h is that
+ * of the second. Those of POV-Ray's noise hold within a cell: its second derivative jumps from one to the next. */
+#define NOISE_PERLIN_STEEPEST 3.76
+#define NOISE_PERLIN_THIRD    151.0
+#define NOISE_POV_STEEPEST    (5.01 * 0.48985582)
+#define NOISE_POV_THIRD       (103.0 * 0.48985582)
+
+/* ---- for the files of the noises ---- */
+
+/* The curve of a lattice at t with its first derivative, and half of the second. */
+typedef void TaylorCurve(double t, double out[3]);
+
+typedef struct TaylorAxis {
+    double cell[TAYLOR_LANES], place[TAYLOR_LANES], curve[3][TAYLOR_LANES];
+    double room[TAYLOR_LANES]; /* to the nearer border of the cell, less the way */
+} TaylorAxis;
+
+static inline void taylor_locate(const double *restrict at, const double *restrict way, TaylorCurve *curve, TaylorAxis *restrict axis) {
+    for (int l = 0; l < TAYLOR_LANES; l++) {
+        double x = at[l], w = way[l], c[3], nearest = (x + 0x1.8p52) - 0x1.8p52, whole = nearest - (x < nearest ? 1.0 : 0.0);
+        bool near = fabs(x) < LATTICE_FAR;
+        double t = near ? x - whole : (double)NAN;
+        curve(t, c);
+        axis->cell[l] = near ? whole : 0, axis->place[l] = t;
+        axis->curve[0][l] = c[0], axis->curve[1][l] = c[1] * w, axis->curve[2][l] = c[2] * w * w;
+        axis->room[l] = (t < 0.5 ? t : 1 - t) - fabs(w);
+    }
+}
+
+static inline void taylor_along(const TaylorWay *way, LatticeFind *find, TaylorCurve *curve, TaylorTerms *restrict out) {
+    TaylorAxis axes[3];
+    double numbers[8][4][TAYLOR_LANES];
+    int32_t cells[TAYLOR_LANES][4];
+    LatticeCorners corners;
+    for (int k = 0; k < 3; k++) taylor_locate(way->at[k], way->way[k], curve, &axes[k]);
+    for (int l = 0; l < TAYLOR_LANES; l++)
+        for (int k = 0; k < 3; k++) cells[l][k] = (int32_t)axes[k].cell[l];
+    for (int l = 0; l < TAYLOR_LANES; l++) {
+        const int32_t *cell = cells[l], *before = cells[l ? l - 1 : 0];
+        if (l == 0 || cell[0] != before[0] || cell[1] != before[1] || cell[2] != before[2]) find(cell, corners);
+        for (int c = 0; c < 8; c++)
+            for (int j = 0; j < 4; j++) numbers[c][j][l] = corners[c][j];
+    }
+    for (int l = 0; l < TAYLOR_LANES; l++) {
+        double room = axes[0].room[l] < axes[1].room[l] ? axes[0].room[l] : axes[1].room[l];
+        out->room[l] = room < axes[2].room[l] ? room : axes[2].room[l];
+    }
+    for (int l = 0; l < TAYLOR_LANES; l++) {
+        double value[8][3], row[4][3], plane[2][3], all[3];
+        const double x[2] = {axes[0].place[l], axes[0].place[l] - 1}, y[2] = {axes[1].place[l], axes[1].place[l] - 1},
+                     z[2] = {axes[2].place[l], axes[2].place[l] - 1};
+        const double ux[3] = {axes[0].curve[0][l], axes[0].curve[1][l], axes[0].curve[2][l]},
+                     uy[3] = {axes[1].curve[0][l], axes[1].curve[1][l], axes[1].curve[2][l]},
+                     uz[3] = {axes[2].curve[0][l], axes[2].curve[1][l], axes[2].curve[2][l]};
+#pragma GCC unroll 8
+        for (int c = 0; c < 8; c++) {
+            double gx = numbers[c][1][l], gy = numbers[c][2][l], gz = numbers[c][3][l];
+            value[c][0] = numbers[c][0][l] * 0.5 + (gx * x[c & 1] + gy * y[c >> 1 & 1] + gz * z[c >> 2]);
+            value[c][1] = gx * way->way[0][l] + gy * way->way[1][l] + gz * way->way[2][l];
+            value[c][2] = 0;
+        }
+#pragma GCC unroll 4
+        for (int c = 0; c < 4; c++) lattice_taylor_mix(ux, value[2 * c], value[2 * c + 1], row[c]);
+        lattice_taylor_mix(uy, row[0], row[1], plane[0]);
+        lattice_taylor_mix(uy, row[2], row[3], plane[1]);
+        lattice_taylor_mix(uz, plane[0], plane[1], all);
+        out->value[l] = all[0], out->first[l] = all[1], out->second[l] = all[2];
+    }
+}
+
+#endif

@@ -1,0 +1,143 @@
+/* The arithmetic of reduced affine forms over lanes. Operations that functions of places consist of have loops of their own; the
+ * others go lane by lane through affine.h. */
+#include "tape/tape_lanes.h"
+
+#include "tape/noise.h"
+#include "tape/tape_affine.h"
+#include "tape/tape_program.h"
+
+static void walk(const Tape *tape, AffineLanes *slots);
+
+/* Constants have no lanes: they are read from the tape. */
+static inline bool is_constant(const Tape *tape, uint32_t slot) { return slot - tape->input_count < tape->constant_count; }
+static inline double constant_at(const Tape *tape, uint32_t slot) { return tape->constants[slot - tape->input_count]; }
+
+static inline const AffineLanes *operand(const Tape *tape, const AffineLanes *slots, uint32_t slot, AffineLanes *filled) {
+    if (!is_constant(tape, slot)) return &slots[slot];
+    affine_fill_lanes(filled, constant_at(tape, slot));
+    return filled;
+}
+
+static AffineForm lane_of(const Tape *tape, const AffineLanes *slots, uint32_t slot, int lane) {
+    return is_constant(tape, slot) ? affine_point(constant_at(tape, slot)) : affine_lane(&slots[slot], lane);
+}
+
+static void call(const Tape *tape, const TapeCall *call_, AffineLanes *slots) {
+    const TapeExternal *external = call_->external;
+    for (int l = 0; l < AFFINE_LANES; l++) {
+        Interval in[TAPE_CALL_MAX], range[TAPE_CALL_MAX];
+        for (int k = 0; k < external->input_count; k++) in[k] = affine_range(lane_of(tape, slots, call_->arg_slots[k], l));
+        if (external->bound)
+            external->bound(external->data, in, range);
+        for (int k = 0; k < external->output_count; k++)
+            if (call_->result_slots[k] != TAPE_NO_SLOT)
+                affine_set_lane(&slots[call_->result_slots[k]], l, external->bound ? affine_of_interval(range[k]) : affine_unknown(true));
+    }
+}
+
+/* As in tape_bounds.inc, between constants alone. */
+enum { MOST_PASSES = 4096 };
+
+static void loop(const Tape *tape, const TapeLoop *loop_, const TapeStep *step, bool product, AffineLanes *slots, AffineLanes *scratch) {
+    const Tape *body = loop_->body;
+    AffineLanes *out = &slots[step->dst], before, filled;
+    AFFINE_EACH_LANE out->centre[l] = out->slope[l] = 0, out->error[l] = HUGE_VAL;
+    if (!is_constant(tape, step->a) || !is_constant(tape, step->b)) return;
+    double from = constant_at(tape, step->a), to = constant_at(tape, step->b), i = from;
+    if (!(to - from < MOST_PASSES)) return;
+    for (uint32_t k = 0; k < loop_->captured_count; k++) scratch[k] = *operand(tape, slots, loop_->captured_slots[k], &filled);
+    affine_fill_lanes(out, product ? 1 : 0);
+    for (double pass = 0; i <= to && pass <= to - from; pass++, i += 1) {
+        affine_fill_lanes(&scratch[body->input_count - 1], i);
+        walk(body, scratch);
+        const AffineLanes *term = operand(body, scratch, body->output_slots[0], &filled);
+        before = *out;
+        product ? affine_mul_lanes(out, &before, term) : affine_add_lanes(out, &before, term);
+    }
+}
+
+static const NoiseBounds perlin = {-NOISE_PERLIN_MOST, NOISE_PERLIN_MOST, NOISE_PERLIN_STEEPEST, NOISE_PERLIN_CURVATURE, NOISE_PERLIN_THIRD, true};
+static const NoiseBounds pov = {0, 1, NOISE_POV_STEEPEST, NOISE_POV_CURVATURE, NOISE_POV_THIRD, false};
+
+static void general(const Tape *tape, const TapeStep *step, AffineLanes *slots) {
+    int arity = tape_op_arity((TapeOp)step->op);
+    for (int l = 0; l < AFFINE_LANES; l++) {
+        AffineForm a = lane_of(tape, slots, step->a, l), b = a, c = a;
+        if (arity > 1) b = lane_of(tape, slots, step->b, l);
+        if (arity > 2) c = lane_of(tape, slots, step->c, l);
+        affine_set_lane(&slots[step->dst], l, tape_apply_affine((TapeOp)step->op, a, b, c));
+    }
+}
+
+static void add(const Tape *tape, const TapeStep *step, AffineLanes *slots) {
+    if (is_constant(tape, step->a))
+        affine_shift_lanes(&slots[step->dst], &slots[step->b], constant_at(tape, step->a));
+    else if (is_constant(tape, step->b))
+        affine_shift_lanes(&slots[step->dst], &slots[step->a], constant_at(tape, step->b));
+    else
+        affine_add_lanes(&slots[step->dst], &slots[step->a], &slots[step->b]);
+}
+
+static void sub(const Tape *tape, const TapeStep *step, AffineLanes *slots) {
+    AffineLanes filled;
+    if (is_constant(tape, step->b))
+        affine_shift_lanes(&slots[step->dst], &slots[step->a], -constant_at(tape, step->b));
+    else
+        affine_sub_lanes(&slots[step->dst], operand(tape, slots, step->a, &filled), &slots[step->b]);
+}
+
+static void mul(const Tape *tape, const TapeStep *step, AffineLanes *slots) {
+    if (is_constant(tape, step->a))
+        affine_scale_lanes(&slots[step->dst], &slots[step->b], constant_at(tape, step->a));
+    else if (is_constant(tape, step->b))
+        affine_scale_lanes(&slots[step->dst], &slots[step->a], constant_at(tape, step->b));
+    else
+        affine_mul_lanes(&slots[step->dst], &slots[step->a], &slots[step->b]);
+}
+
+/* x/k is x·(1/k) but for half a unit of 1/k, which affine_scale_lanes() allows for. */
+static void divide(const Tape *tape, const TapeStep *step, AffineLanes *slots) {
+    double by = is_constant(tape, step->b) ? constant_at(tape, step->b) : 0;
+    if (fabs(by) > 0x1p-500 && fabs(by) < 0x1p500)
+        affine_scale_lanes(&slots[step->dst], &slots[step->a], 1 / by);
+    else
+        general(tape, step, slots);
+}
+
+static void noise(const Tape *tape, const TapeStep *step, AffineLanes *slots, NoiseTaylor *along, const NoiseBounds *known) {
+    AffineLanes filled[3];
+    const AffineLanes *p[3] = {operand(tape, slots, step->a, &filled[0]), operand(tape, slots, step->b, &filled[1]),
+                               operand(tape, slots, step->c, &filled[2])};
+    affine_noise_lanes(&slots[step->dst], p, along, known);
+}
+
+static void walk(const Tape *tape, AffineLanes *slots) {
+    for (const TapeStep *step = tape->steps, *end = step + tape->step_count; step < end; step++) {
+        switch ((TapeOp)step->op) {
+        case TAPE_ADD: add(tape, step, slots); break;
+        case TAPE_SUB: sub(tape, step, slots); break;
+        case TAPE_MUL: mul(tape, step, slots); break;
+        case TAPE_DIV: divide(tape, step, slots); break;
+        case TAPE_NEG: affine_neg_lanes(&slots[step->dst], &slots[step->a]); break;
+        case TAPE_SQR: affine_sqr_lanes(&slots[step->dst], &slots[step->a]); break;
+        case TAPE_SQRT: affine_sqrt_lanes(&slots[step->dst], &slots[step->a]); break;
+        case TAPE_PERLIN: noise(tape, step, slots, noise_perlin_taylor, &perlin); break;
+        case TAPE_POV_NOISE: noise(tape, step, slots, noise_pov_taylor, &pov); break;
+        case TAPE_CALL: call(tape, &tape->calls[step->c], slots); break;
+        case TAPE_SUM:
+        case TAPE_PROD: loop(tape, &tape->loops[step->c], step, step->op == TAPE_PROD, slots, slots + tape->slot_count); break;
+        default: general(tape, step, slots); break;
+        }
+    }
+}
+
+void tape_eval_lanes(const Tape *tape, const AffineLanes *in, AffineLanes *out, AffineLanes *scratch) {
+    for (uint32_t k = 0; k < tape->input_count; k++) scratch[k] = in[k];
+    tape_eval_lanes_again(tape, out, scratch);
+}
+
+void tape_eval_lanes_again(const Tape *tape, AffineLanes *out, AffineLanes *scratch) {
+    AffineLanes filled;
+    walk(tape, scratch);
+    *out = *operand(tape, scratch, tape->output_slots[0], &filled);
+}

@@ -1,0 +1,146 @@
+/* Functions as sums: fractal surfaces are, and most of their terms matter only near the surface. */
+#include "tape/tape_builder.h"
+#include "tape/tape_interval.h"
+#include "tape/tape_lanes.h"
+
+#include <stdlib.h>
+
+enum { MOST_TERMS = 96 };
+
+typedef struct Part {
+    TapeRef node;
+    double scale;
+} Part;
+
+typedef struct Split {
+    const Tape *tape;
+    Part parts[MOST_TERMS];
+    size_t count;
+    double constant;
+    bool failed;
+} Split;
+
+static bool constant_of(const Tape *tape, TapeRef node, double *value) {
+    if (tape->nodes[node].op != TAPE_CONSTANT) return false;
+    *value = tape_node_constant(&tape->nodes[node]);
+    return true;
+}
+
+/* Adds scale·node. */
+static void split(Split *s, TapeRef ref, double scale, int depth) {
+    const TapeNode *node = &s->tape->nodes[ref];
+    double k;
+    s->failed |= depth > 1000;
+    if (s->failed) return;
+    if (node->op == TAPE_ADD || node->op == TAPE_SUB) {
+        split(s, node->a, scale, depth + 1);
+        split(s, node->b, node->op == TAPE_SUB ? -scale : scale, depth + 1);
+    } else if (node->op == TAPE_NEG) {
+        split(s, node->a, -scale, depth + 1);
+    } else if (node->op == TAPE_MUL && constant_of(s->tape, node->a, &k)) {
+        split(s, node->b, scale * k, depth + 1);
+    } else if (node->op == TAPE_MUL && constant_of(s->tape, node->b, &k)) {
+        split(s, node->a, scale * k, depth + 1);
+    } else if (node->op == TAPE_DIV && constant_of(s->tape, node->b, &k) && k != 0) {
+        split(s, node->a, scale / k, depth + 1);
+    } else if (constant_of(s->tape, ref, &k)) {
+        s->constant += scale * k;
+    } else if (s->count < MOST_TERMS) {
+        s->parts[s->count++] = (Part){ref, scale};
+    } else {
+        s->failed = true;
+    }
+}
+
+/* The tape of one node. */
+static const Tape *tape_of(const Tape *tape, TapeRef node, Arena *arena) {
+    TapeBuilder *builder = tape_builder_create(arena, tape_input_count(tape));
+    TapeRef inputs[TAPE_CALL_MAX], *map = arena_new_array(arena, TapeRef, tape->node_count);
+    for (int k = 0; k < tape_input_count(tape); k++) inputs[k] = tape_input(builder, k);
+    tape_inline_nodes(builder, tape, inputs, map);
+    return tape_finish(builder, &map[node], 1);
+}
+
+static int wider_first(const void *a, const void *b) {
+    const TapeTerm *x = a, *y = b;
+    double wx = x->high - x->low, wy = y->high - y->low;
+    return wx > wy ? -1 : wx < wy ? 1 : 0;
+}
+
+static void find_range(TapeTerm *term, const Interval *box, Arena *arena) {
+    ArenaMark mark = arena_mark(arena);
+    Interval out, scaled, *scratch = arena_new_array(arena, Interval, tape_scratch_size(term->tape));
+    tape_eval_interval(term->tape, box, &out, scratch);
+    scaled = interval_MUL(out, interval_point(term->scale));
+    bool known = !scaled.nan && scaled.low <= scaled.high;
+    term->low = known ? scaled.low : -HUGE_VAL;
+    term->high = known ? scaled.high : HUGE_VAL;
+    arena_reset_to(arena, mark);
+}
+
+TapeSum tape_sum_of(const Tape *tape, const Interval *box, Arena *arena) {
+    Split s = {.tape = tape};
+    split(&s, tape->outputs[0], 1, 0);
+    TapeTerm *terms = arena_new_array(arena, TapeTerm, s.count + 1);
+    double work = 0;
+    for (size_t k = 0; k < s.count && !s.failed; k++) {
+        terms[k] = (TapeTerm){tape_of(tape, s.parts[k].node, arena), s.parts[k].scale, 0, 0};
+        work += tape_work(terms[k].tape);
+    }
+    /* Terms that have much in common are quicker together. */
+    if (s.failed || !isfinite(s.constant) || work > 1.5 * tape_work(tape) + 8 * (double)s.count) {
+        terms[0] = (TapeTerm){tape, 1, 0, 0};
+        s.count = 1, s.constant = 0;
+    }
+    TapeSum sum = {.terms = terms, .count = s.count, .constant = s.constant, .scratch_size = (size_t)tape_input_count(tape)};
+    for (size_t k = 0; k < s.count; k++) {
+        find_range(&terms[k], box, arena);
+        sum.scratch_size = size_max(sum.scratch_size, tape_scratch_size(terms[k].tape));
+    }
+    qsort(terms, s.count, sizeof *terms, wider_first);
+    double *low = arena_new_array(arena, double, s.count + 1), *high = arena_new_array(arena, double, s.count + 1),
+           *size = arena_new_array(arena, double, s.count + 1);
+    low[s.count] = high[s.count] = size[s.count] = 0;
+    for (size_t k = s.count; k-- > 0;) {
+        low[k] = round_down(low[k + 1] + terms[k].low), high[k] = round_up(high[k + 1] + terms[k].high);
+        size[k] = round_up(size[k + 1] + bound_max(fabs(terms[k].low), fabs(terms[k].high)));
+    }
+    sum.rest_low = low, sum.rest_high = high, sum.rest_size = size;
+    return sum;
+}
+
+/* Whether no lane may be 0 with the terms from k on. */
+static bool all_decided(const TapeSum *sum, size_t k, const AffineLanes *total) {
+    bool decided = true;
+    double low = sum->rest_low[k], high = sum->rest_high[k];
+    AFFINE_EACH_LANE {
+        double radius = (fabs(total->slope[l]) + total->error[l]) * (1 + 0x1p-40), slack = 0x1p-40 * fabs(total->centre[l]);
+        decided &= (total->centre[l] - radius - slack + low > 0) | (total->centre[l] + radius + slack + high < 0);
+    }
+    return decided;
+}
+
+size_t tape_sum_lanes(const TapeSum *sum, double level, AffineLanes *out, AffineLanes *scratch) {
+    AffineLanes total, term, scaled;
+    double size[AFFINE_LANES], n = (double)sum->count + 2;
+    size_t k = 0;
+    affine_fill_lanes(out, sum->constant - level);
+    AFFINE_EACH_LANE size[l] = fabs(sum->constant) + fabs(level);
+    for (; k < sum->count; k++) {
+        if (k > 0 && all_decided(sum, k, out)) break;
+        tape_eval_lanes_again(sum->terms[k].tape, &term, scratch);
+        affine_scale_lanes(&scaled, &term, sum->terms[k].scale);
+        total = *out;
+        affine_add_lanes(out, &total, &scaled);
+        AFFINE_EACH_LANE size[l] += fabs(scaled.centre[l]) + fabs(scaled.slope[l]) + scaled.error[l];
+    }
+    double middle = k < sum->count ? sum->rest_low[k] / 2 + sum->rest_high[k] / 2 : 0;
+    double half = k < sum->count ? bound_max(sum->rest_high[k] - middle, middle - sum->rest_low[k]) : 0;
+    /* The tape adds in another order, with coefficients multiplied in another: a rounding of each partial sum and of each product. */
+    AFFINE_EACH_LANE {
+        double all = size[l] + sum->rest_size[k];
+        out->centre[l] += middle;
+        out->error[l] = affine_lane_error(out->error[l] + half, n * all);
+    }
+    return k;
+}

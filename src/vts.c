@@ -67,18 +67,25 @@ static const char *option_fault(const VtsOptions *o) {
     if ((r[0] || r[1] || r[2] || r[3]) && (r[0] < 0 || r[1] < 0 || r[2] > o->width || r[3] > o->height || r[0] >= r[2] || r[1] >= r[3]))
         return "the region must lie in the picture and hold at least one pixel";
     if (!isfinite(o->clock) || !isfinite(o->exposure)) return "clock and exposure must be finite numbers";
+    if (!isfinite(o->time) || !(o->cycle >= 0 && isfinite(o->cycle))) return "time and cycle must be finite numbers";
     if (o->preview && !preview_address_valid(o->preview)) return "preview must be HOST:PORT, the port 1 to 65535";
     if (fabs(o->exposure) > 100) return "exposure must be -100 to 100 EV";
     return NULL;
 }
 
-/* False when memory or threads run out. */
-static bool prepare(VtsSession *session) {
-    if (setjmp(session->out_of_memory) != 0) return false;
+/* Texts, what was found in them, and the names that stand there. */
+static void begin_texts(VtsSession *session) {
     arena_init(&session->arena, &session->memory, 0);
     source_set_init(&session->sources, &session->arena);
     diag_init(&session->diags, &session->arena, &session->sources);
     interner_init(&session->names, &session->arena);
+    session->last_printed = NULL;
+}
+
+/* False when memory or threads run out. */
+static bool prepare(VtsSession *session) {
+    if (setjmp(session->out_of_memory) != 0) return false;
+    begin_texts(session);
     find_stdlib(session);
     session->texels = texel_cache_create(session->options.cache_dir, &session->memory);
     session->pool = pool_create(session->options.threads);
@@ -124,6 +131,7 @@ void vts_session_destroy(VtsSession *session) {
     strbuf_free(&session->stdlib);
     strbuf_free(&session->printed);
     strbuf_free(&session->report);
+    strbuf_free(&session->frames);
     free(session);
 }
 
@@ -135,15 +143,33 @@ void vts_interrupt(VtsSession *session) {
 const char *vts_diagnostics(const VtsSession *session) { return session->printed.data ? session->printed.data : ""; }
 const char *vts_report(const VtsSession *session) { return session->report.data ? session->report.data : ""; }
 
+/* In a film, what was told of another frame is not told again, with other numbers in it either. */
+static bool is_news(const VtsSession *session, const Diagnostic *d, const StrBuf *text) {
+    if (!session->in_film || d->severity == SEVERITY_ERROR || !session->printed.data) return true;
+    const char *severity = strstr(text->data, "warning:");
+    size_t size = severity ? (size_t)(severity - text->data) + strcspn(severity, " ") : 0;
+    StrBuf begin = {0};
+    strbuf_add(&begin, text->data, severity ? size + strcspn(text->data + size, "0123456789") : text->size);
+    bool news = !strstr(session->printed.data, begin.data);
+    strbuf_free(&begin);
+    return news;
+}
+
+static void tell(VtsSession *session, const Diagnostic *d) {
+    StrBuf text = {0};
+    diag_format(&text, &session->sources, d, session->options.colour);
+    if (is_news(session, d, &text)) {
+        strbuf_adds(&session->printed, text.data);
+        if (session->options.on_diagnostic) session->options.on_diagnostic(session->options.context, text.data, d->severity == SEVERITY_ERROR);
+    }
+    strbuf_free(&text);
+}
+
 /* Formats what was found since the last time. */
 void session_print_diagnostics(VtsSession *session) {
     const Diagnostic *d = session->last_printed ? session->last_printed->next : session->diags.first;
     for (; d; d = d->next) {
-        StrBuf text = {0};
-        diag_format(&text, &session->sources, d, session->options.colour);
-        strbuf_adds(&session->printed, text.data);
-        if (session->options.on_diagnostic) session->options.on_diagnostic(session->options.context, text.data, d->severity == SEVERITY_ERROR);
-        strbuf_free(&text);
+        if (!session->probing) tell(session, d);
         session->last_printed = d;
     }
 }
@@ -227,7 +253,7 @@ static VtsStatus apply_limits(VtsSession *session, EvalLimits *limits) {
 static void pass_text(void *context, EvalStream stream, const char *text) {
     VtsSession *session = context;
     static const VtsStream streams[] = {VTS_STREAM_DEBUG, VTS_STREAM_WARNING, VTS_STREAM_RENDER, VTS_STREAM_STATISTICS};
-    if (session->options.on_text) session->options.on_text(session->options.context, streams[stream], text);
+    if (session->options.on_text && !session->probing) session->options.on_text(session->options.context, streams[stream], text);
 }
 
 static bool session_is_film(const VtsOptions *o) { return o->last_frame > o->first_frame || o->frame > 1; }
@@ -246,6 +272,7 @@ VtsStatus session_evaluate(VtsSession *session, const char *path, EvalMode mode)
                            .clock_delta = film ? o->clock_delta : 0, .initial_clock = film ? o->first_clock : 0,
                            .final_clock = film ? o->last_clock : 0, .frame_number = counted ? o->frame : 0,
                            .initial_frame = counted ? o->first_frame : 0, .final_frame = counted ? o->last_frame : 0,
+                           .time = o->time_set ? o->time : o->clock, .cycle = o->cycle, .ends_at_film = mode.ends_at_film,
                            .image_width = o->width, .image_height = o->height, .limits = eval_limits_default(),
                            .allow_read = o->allow_read, .allow_read_count = o->allow_read_count, .allow_write = o->allow_write,
                            .allow_write_count = o->allow_write_count, .keep_writes_in_memory = mode.writes_in_memory, .is_program = mode.is_program,
@@ -395,14 +422,16 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
                           .cpu_s = stopwatch_cpu() - session->started_cpu, .parse_s = parsed - session->started_wall,
                           .build_s = built - parsed, .render_s = rendered - built, .write_s = written - rendered,
                           .peak_rss_bytes = peak_resident_bytes(), .compiled = &session->compiled, .stats = &stats};
+    if (!session->in_film) strbuf_clear(&session->frames);
+    report_add_frame(&session->frames, &report);
     strbuf_clear(&session->report);
-    report_write(&session->report, scene_path, VTS_VERSION, &report, 1);
+    report_write(&session->report, scene_path, VTS_VERSION, &session->frames);
     return VTS_OK;
 }
 
 /* ---- calls ---- */
 
-typedef enum CallKind { CALL_CHECK, CALL_RUN, CALL_RENDER, CALL_REFERENCE, CALL_DUMP, CALL_TEXEL, CALL_HALVES, CALL_MEASURE, CALL_INFO } CallKind;
+typedef enum CallKind { CALL_CHECK, CALL_RUN, CALL_RENDER, CALL_REFERENCE, CALL_DUMP, CALL_TEXEL, CALL_HALVES, CALL_MEASURE, CALL_INFO, CALL_FILM } CallKind;
 
 typedef struct Call {
     CallKind kind;
@@ -413,6 +442,7 @@ typedef struct Call {
     const VtsReference *reference;      /* CALL_MEASURE */
     VtsReference *halves;               /* CALL_HALVES */
     VtsMeasure *measure;
+    VtsFilm *film;                      /* CALL_FILM */
     bool json;                          /* CALL_INFO */
 } Call;
 
@@ -440,6 +470,7 @@ static VtsStatus perform(VtsSession *session, const Call *call) {
     case CALL_RENDER: return render(session, call->scene_path, call->output_path, false);
     case CALL_REFERENCE: return render(session, call->scene_path, call->output_path, true);
     case CALL_DUMP: return dump(session, call);
+    case CALL_FILM: return session_film(session, call->scene_path, call->film);
     case CALL_INFO: return session_info(session, call->scene_path, call->json);
     case CALL_TEXEL: return session_texel(session, call->scene_path, call->texel_name, call->save_path, call->output_path);
     case CALL_HALVES: return session_make_reference(session, call->scene_path, call->paths, call->halves);
@@ -465,12 +496,18 @@ static void report_memory(VtsSession *session) {
 static VtsStatus guarded(VtsSession *session, const Call *call) {
     session->started_wall = stopwatch_wall();
     session->started_cpu = stopwatch_cpu();
+    session->probing = false;
     if (session->interrupted) return VTS_INTERRUPTED;
     arena_init(&session->parse, &session->memory, 0);
     arena_init(&session->scene_arena, &session->memory, 0);
     arena_init(&session->compiled_arena, &session->memory, 0);
     VtsStatus status;
     if (setjmp(session->out_of_memory) == 0) {
+        if (session->renew) {
+            session->renew = false;
+            arena_destroy(&session->arena);
+            begin_texts(session);
+        }
         status = perform(session, call);
         session_print_diagnostics(session);
     } else {
@@ -512,6 +549,10 @@ VtsStatus vts_dump(VtsSession *session, const char *scene_path, VtsDump stage) {
 }
 VtsStatus vts_info(VtsSession *session, const char *path, bool json) {
     return guarded(session, &(Call){.kind = CALL_INFO, .scene_path = path, .json = json});
+}
+VtsStatus vts_film(VtsSession *session, const char *scene_path, VtsFilm *out) {
+    *out = (VtsFilm){0};
+    return guarded(session, &(Call){.kind = CALL_FILM, .scene_path = scene_path, .film = out});
 }
 VtsStatus vts_texel(VtsSession *session, const char *scene_path, const char *name, const char *save_path, const char *picture_path) {
     return guarded(session, &(Call){.kind = CALL_TEXEL, .scene_path = scene_path, .output_path = picture_path,

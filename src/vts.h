@@ -55,6 +55,9 @@ typedef struct VtsOptions {
     int frame, first_frame, last_frame; /* `frame_number` and the like; default 1, 1, 1: no film, they read as 0 */
     double first_clock, last_clock;  /* `initial_clock`, `final_clock`; default 0, 1 */
     double clock_delta;              /* from one frame to the next; default 1 */
+    double time;                     /* in seconds, what winds run by, if time_set; else it is the clock */
+    bool time_set;
+    double cycle;                    /* seconds after which a film begins again; default 0: it does not */
     unsigned long long seed;         /* for sampling */
     double max_error;                /* RMSE a user accepts; 0: what the scene says, else 1/255 */
     int samples;                     /* a pixel where it needs several, 1 to 256; 0: by max_error */
@@ -108,6 +111,21 @@ VTS_API VtsStatus vts_check(VtsSession *session, const char *scene_path);
 VTS_API VtsStatus vts_run(VtsSession *session, const char *scene_path);
 /* Renders to `output_path`, whose suffix names the format. The file appears whole or not at all. */
 VTS_API VtsStatus vts_render(VtsSession *session, const char *scene_path, const char *output_path);
+
+/* What the scene's `animation` says. */
+typedef struct VtsFilm {
+    bool exists; /* the scene has one */
+    int frames;  /* counted from 1 */
+    double fps, first_clock, last_clock;
+    bool cyclic; /* last_clock is that of the frame after the last */
+    double shutter;
+} VtsFilm;
+/* Reads the scene, silently, as far as its `animation`. A scene that is wrong has none: the next call tells why. */
+VTS_API VtsStatus vts_film(VtsSession *session, const char *scene_path, VtsFilm *out);
+/* The calls after this one are about another frame: takes over `frame` to `cycle` from the options, and forgets texts and names. What
+ * has been built is kept, and used again where it comes out the same; warnings are told once; vts_report() has all frames so far. */
+VTS_API void vts_set_frame(VtsSession *session, const VtsOptions *frame);
+
 /* The same scene with nothing prefiltered, for measuring vts_render() by: exact geometry inside the texels, rays of no width,
  * hard shadows. Takes long. */
 VTS_API VtsStatus vts_reference(VtsSession *session, const char *scene_path, const char *output_path);

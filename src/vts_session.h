@@ -29,6 +29,9 @@ struct VtsSession {
     Interner names;
     StrBuf stdlib, printed, report;
     const Diagnostic *last_printed;
+    StrBuf frames;      /* of the report, so far */
+    bool in_film, renew; /* vts_set_frame() was called; what the calls before have read is to be forgotten */
+    bool probing;       /* nothing is told */
     /* of one call */
     Arena parse, scene_arena, compiled_arena;
     const Scene *scene;
@@ -39,10 +42,13 @@ struct VtsSession {
 };
 
 typedef struct EvalMode {
-    bool writes_in_memory, is_program, print_tokens, print_ast;
+    bool writes_in_memory, is_program, print_tokens, print_ast, ends_at_film;
 } EvalMode;
 
 /* Stages of a call. Those that return a status have told why it is not VTS_OK. */
+
+/* vts_film.c: vts_film() without its guard. */
+VtsStatus session_film(VtsSession *session, const char *scene_path, VtsFilm *out);
 
 /* Evaluates the scene into session->scene. */
 VtsStatus session_evaluate(VtsSession *session, const char *path, EvalMode mode);

@@ -13,6 +13,8 @@ static void explain(const Settings *settings, const Console *console, const VtsS
         complain(settings, "interrupted");
     else if (status == VTS_OK || console->diagnostics_shown)
         return;
+    else if (status == VTS_ERROR_USAGE && (!text || !*text))
+        return; /* about the command line: told already */
     else if (text && *text)
         fputs(text, stderr);
     else

@@ -2,6 +2,7 @@
 #include "cli/chart.h"
 #include "cli/command.h"
 #include "cli/complaint.h"
+#include "cli/frames.h"
 #include "cli/interrupt.h"
 #include "cli/report_file.h"
 
@@ -214,17 +215,20 @@ static int chart(Work *w) {
     return write_results(w);
 }
 
+static VtsStatus enter_first(VtsSession *session, const void *context) {
+    const Work *w = context;
+    return film_enter_first(session, w->settings, w->chart.scene);
+}
+
 int command_chart(Settings *settings) {
     if (settings->scenes.count == 0) return complain_usage(settings, "no scene given");
     if (settings->scenes.count > 1)
         return complain_usage(settings, "one scene at a time, not also '%s'", settings->scenes.items[1]);
     if (settings->repeats == 0) settings->repeats = 1;
-    int first, last;
-    settings_frames(settings, &first, &last); /* of an animation the first frame */
-    settings_enter_frame(settings, first);
     Work work = {.settings = settings, .chart = {.scene = settings->scenes.items[0], .noise = -1}};
     console_init(&work.console, settings);
-    int status = chart(&work);
+    int status = command_with_session(settings, &work.console, work.chart.scene, enter_first, &work);
+    if (status == VTS_OK) status = chart(&work);
     chart_free(&work.chart);
     vts_reference_free(work.reference);
     return status;

@@ -1,19 +1,29 @@
 #include "cli/command.h"
 #include "cli/complaint.h"
+#include "cli/frames.h"
 
-static VtsStatus check(VtsSession *session, const void *context) { return vts_check(session, context); }
+typedef struct Checking {
+    const char *scene;
+    Settings *settings;
+} Checking;
 
-static int check_frames(Settings *settings, const char *scene) {
-    int first, last, status = VTS_OK;
-    settings_frames(settings, &first, &last);
-    for (int frame = first; frame <= last && status == VTS_OK;
-         frame += settings->animation.step) {
-        Console console;
-        console_init(&console, settings);
-        settings_enter_frame(settings, frame);
-        status = command_with_session(settings, &console, scene, check, scene);
-        if (status == VTS_OK) console_note(&console, "%s: no errors", scene);
+static VtsStatus check(VtsSession *session, const void *context) {
+    const Checking *checking = context;
+    FrameCursor cursor = {0};
+    VtsStatus status = film_join(session, checking->settings, checking->scene, FILM_FIRST);
+    while (status == VTS_OK && film_next(checking->settings, &cursor)) {
+        film_enter(checking->settings, session, cursor.frame);
+        status = vts_check(session, checking->scene);
     }
+    return status;
+}
+
+static int check_scene(Settings *settings, const char *scene) {
+    Console console;
+    console_init(&console, settings);
+    Settings own = *settings; /* what one scene says of its film is not said of the next */
+    int status = command_with_session(&own, &console, scene, check, &(Checking){scene, &own});
+    if (status == VTS_OK) console_note(&console, "%s: no errors", scene);
     return status;
 }
 
@@ -21,7 +31,7 @@ int command_check(Settings *settings) {
     if (settings->scenes.count == 0) return complain_usage(settings, "no scene given");
     int worst = VTS_OK;
     for (size_t i = 0; i < settings->scenes.count && worst != VTS_INTERRUPTED; i++) {
-        int status = check_frames(settings, settings->scenes.items[i]);
+        int status = check_scene(settings, settings->scenes.items[i]);
         if (status > worst) worst = status;
     }
     return worst;

@@ -1,37 +1,54 @@
 #include "cli/command.h"
 #include "cli/complaint.h"
+#include "cli/frames.h"
 #include "cli/report_file.h"
 
 #include <stdio.h>
 
-/* What one rendering is about. */
+/* What a rendering is about: one picture, or those of a film. */
 typedef struct Rendering {
-    const char *scene, *output, *report;
-    const Settings *settings;
+    const char *scene;
+    Settings *settings;
     Console *console;
 } Rendering;
 
-static VtsStatus render(VtsSession *session, const void *context) {
-    const Rendering *rendering = context;
-    VtsStatus status = vts_render(session, rendering->scene, rendering->output);
-    if (status != VTS_OK || !rendering->report) return status;
-    console_clear(rendering->console);
-    return report_file_write(rendering->settings, rendering->report, vts_report(session)) ? VTS_OK
-                                                                                          : VTS_ERROR_FILE;
+static VtsStatus render_frame(VtsSession *session, const Rendering *r, int frame) {
+    Settings *settings = r->settings;
+    film_enter(settings, settings->animation.on ? session : NULL, frame);
+    const char *output = settings_output(settings, r->scene);
+    if (settings->resume && film_is_drawn(output)) {
+        console_skip_work(r->console);
+        console_note(r->console, "%s: is there", output);
+        return VTS_OK;
+    }
+    double start = console_now();
+    console_begin_work(r->console);
+    VtsStatus status = vts_render(session, r->scene, output);
+    console_end_work(r->console);
+    /* Who looks at a bar likes to know where the picture is. */
+    if (status == VTS_OK && (settings->verbose || r->console->style == PROGRESS_BAR))
+        fprintf(stderr, "%s: %d x %d pixels in %.2f s\n", output, settings->options.width,
+                settings->options.height, console_now() - start);
+    return status;
 }
 
-static int render_frame(Settings *settings, const char *scene) {
-    Console console;
-    console_init(&console, settings);
-    Rendering rendering = {scene, settings_output(settings, scene), settings->report, settings, &console};
-    double start = console_now();
-    int status = command_with_session(settings, &console, scene, render, &rendering);
+/* Frames that are done are reported of, whatever came after them. */
+static VtsStatus write_report(VtsSession *session, const Rendering *r, VtsStatus status) {
+    const char *report = vts_report(session), *path = r->settings->report;
+    if (!path || (status != VTS_OK && !*report)) return status;
+    console_clear(r->console);
+    bool written = report_file_write(r->settings, path, report);
+    return status != VTS_OK || written ? status : VTS_ERROR_FILE;
+}
+
+static VtsStatus render(VtsSession *session, const void *context) {
+    const Rendering *r = context;
+    FrameCursor cursor = {0};
+    VtsStatus status = film_join(session, r->settings, r->scene, FILM_ALL);
     if (status != VTS_OK) return status;
-    /* Who looks at a bar likes to know where the picture is. */
-    if (settings->verbose || console.style == PROGRESS_BAR)
-        fprintf(stderr, "%s: %d x %d pixels in %.2f s\n", rendering.output, settings->options.width,
-                settings->options.height, console_now() - start);
-    return VTS_OK;
+    if (r->settings->animation.on) console_expect_works(r->console, film_count(r->settings));
+    while (status == VTS_OK && film_next(r->settings, &cursor)) status = render_frame(session, r, cursor.frame);
+    return write_report(session, r, status);
 }
 
 int command_render(Settings *settings) {
@@ -39,12 +56,8 @@ int command_render(Settings *settings) {
     if (settings->scenes.count > 1)
         return complain_usage(settings, "one scene at a time, not also '%s'", settings->scenes.items[1]);
     if (settings->report && !report_file_possible(settings, settings->report)) return VTS_ERROR_FILE;
-    int first, last, status = VTS_OK;
-    settings_frames(settings, &first, &last);
-    for (int frame = first; frame <= last && status == VTS_OK;
-         frame += settings->animation.step) {
-        settings_enter_frame(settings, frame);
-        status = render_frame(settings, settings->scenes.items[0]);
-    }
-    return status;
+    Console console;
+    console_init(&console, settings);
+    Rendering rendering = {settings->scenes.items[0], settings, &console};
+    return command_with_session(settings, &console, rendering.scene, render, &rendering);
 }

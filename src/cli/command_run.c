@@ -1,15 +1,22 @@
 #include "cli/command.h"
 #include "cli/complaint.h"
+#include "cli/frames.h"
 
 typedef struct Program {
     const char *path;
-    const Settings *settings;
+    Settings *settings;
 } Program;
 
 static VtsStatus run(VtsSession *session, const void *context) {
     const Program *program = context;
-    if (program->settings->dumps) return vts_dump(session, program->path, program->settings->dump);
-    return vts_run(session, program->path);
+    Settings *settings = program->settings;
+    FrameCursor cursor = {0};
+    VtsStatus status = film_join(session, settings, program->path, FILM_FIRST);
+    while (status == VTS_OK && film_next(settings, &cursor)) {
+        film_enter(settings, session, cursor.frame);
+        status = settings->dumps ? vts_dump(session, program->path, settings->dump) : vts_run(session, program->path);
+    }
+    return status;
 }
 
 int command_run(Settings *settings) {
@@ -17,14 +24,7 @@ int command_run(Settings *settings) {
     if (settings->scenes.count > 1)
         return complain_usage(settings, "one program at a time, not also '%s'", settings->scenes.items[1]);
     Program program = {settings->scenes.items[0], settings};
-    int first, last, status = VTS_OK;
-    settings_frames(settings, &first, &last);
-    for (int frame = first; frame <= last && status == VTS_OK;
-         frame += settings->animation.step) {
-        Console console;
-        console_init(&console, settings);
-        settings_enter_frame(settings, frame);
-        status = command_with_session(settings, &console, program.path, run, &program);
-    }
-    return status;
+    Console console;
+    console_init(&console, settings);
+    return command_with_session(settings, &console, program.path, run, &program);
 }

@@ -78,14 +78,42 @@ static void format_time(char *out, size_t size, double seconds) {
         snprintf(out, size, "%ld:%02ld", all / 60, all % 60);
 }
 
+/* What the pictures of a film still take, as far as those tell that are drawn. */
+static void film_left(const Console *console, double now, char *out, size_t size) {
+    if (console->works_drawn == 0) return;
+    double mean = (console->work_start_s - console->works_start_s) / (double)console->works_drawn;
+    double left = mean * (double)(console->works - console->works_done) - fmin(mean, now - console->work_start_s);
+    char time[24];
+    format_time(time, sizeof time, fmax(left, 0));
+    snprintf(out, size, ", %s in all", time);
+}
+
+void console_expect_works(Console *console, long long count) { console->works = count; }
+
+void console_begin_work(Console *console) {
+    console->work_start_s = console_now();
+    if (console->works_drawn == 0) console->works_start_s = console->work_start_s;
+    if (console->works) snprintf(console->part, sizeof console->part, "%lld/%lld ", console->works_done + 1, console->works);
+}
+
+void console_end_work(Console *console) {
+    console_clear(console);
+    console->works_done++;
+    console->works_drawn++;
+    console->stage[0] = '\0';
+}
+
+void console_skip_work(Console *console) { console->works_done++; }
+
 static void draw_bar(Console *console, double share, double now) {
     enum { NARROWEST = 10, WIDEST = 40, LONGEST_LINE = 256 };
     double spent = now - console->stage_start_s;
-    char left[32] = "";
+    char left[64] = "";
     if (share > 0.01 && spent > 0.5) {
         format_time(left, sizeof left, spent * (1 - share) / share);
         strcat(left, " left");
     }
+    film_left(console, now, left + strlen(left), sizeof left - strlen(left));
     int columns = terminal_columns();
     int room = columns - (int)strlen(console->part) - (int)strlen(console->stage) - (int)strlen(left) - 12;
     int cells = room < NARROWEST ? 0 : room > WIDEST ? WIDEST : room;

@@ -14,7 +14,10 @@ typedef struct Console {
     bool within_line; /* the last text did not end its line: no bar now */
     bool diagnostics_shown;
     bool quiet;         /* the scene has spoken before: its texts and diagnostics are dropped */
-    char part[24];      /* of a larger work, before each stage: "3/12 " */
+    char part[48];      /* of a larger work, before each stage: "3/12 " */
+    long long works, works_done; /* pictures of a film that are wanted, and drawn or found so far; 0: no film */
+    double works_start_s, work_start_s;
+    long long works_drawn;
     char stage[64];       /* that progress was last told of */
     double stage_start_s; /* on a monotonic clock */
     double last_drawn_s;
@@ -28,6 +31,12 @@ void console_attach(Console *console, VtsOptions *options);
 void console_clear(Console *console);
 /* A line of our own on stderr when --verbose was given. */
 void console_note(Console *console, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* What follows are so many pictures, of which the time left over is told as well. Each is begun and ended, or skipped. */
+void console_expect_works(Console *console, long long count);
+void console_begin_work(Console *console);
+void console_end_work(Console *console);
+void console_skip_work(Console *console);
 
 /* Seconds on a monotonic clock. */
 double console_now(void);

@@ -2,6 +2,7 @@
 
 #include "cli/command.h"
 #include "cli/complaint.h"
+#include "cli/frames.h"
 #include "cli/povray_options.h"
 #include "cli/spelling.h"
 #include "cli/option_value.h"
@@ -35,6 +36,17 @@ static const char *apply_threads(Settings *s, const char *value) {
 static const char *apply_clock(Settings *s, const char *value) {
     s->options.clock_set = true;
     return option_double(value, &s->options.clock) ? NULL : "a number";
+}
+static const char *apply_frames(Settings *s, const char *value) {
+    return film_parse_frames(s, value) ? NULL : "frames from first to last, such as 1-48, 1-48x2 or 1,7,20-30";
+}
+static const char *apply_fps(Settings *s, const char *value) {
+    return option_double(value, &s->animation.fps) && s->animation.fps > 0 ? NULL : "a number above 0";
+}
+static const char *apply_resume(Settings *s, const char *value) {
+    (void)value;
+    s->resume = true;
+    return NULL;
 }
 static const char *apply_quality(Settings *s, const char *value) {
     static const char *const names[] = {"draft", "good", "best", NULL};
@@ -221,8 +233,9 @@ static const Option OPTIONS[] = {
      "prints one stage of the program instead"},
     {"verbose", 'v', NULL, COMMAND_ALL, apply_verbose, "says more about what is done"},
     {"help", 'h', NULL, COMMAND_ALL | COMMAND_COMPARE | COMMAND_INFO, apply_help, "this text"},
-    {"frames", 'f', "A-B", COMMAND_ALL, NULL, NULL},
-    {"resume", 0, NULL, COMMAND_ALL, NULL, NULL},
+    {"frames", 'f', "A-B[xSTEP],...", COMMAND_ALL, apply_frames, "frames of the scene's animation; default: all, of other commands than render the first"},
+    {"fps", 0, "N", COMMAND_ALL, apply_fps, "frames a second; default: as the scene's animation says, else 24"},
+    {"resume", 0, NULL, COMMAND_RENDER | COMMAND_REFERENCE, apply_resume, "leaves out the pictures that are there: goes on with a film that was stopped"},
     {"aov", 0, "NAMES", COMMAND_RENDER | COMMAND_REFERENCE, apply_aov,
      "further channels of an EXR: some of depth,normal,albedo,alpha,position,object,uv,texel_level,samples"},
     {"preview", 0, "HOST:PORT", COMMAND_RENDER | COMMAND_REFERENCE, apply_preview,

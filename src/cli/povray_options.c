@@ -77,9 +77,11 @@ static const char *apply_frame_step(Settings *s, const char *value) {
     return option_int(value, 1, 1000000000, &s->animation.step) ? NULL : "a number of frames from 1";
 }
 static const char *apply_first_frame(Settings *s, const char *value) {
+    s->animation.frames_given = true;
     return frame_number(s, value, &s->animation.first_frame);
 }
 static const char *apply_last_frame(Settings *s, const char *value) {
+    s->animation.frames_given = true;
     return frame_number(s, value, &s->animation.last_frame);
 }
 static const char *subset(Settings *s, const char *value, double *out) {
@@ -95,16 +97,19 @@ static const char *apply_subset_last(Settings *s, const char *value) {
     return subset(s, value, &s->animation.subset_last);
 }
 static const char *apply_first_clock(Settings *s, const char *value) {
+    s->animation.first_clock_given = true;
     return option_double(value, &s->animation.first_clock) ? NULL : "a number";
 }
 static const char *apply_last_clock(Settings *s, const char *value) {
+    s->animation.last_clock_given = true;
     return option_double(value, &s->animation.last_clock) ? NULL : "a number";
 }
 static const char *apply_cyclic(Settings *s, const char *value) {
+    s->animation.cyclic_given = true;
     return option_truth(value, &s->animation.cyclic) ? NULL : "on or off";
 }
 static const char *cyclic_on(Settings *s, const char *value) {
-    s->animation.cyclic = true;
+    s->animation.cyclic = s->animation.cyclic_given = true;
     return *value ? "nothing" : NULL;
 }
 

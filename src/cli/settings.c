@@ -1,5 +1,7 @@
 #include "cli/settings.h"
 
+#include "cli/frames.h"
+
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -31,6 +33,7 @@ void settings_free(Settings *settings) {
     TextList *texts[] = {&settings->scenes, &settings->includes, &settings->read_folders,
                          &settings->write_folders, &settings->references};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) free(texts[i]->items);
+    free(settings->animation.asked.items);
     *settings = (Settings){0};
 }
 
@@ -46,6 +49,12 @@ const char *settings_copy(Settings *settings, const char *text, size_t size) {
     settings->owned = grown(settings->owned, settings->owned_count, sizeof *settings->owned);
     settings->owned[settings->owned_count++] = copy;
     return copy;
+}
+
+void settings_add_frames(Settings *settings, FrameRange range) {
+    FrameList *list = &settings->animation.asked;
+    list->items = grown(list->items, list->count, sizeof *list->items);
+    list->items[list->count++] = range;
 }
 
 bool settings_add_pair(Settings *settings, PairList *list, const char *text) {
@@ -83,49 +92,6 @@ static const char *finish_region(Settings *settings) {
     return NULL;
 }
 
-static const char *finish_animation(const Settings *settings) {
-    const Animation *animation = &settings->animation;
-    int first, last;
-    settings_frames(settings, &first, &last);
-    if (!animation->on) return NULL;
-    if (animation->first_frame > animation->last_frame) return "the first frame comes after the last";
-    if (first < animation->first_frame || last > animation->last_frame || first > last)
-        return "the subset of frames is not within the animation";
-    if (settings->report) return "a report of an animation is not available in this version";
-    return NULL;
-}
-
-/* POV-Ray's rule: a share counts from 0, wherever the frames begin; what lies before them is cut off. */
-static int subset_frame(const Animation *animation, double asked, int otherwise) {
-    if (asked <= 0) return otherwise;
-    int count = animation->last_frame - animation->first_frame + 1;
-    int frame = asked < 1 ? (int)(asked * count) : (int)asked;
-    return frame < animation->first_frame ? animation->first_frame : frame;
-}
-
-void settings_frames(const Settings *settings, int *first, int *last) {
-    const Animation *animation = &settings->animation;
-    *first = subset_frame(animation, animation->subset_first, animation->first_frame);
-    *last = subset_frame(animation, animation->subset_last, animation->last_frame);
-}
-
-void settings_enter_frame(Settings *settings, int frame) {
-    const Animation *animation = &settings->animation;
-    VtsOptions *options = &settings->options;
-    if (!animation->on) return;
-    int steps = animation->last_frame - animation->first_frame + animation->cyclic;
-    options->frame = frame;
-    options->first_frame = animation->first_frame;
-    bool film = animation->last_frame > animation->first_frame;
-    /* Of a cycle POV-Ray counts the frame after the last one too, which is the first again. */
-    options->last_frame = animation->last_frame + (film && animation->cyclic);
-    options->first_clock = animation->first_clock;
-    options->last_clock = animation->last_clock;
-    options->clock_delta = steps > 0 ? (animation->last_clock - animation->first_clock) / steps : 0;
-    options->clock = animation->first_clock + (frame - animation->first_frame) * options->clock_delta;
-    options->clock_set = options->clock_set || film;
-}
-
 const char *settings_finish(Settings *settings) {
     VtsOptions *options = &settings->options;
     options->declares = settings->declares.items;
@@ -142,7 +108,7 @@ const char *settings_finish(Settings *settings) {
     options->allow_write_count = settings->write_folders.count;
     options->program_dir = program_folder(settings);
     const char *wrong = finish_region(settings);
-    return wrong ? wrong : finish_animation(settings);
+    return wrong || !settings->animation.frames_given ? wrong : film_fault(settings);
 }
 
 static const char *file_name(const char *path) {
@@ -171,13 +137,5 @@ static const char *whole_output(Settings *settings, const char *scene) {
 }
 
 const char *settings_output(Settings *settings, const char *scene) {
-    const char *path = whole_output(settings, scene), *dot = strrchr(file_name(path), '.');
-    if (!settings->animation.on) return path;
-    int digits = snprintf(NULL, 0, "%d", settings->animation.last_frame);
-    int stem = dot ? (int)(dot - path) : (int)strlen(path);
-    char numbered[PATH_MAX + 32];
-    int length = snprintf(numbered, sizeof numbered, "%.*s%0*d%s", stem, path, digits,
-                          settings->options.frame, dot ? dot : "");
-    return length > 0 && (size_t)length < sizeof numbered ? settings_copy(settings, numbered, (size_t)length)
-                                                          : path;
+    return film_output(settings, whole_output(settings, scene));
 }

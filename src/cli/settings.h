@@ -16,15 +16,30 @@ typedef struct TextList {
     size_t count;
 } TextList;
 
-/* POV-Ray's animation loop. */
+/* Some of a film's frames: first, first + step, … up to last. */
+typedef struct FrameRange {
+    int first, last, step;
+} FrameRange;
+
+typedef struct FrameList {
+    FrameRange *items;
+    size_t count;
+} FrameList;
+
+/* A film: POV-Ray's animation loop, or what the scene's `animation` says; frames.h. */
 typedef struct Animation {
-    bool on;
+    bool on;                     /* there is one */
+    bool frames_given, first_clock_given, last_clock_given, cyclic_given; /* on the command line */
+    bool timed;                  /* by fps; else seconds are the clock */
+    bool first_only;             /* of its frames the first one is done */
     int first_frame, last_frame; /* that the clocks belong to */
     int step;                    /* from one frame that is done to the next */
     double subset_first,
         subset_last; /* that are done: numbers of frames or, below 1, shares of them all; 0: all */
     double first_clock, last_clock;
-    bool cyclic; /* the last clock is that of the frame after the last */
+    double fps;      /* 0: as the scene says */
+    bool cyclic;     /* the last clock is that of the frame after the last */
+    FrameList asked; /* --frames; none: the subset */
 } Animation;
 
 typedef struct Settings {
@@ -44,6 +59,7 @@ typedef struct Settings {
     ProgressStyle progress;
     bool verbose;
     bool help;
+    bool resume; /* pictures that are there are not drawn again */
     bool dumps; /* `dump` was given */
     VtsDump dump;
     bool output_as_povray; /* from +O: a folder or a name without suffix is completed */
@@ -60,6 +76,7 @@ void settings_init(Settings *settings, const char *program);
 void settings_free(Settings *settings);
 
 void settings_add(TextList *list, const char *text);
+void settings_add_frames(Settings *settings, FrameRange range);
 /* "NAME=VALUE"; false when there is no name or no '='. */
 bool settings_add_pair(Settings *settings, PairList *list, const char *text);
 /* A copy of `size` bytes that lives as long as the settings. */
@@ -68,13 +85,8 @@ const char *settings_copy(Settings *settings, const char *text, size_t size);
 /* Makes `options` complete. NULL, or what is wrong. */
 const char *settings_finish(Settings *settings);
 
-/* The frames to do: 1 to 1 without an animation. */
-void settings_frames(const Settings *settings, int *first, int *last);
-/* Sets the options for one of them. */
-void settings_enter_frame(Settings *settings, int frame);
-
-/* Where the picture of a scene goes: what was asked for, else the scene's name in the working folder; in an animation with
- * the frame's number before the suffix, as wide as the last one's. */
+/* Where the picture of a scene goes: what was asked for, else the scene's name in the working folder; in a film as
+ * film_output() says. */
 const char *settings_output(Settings *settings, const char *scene);
 
 #endif

@@ -134,7 +134,10 @@ typedef struct SceneDraft SceneDraft;
 SceneDraft *scene_draft_create(BuildContext *context, const char *scene_name);
 bool scene_draft_add(SceneDraft *draft, BuildContext *context, const Value *value, Span span);
 /* Fills in defaults (camera …), warns of an empty scene. */
-const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context, double clock);
+/* Its times are left to who knows them. */
+const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context);
+/* Whether an animation stood at top level. */
+bool scene_draft_has_film(const SceneDraft *draft);
 /* #default { texture / pigment / finish … } */
 bool scene_draft_default(SceneDraft *draft, BuildContext *context, const EvalBlock *block);
 

@@ -40,6 +40,7 @@ struct SceneDraft {
     } rainbows;
     Color background;
     GlobalSettings settings;
+    const Film *film;
     bool has_terrain;
 };
 
@@ -265,11 +266,27 @@ static void add_rainbow(SceneDraft *draft, BuildContext *context, const Rainbow 
                      "a rainbow without a distance and a width greater than 0 and a colour map is not seen");
 }
 
+static bool add_film(SceneDraft *draft, BuildContext *context, const EvalBlock *block) {
+    Film film;
+    if (!film_read(context, block, &film)) return false;
+    if (draft->film) {
+        Diagnostic *d = diag_error(context->diags, film.span, "a second 'animation'");
+        diag_note(context->diags, d, draft->film->span, "the first one");
+        return false;
+    }
+    if (film.shutter > 0) warn_inert(draft, context, &(InertNote){"shutter", film.span, NULL});
+    draft->film = arena_copy(context->arena, &film, sizeof film);
+    return true;
+}
+
+bool scene_draft_has_film(const SceneDraft *draft) { return draft->film != NULL; }
+
 static bool add_block(SceneDraft *draft, BuildContext *context, const EvalBlock *block, Span span) {
     const char *word = block->word->text;
     if (strcmp(word, "background") == 0) return background_read(context, block, &draft->background);
     if (strcmp(word, "global_settings") == 0) return settings_read(context, block, &draft->settings);
-    if (strcmp(word, "animation") == 0 || strcmp(word, "media") == 0) {
+    if (strcmp(word, "animation") == 0) return add_film(draft, context, block);
+    if (strcmp(word, "media") == 0) {
         InertNote note = {word, block->word_span, NULL};
         warn_inert(draft, context, &note);
         return true;
@@ -346,7 +363,7 @@ bool scene_draft_default(SceneDraft *draft, BuildContext *context, const EvalBlo
 
 /* ---- the finished scene ---- */
 
-const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context, double clock) {
+const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context) {
     Scene *scene = arena_new(context->arena, Scene);
     if (!draft->objects.count && !draft->skins.count && !context->is_program)
         diag_warning(context->diags, (Span){0},
@@ -371,8 +388,7 @@ const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context, double
                      .default_texture = draft->first_default,
                      .settings = draft->settings,
                      .has_terrain = draft->has_terrain,
-                     .clock = clock,
-                     .time = clock};
+                     .film = draft->film};
     scene->settings.assumed_gamma = build_assumed_gamma(context);
     scene->settings.geo_origin = context->geo_origin;
     return scene;

@@ -58,6 +58,8 @@ BlockBuilder build_finish;
 const Finish *finish_over(const BuildContext *context, const Finish *base, const Finish *block);
 
 BlockBuilder build_interior; /* build_interior.c */
+/* build_film.c: animation { … }; false after a report. */
+bool film_read(BuildContext *context, const EvalBlock *block, Film *out);
 
 /* ---- build_texture.c ---- */
 BlockBuilder build_texture, build_material, build_wind_field;

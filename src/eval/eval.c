@@ -289,9 +289,12 @@ static EvalStatus evaluate(Eval *ev, const SourceFile *file, const Scene **scene
     }
     if (ev->interrupted) return EVAL_INTERRUPTED;
     if (ev->diags->error_count) return EVAL_FAILED;
-    const Scene *finished = scene_draft_finish(ev->draft, &ev->build, ev->options->clock);
+    const Scene *finished = scene_draft_finish(ev->draft, &ev->build);
     if (!finished || ev->diags->error_count) return EVAL_FAILED;
     Scene *named = arena_copy(ev->build.arena, finished, sizeof *finished);
+    named->clock = ev->options->clock;
+    named->time = ev->options->time;
+    named->cycle = ev->options->cycle;
     eval_name_texels(ev, named);
     *scene = named;
     return EVAL_OK;

@@ -114,6 +114,8 @@ typedef struct EvalOptions {
     double clock;
     bool clock_on;
     double clock_delta, initial_clock, final_clock;
+    double time, cycle;               /* of the scene, in seconds */
+    bool ends_at_film;                /* only what 'animation' says is wanted: the scene is not read further than to there */
     int frame_number, initial_frame, final_frame;
     int image_width, image_height;
     EvalLimits limits;

@@ -100,6 +100,7 @@ void sink_value(Eval *ev, Sink *sink, Value v, Span span) {
     case SINK_SCENE: {
         Value kept = keep(ev, v);
         scene_draft_add(ev->draft, &ev->build, &kept, span);
+        if (ev->options->ends_at_film && scene_draft_has_film(ev->draft)) ev->stopped = true;
         return;
     }
     case SINK_ITEMS: add_item(ev, sink, v, span); return;

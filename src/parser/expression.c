@@ -1,5 +1,7 @@
 #include "parser/parser.h"
 
+#include <string.h>
+
 /* A call at the place of an operand: its macro's body must bind at least as tightly as the operators around it. */
 static void require(Node *n, Binding need) {
     if (n->kind == NODE_CALL && n->need < need) n->need = (uint8_t)need;
@@ -501,6 +503,10 @@ static bool is_phase_value(const Token *t, int after) {
     return t->keyword == KW_phase && (after == '*' || after == '/' || after == '}' || after == ',' || after == ')');
 }
 
+bool parser_is_film_clock(const Parser *p, const Token *t) {
+    return t->keyword == KW_clock && p->block && strcmp(p->block->text, "animation") == 0;
+}
+
 /* What can stand for an operand. Names count after a comma; elsewhere when they are known to be values. */
 bool parser_begins_expression(Parser *p, bool after_comma) {
     const Token *t = parser_peek(p);
@@ -521,7 +527,7 @@ bool parser_begins_expression(Parser *p, bool after_comma) {
     if (t->keyword) {
         if (is_parameter(p, t->as.name)) return true;
         switch (keyword_class((Keyword)t->keyword)) {
-        case KEYWORD_CONSTANT: return !brace;
+        case KEYWORD_CONSTANT: return !brace && (after_comma || !parser_is_film_clock(p, t));
         case KEYWORD_COLOR: return parser_begins_color(p);
         case KEYWORD_FUNCTION: return after == '(';
         default: return t->keyword == KW_function || t->keyword == KW_array || is_phase_value(t, after);

@@ -167,7 +167,9 @@ static Node *keyword_item(Parser *p) {
     int after = parser_peek_after(p)->kind;
     bool brace = after == '{';
     switch (keyword_class((Keyword)t->keyword)) {
-    case KEYWORD_CONSTANT: return brace ? parser_block(p) : parser_expression(p);
+    case KEYWORD_CONSTANT:
+        if (parser_is_film_clock(p, t)) return word_item(p);
+        return brace ? parser_block(p) : parser_expression(p);
     case KEYWORD_COLOR:
         if (!brace && parser_begins_color(p)) return parser_expression(p);
         break;

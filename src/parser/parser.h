@@ -148,6 +148,8 @@ Body *parser_body(Parser *parser, Name block);
 Node *parser_target(Parser *parser);
 /* An expression at the place of an argument of a word: does the next token begin one? `after_comma`: then names count whatever they are. */
 bool parser_begins_expression(Parser *parser, bool after_comma);
+/* `clock` where an animation says which clocks it has; elsewhere it is a number. */
+bool parser_is_film_clock(const Parser *p, const Token *t);
 bool parser_begins_color(Parser *parser);
 /* red, green, blue, filter, transmit, alpha with a value after it. */
 bool parser_begins_component(Parser *parser);

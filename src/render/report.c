@@ -20,8 +20,9 @@ static void add_texels(StrBuf *out, const CompiledScene *compiled) {
     strbuf_addc(out, ']');
 }
 
-static void add_frame(StrBuf *out, const FrameReport *f) {
+void report_add_frame(StrBuf *out, const FrameReport *f) {
     const TraceCounters *c = &f->stats->counters;
+    if (out->size) strbuf_addc(out, ',');
     strbuf_addf(out, "{\"frame\":%d,\"clock\":%.9g,", f->frame, f->clock);
     add_text(out, "output", f->output);
     strbuf_addf(out, ",\"wall_s\":%.4f,\"cpu_s\":%.4f,\"parse_s\":%.4f,\"build_s\":%.4f,\"render_s\":%.4f,", f->wall_s, f->cpu_s,
@@ -37,15 +38,12 @@ static void add_frame(StrBuf *out, const FrameReport *f) {
                 f->parse_s, f->build_s, f->render_s, f->write_s, (unsigned long long)c->steps, (unsigned long long)f->stats->split_pixels);
 }
 
-void report_write(StrBuf *out, const char *scene, const char *version, const FrameReport *frames, size_t count) {
+void report_write(StrBuf *out, const char *scene, const char *version, const StrBuf *frames) {
     strbuf_addc(out, '{');
     add_text(out, "scene", scene);
     strbuf_addc(out, ',');
     add_text(out, "version", version);
     strbuf_adds(out, ",\"frames\":[");
-    for (size_t i = 0; i < count; i++) {
-        if (i) strbuf_addc(out, ',');
-        add_frame(out, &frames[i]);
-    }
+    strbuf_adds(out, frames->size ? frames->data : "");
     strbuf_adds(out, "]}\n");
 }

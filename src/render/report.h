@@ -14,6 +14,9 @@ typedef struct FrameReport {
     const RenderStats *stats;
 } FrameReport;
 
-void report_write(StrBuf *out, const char *scene, const char *version, const FrameReport *frames, size_t count);
+/* Adds a frame to those in `frames`, as JSON. */
+void report_add_frame(StrBuf *frames, const FrameReport *frame);
+/* The whole, of such frames. */
+void report_write(StrBuf *out, const char *scene, const char *version, const StrBuf *frames);
 
 #endif

@@ -678,6 +678,18 @@ typedef struct NamedTexel {
     const TexelDef *texel;
 } NamedTexel;
 
+enum { FILM_MOST_FRAMES = 1000000000 };
+
+/* What animation { … } says. */
+typedef struct Film {
+    Span span; /* of the word */
+    int frames; /* counted from 1 */
+    double fps;
+    double first_clock, last_clock;
+    bool cyclic;    /* last_clock is that of the frame after the last, which is the first again */
+    double shutter; /* the part of a frame's time that it is open, 0 to 1 */
+} Film;
+
 typedef struct Scene {
     const char *name;
     Camera camera;
@@ -699,6 +711,8 @@ typedef struct Scene {
     GlobalSettings settings;
     double clock;
     double time;                      /* seconds: what winds run by */
+    double cycle;                     /* seconds after which a film begins again; 0: it does not */
+    const Film *film;                 /* NULL: the scene has no animation */
     bool has_terrain;                 /* some object or skin is one, or may hold one */
     const NamedTexel *named_texels; /* by name */
     size_t named_texel_count;

@@ -561,11 +561,23 @@ static void print_rainbow(Printer *p, const Rainbow *bow) {
     if (bow->colors) print_pigment(p, "colors", bow->colors);
 }
 
+static void print_film(Printer *p, const Film *film) {
+    if (!film) return;
+    begin_line(p, "animation");
+    add_number(p, "frames", film->frames);
+    add_number(p, "fps", film->fps);
+    strbuf_addf(p->out, " clock %g %g", plain(film->first_clock), plain(film->last_clock));
+    add_flag(p, "cyclic", film->cyclic);
+    add_unless(p, "shutter", film->shutter, 0);
+    end_line(p);
+}
+
 void scene_print(const Scene *scene, StrBuf *out) {
     Printer printer = {out, 1}, *p = &printer;
     strbuf_addf(out, "scene %s clock %g\n", scene->name, scene->clock);
     print_settings(p, &scene->settings);
     print_camera(p, &scene->camera);
+    print_film(p, scene->film);
     begin_line(p, "background");
     add_color(p, "color", scene->background);
     end_line(p);

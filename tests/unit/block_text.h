@@ -266,7 +266,7 @@ static inline const Scene *block_text_scene(BlockText *t, const char *text) {
     const EvalBlock *all = block_text_parse(t, text);
     for (size_t i = 0; i < all->count; i++)
         scene_draft_add(draft, &t->context, &all->items[i].value, all->items[i].span);
-    return t->diags.error_count ? NULL : scene_draft_finish(draft, &t->context, 0);
+    return t->diags.error_count ? NULL : scene_draft_finish(draft, &t->context);
 }
 
 #endif

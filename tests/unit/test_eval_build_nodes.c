@@ -469,7 +469,7 @@ static void test_default_texture(void **state) {
     assert_near(finish.as.finish->ambient.red, 0.7);
     Value sphere = block_text_value(t, "sphere { 0, 1 }");
     scene_draft_add(draft, &t->context, &sphere, (Span){0});
-    const Scene *scene = scene_draft_finish(draft, &t->context, 0);
+    const Scene *scene = scene_draft_finish(draft, &t->context);
     assert_near(scene->objects[0]->texture->finish->ambient.red, 0.7);
 }
 

@@ -1,0 +1,61 @@
+/* A scene's film: what its `animation` says, and going on to another frame. */
+#include "vts_session.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static bool mentions_film(VtsSession *session, const char *path);
+
+/* Whether the file that an #include of `file` names, as far as it can be told without running anything, speaks of an animation. */
+static bool include_mentions_film(VtsSession *session, const SourceFile *file, const char *name, int size) {
+    const char *slash = strrchr(file->path, '/');
+    StrBuf path = {0};
+    strbuf_addf(&path, "%.*s%.*s", slash ? (int)(slash - file->path) + 1 : 0, file->path, size, name);
+    bool found = mentions_film(session, path.data);
+    for (size_t i = 0; i < session->options.include_dir_count && !found; i++) {
+        strbuf_clear(&path);
+        strbuf_addf(&path, "%s/%.*s", session->options.include_dirs[i], size, name);
+        found = mentions_film(session, path.data);
+    }
+    strbuf_free(&path);
+    return found;
+}
+
+/* Scenes without a film, which are most, are not to be read twice to find that out. */
+static bool mentions_film(VtsSession *session, const char *path) {
+    static const char include[] = "#include";
+    size_t known = session->sources.count;
+    const SourceFile *file;
+    if (source_load(&session->sources, path, NULL, &file) != SOURCE_OK || session->sources.count == known) return false;
+    if (strstr(file->text, "animation")) return true;
+    for (const char *at = file->text; (at = strstr(at, include)) != NULL;) {
+        at += sizeof include - 1;
+        at += strspn(at, " \t");
+        size_t size = *at == '"' ? strcspn(at + 1, "\"\n") : 0;
+        if (size > 0 && size < 1024 && at[1] != '/' && include_mentions_film(session, file, at + 1, (int)size)) return true;
+    }
+    return false;
+}
+
+VtsStatus session_film(VtsSession *session, const char *scene_path, VtsFilm *out) {
+    session->renew = true; /* what is found now is found again by who draws */
+    if (!mentions_film(session, scene_path)) return VTS_OK;
+    session->probing = true;
+    VtsStatus status = session_evaluate(session, scene_path, (EvalMode){.writes_in_memory = true, .ends_at_film = true});
+    session->probing = false;
+    if (status == VTS_INTERRUPTED) return status;
+    const Film *film = status == VTS_OK ? session->scene->film : NULL;
+    if (film)
+        *out = (VtsFilm){.exists = true, .frames = film->frames, .fps = film->fps, .first_clock = film->first_clock,
+                         .last_clock = film->last_clock, .cyclic = film->cyclic, .shutter = film->shutter};
+    return VTS_OK;
+}
+
+void vts_set_frame(VtsSession *session, const VtsOptions *frame) {
+    VtsOptions *o = &session->options;
+    o->clock = frame->clock, o->clock_set = frame->clock_set, o->clock_delta = frame->clock_delta;
+    o->frame = frame->frame, o->first_frame = frame->first_frame, o->last_frame = frame->last_frame;
+    o->first_clock = frame->first_clock, o->last_clock = frame->last_clock;
+    o->time = frame->time, o->time_set = frame->time_set, o->cycle = frame->cycle;
+    session->in_film = session->renew = true;
+}

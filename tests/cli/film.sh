@@ -1,0 +1,161 @@
+#!/usr/bin/env bash
+# film.sh CASE VTS JSON_CHECK: one case about films, see harness.sh.
+source "${BASH_SOURCE%/*}/harness.sh"
+
+# film [MORE]: four frames that say which they are.
+film() {
+  cat >film.vts <<S
+animation { frames 4 fps 2 clock 0, 1 ${1:-} }
+#debug concat("> ", str(frame_number, 0, 0), " ", str(clock, 0, 3), "\n")
+camera { location <0, 1.5, -4> look_at <0, 0.5, 0> }
+light_source { <5, 10, -5> rgb 1 }
+sphere { <clock, 0.5, 0>, 0.5 pigment { rgb <0.8, 0.2, 0.1> } }
+S
+}
+want_said() { [ "$(grep '^>' err | tr '\n' ' ')" = "$1" ] || fail "'$call' said $(grep '^>' err | tr '\n' ' ')"; }
+
+case_frames() {
+  film
+  run film.vts -s 16x12 -o a.ppm; want_status 0; want_said '> 1 0.000 > 2 0.333 > 3 0.667 > 4 1.000 '
+  want_only film.vts a1.ppm a2.ppm a3.ppm a4.ppm
+  cmp -s a1.ppm a4.ppm && fail "nothing moves"
+  run film.vts -s 16x12 -o b.ppm --frames 2-4x2,1; want_status 0; want_said '> 2 0.333 > 4 1.000 > 1 0.000 '
+  local n
+  for n in 1 2 4; do cmp -s a$n.ppm b$n.ppm || fail "frame $n is another picture when drawn with others"; done
+  run check film.vts; want_status 0; want_said '> 1 0.000 '
+  run check film.vts -f 2-3; want_said '> 2 0.333 > 3 0.667 '
+  run run film.vts -f3; want_said '> 3 0.667 '
+  run reference film.vts -s 8x6 --samples 1 -o r.ppm; want_status 0; want_said '> 1 0.000 '; want_file r.ppm
+  run film.vts -s 16x12 -o c.ppm +KFF2 +KF3; want_status 0; want_said '> 1 0.000 > 2 3.000 '
+  film 'cyclic on'
+  run run film.vts -f 1-4; want_said '> 1 0.000 > 2 0.250 > 3 0.500 > 4 0.750 '
+  # A film in an included text is found as well.
+  mv film.vts part.inc; echo '#include "part.inc"' >film.vts
+  run film.vts -s 8x6 -f 2; want_status 0; want_said '> 2 0.250 '; want_file film2.png
+}
+
+case_names() {
+  film
+  run film.vts -s 8x6 -f 3 -o 'x.####.ppm'; want_file x.0003.ppm
+  run film.vts -s 8x6 -f 3 -o 'x#.a##.ppm'; want_file 'x#.a03.ppm'
+  run film.vts -s 8x6 -f 3 +KFF12 -o 'y.ppm'; want_file y03.ppm
+  run film.vts -s 8x6 -f 3; want_file film3.png
+  mkdir 'f#'; run film.vts -s 8x6 -f 3 -o 'f#/z.ppm'; want_file 'f#/z3.ppm'
+}
+
+case_bad_frames() {
+  film
+  local frames
+  for frames in 0 5 3-1 1- -3 x '' 1,,2 1-4x0 1-4x 2x2 99999999999 1-2-3 1.5; do refused render film.vts "--frames=$frames"; done
+  refused render film.vts -f 2 --clock 0.5
+  refused render film.vts --fps 0; refused render film.vts --fps=-2; refused render film.vts --fps nan
+  refused render film.vts +SF5
+  sed -i 1d film.vts; refused render film.vts -f 1; want_in err 'no animation'
+  local wrong
+  for wrong in 'frames 0' 'frames -3' 'frames 1.5' 'frames 1e10' 'fps 0' 'fps -1' 'clock 0' 'clock 1/0, 1' 'shutter 2' 'frames 2 frames 3' 'frame 3' \
+    '} animation { frames 2'; do
+    echo "animation { $wrong } sphere { 0, 1 }" >wrong.vts
+    run wrong.vts -s 8x6; want_status 1; want_in err 'wrong.vts:1:'
+  done
+  # Very many frames cost nothing before they are drawn.
+  echo 'animation { frames 1000000000 } sphere { 0, 1 }' >long.vts
+  run long.vts -s 8x6 -f 999999999-1000000000; want_status 0; want_only film.vts wrong.vts long.vts long0999999999.png long1000000000.png
+}
+
+case_clocks() {
+  film
+  run film.vts -s 8x6 --clock 0.25 -o one.ppm; want_status 0; want_said '> 1 0.250 '; want_only film.vts one.ppm
+  # Winds blow by seconds: those of a frame are those of its clock.
+  cat >wind.vts <<'S'
+animation { frames 5 fps 2 }
+#declare S = seed(1);
+camera { location <0, 1, -4> look_at <0, 0.3, 0> }
+light_source { <5, 10, -5> rgb 1 }
+#declare G = texel { layer { cylinder { <0.5, 0, 0.5>, <0.5, 1, 0.5>, 0.1 } texture { pigment { rgb 1 } } } }
+skin { surface { patch_grid 1, 1 function(u, v) { <4*u - 2, 0, 4*v - 2> } } texel { G } mapping { repeat <6, 6> height 0.8 }
+  wind_field { speed 1 gust { wavelength 3 amplitude 1 } } }
+S
+  run wind.vts -s 32x24 -o w.ppm -f 2,3; run wind.vts -s 32x24 -o w.ppm --clock 0.5; want_status 0
+  cmp -s w2.ppm w3.ppm && fail "no wind blows"
+  run wind.vts -s 32x24 -o other.ppm -f 3 --fps 1
+  cmp -s w3.ppm other3.ppm && fail "--fps has no effect"
+}
+
+case_report_frames() {
+  film
+  run film.vts -s 8x6 -o a.ppm --report r.json; want_status 0
+  "$json_check" scene version frames output wall_s parse_s build_s render_s <r.json || fail "report of a film"
+  [ "$(grep -o '"frame":[0-9]*' r.json | tr '\n' ' ')" = '"frame":1 "frame":2 "frame":3 "frame":4 ' ] || fail "frames of the report: $(cat r.json)"
+}
+
+case_resume() {
+  film
+  run film.vts -s 8x6 -o a.ppm; cp a2.ppm kept; rm a3.ppm; : >a4.ppm; printf x >a2.ppm
+  run film.vts -s 8x6 -o a.ppm --resume; want_status 0; want_said '> 3 0.667 > 4 1.000 '
+  [ "$(cat a2.ppm)" = x ] || fail "--resume draws what is there"
+  run film.vts -s 8x6 -o a.ppm --resume --report r.json; want_status 0; want_said ''
+}
+
+# Killed again and again, a film is whole in the end, and no file of it is ever half.
+case_killed() {
+  film
+  run film.vts -s 200x150 -o whole.png; want_status 0
+  local tries=0 picture
+  until [ -s part4.png ] || [ $((++tries)) -gt 60 ]; do
+    "$vts" film.vts -s 200x150 -o part.png --resume >out 2>err </dev/null &
+    local pid=$!
+    sleep "0.$((RANDOM % 25 + 4))"
+    kill -s KILL $pid 2>/dev/null
+    wait $pid 2>/dev/null
+    for picture in part?.png; do
+      [ ! -e "$picture" ] || cmp -s "$picture" "whole${picture#part}" || fail "$picture is not whole"
+    done
+  done
+  run film.vts -s 200x150 -o part.png --resume; want_status 0
+  for picture in 1 2 3 4; do cmp -s part$picture.png whole$picture.png || fail "frame $picture is another after a kill"; done
+}
+
+case_stopped() {
+  film; sed -i 's/frames 4/frames 100000/' film.vts
+  "$vts" film.vts -s 64x48 -o a.ppm --report r.json >out 2>err </dev/null &
+  local pid=$! picture
+  until [ -s a000003.ppm ]; do sleep 0.02; done
+  kill -s INT $pid; wait $pid
+  status=$? call='vts film.vts with SIGINT'
+  want_status 130; want_in err interrupted; want_file r.json
+  "$json_check" frames <r.json || fail "the report after an interruption"
+  for picture in a*.ppm; do [ "$(stat -c %s "$picture")" = "$(stat -c %s a000001.ppm)" ] || fail "$picture is not whole"; done
+  rm a*.ppm; want_only film.vts r.json
+}
+
+case_full_disk() {
+  film
+  ( ulimit -f 1; trap '' XFSZ; "$vts" film.vts -s 64x48 -o a.ppm >out 2>err </dev/null; echo $? >status )
+  status=$(cat status); rm status; call='vts film.vts on a full disk'
+  want_status 3; want_in err 'a1.ppm'; want_only film.vts
+}
+
+# What does not move is built once.
+case_kept() {
+  cat >kept.vts <<'S'
+animation { frames 3 }
+camera { location <0, 2, -40> look_at 0 }
+light_source { <5, 10, -5> rgb 1 }
+global_settings { detail voxels }
+#declare Ball = texel { resolution 32 layer { sphere { 0.5, 0.4 } } }
+#declare Drop = texel { resolution 32 layer { sphere { <0.5, 0.42 + clock/20, 0.5>, 0.4 } } }
+skin { surface { patch_grid 1, 1 function(u, v) { <16*u - 8, 0, 16*v - 8> } } texel { Ball } texel { Drop } mapping { repeat <40, 40> height 0.4 } }
+S
+  run kept.vts -s 32x24 --report -; want_status 0
+  local cached
+  cached=$(grep -o '"name":"[A-Za-z]*"\|"cached":[a-z]*' out | sed 's/.*://; s/"//g' | tr '\n' ' ')
+  [ "$cached" = 'Ball false Drop false Ball true Drop false Ball true Drop false ' ] || fail "built: $cached"
+}
+
+case_warned_once() {
+  film; echo 'media { }' >>film.vts
+  run film.vts -s 8x6; want_status 0
+  [ "$(grep -c "'media' is not modelled" err)" = 1 ] || fail "a warning of each frame: $(cat err)"
+}
+
+run_case

@@ -10,27 +10,10 @@ static const double MOST_TRIANGLES_A_PIXEL = 128;
 static const double MOST_MET_A_PIXEL = 4096;
 /* The share of a skin's cells that may be left away because their texture coordinates lie on a line: beams go from them back to places. */
 static const double MOST_SINGULAR = 0.01;
+/* Geometry is drawn up to so many times the distance at which voxels are planned to begin: beam_pilot.c may put them off. */
+static const double BEYOND_PLAN = 1.42;
 /* More triangles than this are left to the voxels. */
 enum { MOST_BEAM_TRIANGLES = 4000000 };
-
-bool beam_build_texel(BuiltTexel *texel, CompiledScene *compiled, DiagList *diags) {
-    const TexelDef *def = texel->def;
-    if (def->file || def->layer_count == 0) return true;
-    for (size_t i = 0; i < def->layer_count; i++)
-        if (def->layers[i].density) return true; /* flakes only stand for it; voxels are what it is drawn with */
-    ArenaMark mark = arena_mark(&compiled->scratch);
-    BeamTexelDraft *draft = beam_texel_begin(texel->extent, def->cyclic, &compiled->scratch);
-    size_t triangles = 0;
-    for (size_t i = 0; i < def->layer_count; i++) {
-        TexelMesh mesh;
-        if (!texel_mesh_layer(texel, &def->layers[i], BEAM_TOLERANCE_VOXELS / int_max(texel->finest_seen, 16), compiled, diags, &mesh)) return false;
-        triangles += mesh.triangle_count;
-        if (triangles <= MOST_BEAM_TRIANGLES) beam_texel_add_layer(draft, &mesh);
-    }
-    if (triangles <= MOST_BEAM_TRIANGLES) texel->beam = beam_texel_finish(draft, compiled->arena);
-    arena_reset_to(&compiled->scratch, mark);
-    return true;
-}
 
 /* Area of the surface against that of its tiles. */
 static double mean_tile_size(const CompiledSkin *skin) {
@@ -86,19 +69,69 @@ static void seen_range(const CompiledSkin *skin, const View *view, double *neare
     }
 }
 
+/* Triangles of a texel for beams, unless there are more than `most` or none that beams can draw; false after a diagnostic. */
+static bool build_texel(BuiltTexel *texel, size_t most, CompiledScene *compiled, DiagList *diags) {
+    const TexelDef *def = texel->def;
+    if (texel->beam || texel->triangles_known > most || def->file || def->layer_count == 0) return true;
+    for (size_t i = 0; i < def->layer_count; i++)
+        if (def->layers[i].density) return true; /* flakes only stand for it; voxels are what it is drawn with */
+    ArenaMark mark = arena_mark(&compiled->scratch);
+    BeamTexelDraft *draft = beam_texel_begin(texel->extent, def->cyclic, &compiled->scratch);
+    size_t triangles = 0;
+    for (size_t i = 0; i < def->layer_count && triangles <= most; i++) {
+        TexelMesh mesh;
+        if (!texel_mesh_layer(texel, &def->layers[i], BEAM_TOLERANCE_VOXELS / int_max(texel->finest_seen, 16), compiled, diags, &mesh)) return false;
+        triangles += mesh.triangle_count;
+        if (triangles <= most) beam_texel_add_layer(draft, &mesh);
+    }
+    if (triangles <= most) texel->beam = beam_texel_finish(draft, compiled->arena);
+    texel->triangles_known = triangles;
+    arena_reset_to(&compiled->scratch, mark);
+    return true;
+}
+
+/* Triangles a pixel that cost as much as voxels do. */
+static double most_a_pixel(const CompiledSkin *skin) { return skin->rigid ? MOST_MET_A_PIXEL : MOST_TRIANGLES_A_PIXEL; }
+
+/* More triangles over a tile than this, and all that is seen of the skin lies where voxels are better. */
+static double most_a_tile(const CompiledSkin *skin, bool everything, const View *view) {
+    double nearest, farthest;
+    seen_range(skin, view, &nearest, &farthest);
+    double width = view_cone(view, view->width / 2.0, view->height / 2.0, 1).spread * nearest / BEYOND_PLAN;
+    if (everything || farthest == 0 || !(width > 0)) return VTS_INFINITY;
+    return most_a_pixel(skin) * (skin->tile_size / width) * (skin->tile_size / width);
+}
+
+bool beam_build_skin(CompiledSkin *skin, bool everything, CompiledScene *compiled, DiagList *diags) {
+    skin->tile_size = mean_tile_size(skin);
+    if (!(skin->tile_size > 0) || coordinates_singular(skin)) return true;
+    double most = most_a_tile(skin, everything, &compiled->view), triangles = 0;
+    for (size_t i = 0; i < skin->texel_count; i++) {
+        const PlacedTexel *placed = &skin->texels[i];
+        double share = placed->density / (double)placed->family_size;
+        for (size_t k = 0; k < placed->family_size && share > 0; k++) {
+            size_t left = (size_t)fmin((most - triangles) / share, MOST_BEAM_TRIANGLES);
+            if (!build_texel(placed->family[k], left, compiled, diags)) return false;
+            if (!placed->family[k]->beam) return true; /* voxels, whatever the others hold */
+            triangles += share * (double)placed->family[k]->beam->triangle_count;
+            if (triangles > most) return true;
+        }
+    }
+    return true;
+}
+
 void beam_plan_skin(CompiledSkin *skin, bool everything, CompiledScene *compiled) {
     const View *view = &compiled->view;
     bool all = true;
     double triangles = triangles_a_tile(skin, &all), nearest, farthest;
-    skin->tile_size = mean_tile_size(skin);
     if (!all || !(skin->tile_size > 0) || coordinates_singular(skin)) return;
     Cone cone = view_cone(view, view->width / 2.0, view->height / 2.0, 1);
-    double most = skin->rigid ? MOST_MET_A_PIXEL : MOST_TRIANGLES_A_PIXEL, width = skin->tile_size * sqrt(most / fmax(triangles, 1));
+    double width = skin->tile_size * sqrt(most_a_pixel(skin) / fmax(triangles, 1));
     double to = cone.spread > 0 ? width / cone.spread : cone.width <= width ? VTS_INFINITY : 0;
     seen_range(skin, view, &nearest, &farthest);
     bool out_of_sight = farthest == 0; /* its shadows may be seen */
     if (everything || out_of_sight || 0.7 * to >= farthest) to = VTS_INFINITY;
-    if (1.42 * to <= nearest && !out_of_sight) return;
+    if (BEYOND_PLAN * to <= nearest && !out_of_sight) return;
     Box3 *boxes = arena_new_array(compiled->arena, Box3, skin->cell_count);
     for (size_t i = 0; i < skin->cell_count; i++) boxes[i] = skin->cells[i].bounds;
     skin->boxes = box_tree_build(boxes, skin->cell_count, compiled->arena);

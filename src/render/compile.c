@@ -104,8 +104,8 @@ static CompileStatus build_texels(const CompileOptions *options, Detail detail, 
     bool beams = flat && !options->exact && !options->texel_resolution && (detail == DETAIL_AUTO || detail == DETAIL_EXACT), voxels = !beams;
     out->exact_bounds = box3_empty();
     out->all_exact_to = out->nearest = VTS_INFINITY;
-    for (size_t i = 0; i < out->texel_count && beams; i++) {
-        if (!beam_build_texel(out->texels[i], out, diags)) return interrupted(options) ? COMPILE_INTERRUPTED : COMPILE_FAILED;
+    for (size_t i = 0; i < out->skin_count && beams; i++) {
+        if (!beam_build_skin(&out->skins[i], detail == DETAIL_EXACT, out, diags)) return interrupted(options) ? COMPILE_INTERRUPTED : COMPILE_FAILED;
         if (interrupted(options)) return COMPILE_INTERRUPTED;
     }
     for (size_t i = 0; i < out->skin_count && beams; i++) {

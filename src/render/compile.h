@@ -84,9 +84,10 @@ bool skin_place_wang(CompiledSkin *skin, size_t index, const TexelDef *const *de
 BuiltTexel *texel_ask(const TexelDef *def, CompiledScene *compiled);
 /* Its voxels, as fine as was asked for; or its exact geometry, for the reference. */
 bool texel_build(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags);
-/* Triangles for beams, where there are any; false after a diagnostic. beam_plan.c */
-bool beam_build_texel(BuiltTexel *texel, CompiledScene *compiled, DiagList *diags);
-/* Up to which distance the skin is drawn as exact geometry; `everything`: to the last. beam_plan.c */
+/* Triangles for beams of the skin's texels, as far as they may be seen nearer than voxels are planned to begin (`everything`: all); false after a
+ * diagnostic or when interrupted. beam_plan.c */
+bool beam_build_skin(CompiledSkin *skin, bool everything, CompiledScene *compiled, DiagList *diags);
+/* Up to which distance the skin is drawn as exact geometry; `everything`: to the last. After beam_build_skin. beam_plan.c */
 void beam_plan_skin(CompiledSkin *skin, bool everything, CompiledScene *compiled);
 /* Moves the distances at which voxels begin to where they are as right as max_error asks, by what a few pixels tell; sets voxel_error. When all
  * else is compiled. beam_pilot.c */

@@ -63,6 +63,7 @@ typedef struct BuiltTexel {
     TexelSky *sky;            /* NULL: ambient light is the same everywhere */
     ExactTexel *exact;        /* instead of voxels, for the reference; else NULL */
     const BeamTexel *beam;    /* its triangles, for beams; NULL where there are none */
+    size_t triangles_known;   /* it has at least so many; all, if `beam` */
 } BuiltTexel;
 
 /* One `texel { … }` of a skin, or one part of it if the skin is tiled by wang.h. */

@@ -98,7 +98,7 @@ static float march_out(const SkyBuild *b, const float from[3], Vec3f d) {
               p[3];
         for (int k = 0; k < 3; k++) p[k] = from[k] + (t + step / 2) * along[k];
         if (!bring_inside(b, p)) break;
-        float lod = float_min(log2f(voxel / b->finest), top);
+        float lod = float_min(nearbyintf(log2f(voxel / b->finest)), top); /* one level: steps are as long as its voxels anyway */
         depth += depth_of_step(b, lod, vec3f(p[0], p[1], p[2]), vec3f_scale(d, step));
         if (depth > -logf(DARK)) return 0;
         t += step;

@@ -2,6 +2,7 @@
 #include "eval/eval_function.h"
 
 #include "tape/noise.h"
+#include "tape/noise_interval.h"
 
 #include <string.h>
 
@@ -20,12 +21,24 @@ static void eval_sparse(const void *data, const double *in, double *out) {
     out[0] = noise_sparse_convolution(vec3(in[0], in[1], in[2]), whole(in[3], SPARSE_IMPULSES));
 }
 
+/* Which node, or how many impulses, must be known. */
+static void bound_worley(const void *data, const Interval *in, Interval *out) {
+    (void)data;
+    *out = interval_is_point(in[3]) ? interval_worley(in, whole(in[3].low, WORLEY_NODES)) : interval_all(true);
+}
+
+static void bound_sparse(const void *data, const Interval *in, Interval *out) {
+    (void)data;
+    *out = interval_is_point(in[3]) ? interval_sparse_convolution(in, whole(in[3].low, SPARSE_IMPULSES)) : interval_all(true);
+}
+
 static const TapeExternal worley = {
-    .name = "worley", .input_count = 4, .output_count = 1, .eval = eval_worley, .hash = {0x776F726C6579, 1}};
+    .name = "worley", .input_count = 4, .output_count = 1, .eval = eval_worley, .bound = bound_worley, .hash = {0x776F726C6579, 1}};
 static const TapeExternal sparse_convolution = {.name = "sparse_convolution",
                                                 .input_count = 4,
                                                 .output_count = 1,
                                                 .eval = eval_sparse,
+                                                .bound = bound_sparse,
                                                 .hash = {0x737061727365, 1}};
 
 /* ---- one octave ---- */

@@ -131,7 +131,7 @@ static inline void affine_noise_lanes(AffineLanes *restrict out, const AffineLan
             value = terms.value[l] + (better ? terms.second[l] / 2 : 0), first = terms.first[l];
             error = affine_lane_error((better ? third : bend) + off[l] * known->steepest, 256);
         }
-        bool use = error < half;
+        bool use = (error < half) & (value == value); /* places too far away for cells have no value */
         double above = (value + fabs(first) + error) - known->high, below = known->low - (value - fabs(first) - error);
         /* What lies beyond the noise's range is cut off: the form moves by half of that, which it then may be off. */
         above = above > 0 && use ? above / 2 : 0, below = below > 0 && use ? below / 2 : 0;

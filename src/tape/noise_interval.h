@@ -9,4 +9,8 @@
  * everywhere. Boxes over more than a few cells get that bound. */
 Interval lattice_over_box(LatticeFind *find, LatticeCurve *curve, double most, const Interval box[3]);
 
+/* noise_worley() and noise_sparse_convolution() over boxes: of the balls around them. */
+Interval interval_worley(const Interval box[3], int index);
+Interval interval_sparse_convolution(const Interval box[3], int count);
+
 #endif

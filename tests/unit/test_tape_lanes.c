@@ -1,0 +1,176 @@
+/* Bounds of many pieces of a line at once hold what they must: every operation and every noise against the scalar arithmetic at random
+ * places of random pieces; sums cut short against the whole; worley() and sparse_convolution() over boxes. */
+#include "tape/tape_lanes.h"
+
+#include "bounds_sample.h"
+#include "tape/noise.h"
+#include "tape/noise_interval.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+
+/* Forms without error, so that a place on the piece tells the operands; of any size. */
+static AffineForm some_line(uint64_t i, uint32_t k, bool near) {
+    static const double scales[] = {1, 0.3, 0.1, 1e-2, 1e-3, 1e-6, 1e-9, 0};
+    AffineForm a = {near ? 40 * (unit(i, k) - 0.5) : some_number(i, k), scales[bits(i, k + 3) % 8] * (2 * unit(i, k + 4) - 1), 0, false};
+    if (!isfinite(a.centre)) a.centre = 2;
+    return a;
+}
+
+/* The operand at s is rounded: what that is off is in the form's error. */
+static AffineForm with_rounding(AffineForm a) {
+    a.error = (fabs(a.centre) + fabs(a.slope)) * 0x1p-51;
+    return a;
+}
+
+static const Tape *tape_of(Arena *arena, TapeOp op, int arity) {
+    TapeBuilder *b = tape_builder_create(arena, 3);
+    TapeRef a = tape_input(b, 0), c = tape_input(b, 1), d = tape_input(b, 2);
+    TapeRef out = arity == 1 ? tape_unary(b, op, a, (Span){0}) : arity == 2 ? tape_binary(b, op, a, c, (Span){0}) : tape_ternary(b, op, a, c, d, (Span){0});
+    return tape_finish(b, &out, 1);
+}
+
+static int misses(const Tape *tape, const char *name, uint64_t seed, int batches, bool near, int *known) {
+    AffineLanes in[3], out, scratch[16];
+    int failures = 0;
+    assert_true(tape_scratch_size(tape) <= VTS_ARRAY_COUNT(scratch));
+    for (uint64_t i = 0; i < (uint64_t)batches; i++) {
+        uint64_t n = (i * 64 + seed) * 64;
+        for (uint32_t l = 0; l < AFFINE_LANES; l++)
+            for (uint32_t k = 0; k < 3; k++) affine_set_lane(&in[k], (int)l, with_rounding(some_line(n + l, 10 * k, near)));
+        tape_eval_lanes(tape, in, &out, scratch);
+        for (uint32_t l = 0; l < AFFINE_LANES; l++) {
+            if (!(out.error[l] < HUGE_VAL)) continue;
+            ++*known;
+            for (uint32_t t = 0; t < 4; t++) {
+                double s = t == 0 ? -1 : t == 1 ? 1 : 2 * unit(n + l, 40 + t) - 1, x[3], value;
+                for (int k = 0; k < 3; k++) x[k] = in[k].centre[l] + in[k].slope[l] * s;
+                tape_eval_once(tape, x, &value);
+                long double off = fabsl((long double)value - ((long double)out.centre[l] + (long double)out.slope[l] * (long double)s));
+                if (off <= (long double)out.error[l]) continue;
+                if (++failures < 10)
+                    print_error("%s(%.17g, %.17g, %.17g) = %.17g is not %.17g + %.17g * %.17g +- %.3g\n", name, x[0], x[1], x[2], value, out.centre[l],
+                                out.slope[l], s, out.error[l]);
+            }
+        }
+    }
+    return failures;
+}
+
+static void every_operation_holds_its_values(void **state) {
+    (void)state;
+    Arena arena;
+    arena_init(&arena, NULL, 0);
+    int failures = 0, known = 0;
+    for (size_t o = 0; o < VTS_ARRAY_COUNT(operations); o++) {
+        const Tape *tape = tape_of(&arena, operations[o].op, operations[o].arity);
+        failures += misses(tape, operations[o].name, o, 1000, o % 2, &known);
+    }
+    assert_int_equal(failures, 0);
+    assert_true(known > 200000);
+    arena_destroy(&arena);
+}
+
+static void noises_hold_their_values(void **state) {
+    (void)state;
+    Arena arena;
+    arena_init(&arena, NULL, 0);
+    int known = 0;
+    assert_int_equal(misses(tape_of(&arena, TAPE_PERLIN, 3), "perlin", 61, 30000, true, &known), 0);
+    assert_int_equal(misses(tape_of(&arena, TAPE_POV_NOISE, 3), "f_noise3d", 62, 30000, true, &known), 0);
+    assert_int_equal(known, 2 * 30000 * AFFINE_LANES);
+    arena_destroy(&arena);
+}
+
+/* Constants as operands have ways of their own. */
+static void constants_hold_their_values(void **state) {
+    (void)state;
+    Arena arena;
+    arena_init(&arena, NULL, 0);
+    int failures = 0, known = 0;
+    static const TapeOp ops[] = {TAPE_ADD, TAPE_SUB, TAPE_MUL, TAPE_DIV, TAPE_POW, TAPE_MIN};
+    for (uint64_t k = 0; k < 600; k++) {
+        TapeBuilder *b = tape_builder_create(&arena, 3);
+        TapeRef c = tape_constant(b, some_number(k, 77)), x = tape_input(b, 0);
+        TapeRef out = k % 2 ? tape_binary(b, ops[k / 2 % 6], c, x, (Span){0}) : tape_binary(b, ops[k / 2 % 6], x, c, (Span){0});
+        failures += misses(tape_finish(b, &out, 1), "with a constant", k, 20, k % 3, &known);
+    }
+    assert_int_equal(failures, 0);
+    assert_true(known > 20000);
+    arena_destroy(&arena);
+}
+
+/* A sum whose fine terms are left out where they cannot matter still holds the whole. */
+static void sums_hold_their_values(void **state) {
+    (void)state;
+    Arena arena;
+    arena_init(&arena, NULL, 0);
+    TapeBuilder *b = tape_builder_create(&arena, 3);
+    TapeRef p[3], sum = tape_constant(b, -1);
+    for (int k = 0; k < 3; k++) p[k] = tape_input(b, k);
+    for (int k = 0; k < 3; k++) sum = tape_binary(b, TAPE_ADD, sum, tape_unary(b, TAPE_SQR, p[k], (Span){0}), (Span){0});
+    for (int o = 0; o < 5; o++) {
+        TapeRef at[3];
+        for (int k = 0; k < 3; k++) at[k] = tape_binary(b, TAPE_MUL, p[k], tape_constant(b, ldexp(1, o)), (Span){0});
+        TapeRef n = tape_ternary(b, o % 2 ? TAPE_POV_NOISE : TAPE_PERLIN, at[0], at[1], at[2], (Span){0});
+        TapeRef term = tape_binary(b, TAPE_MUL, n, tape_constant(b, pow(0.5, o)), (Span){0});
+        sum = tape_binary(b, o % 2 ? TAPE_SUB : TAPE_ADD, sum, term, (Span){0});
+    }
+    const Tape *tape = tape_finish(b, &sum, 1);
+    const Interval box[3] = {interval(-21, 21), interval(-21, 21), interval(-21, 21)};
+    TapeSum parts = tape_sum_of(tape, box, &arena);
+    assert_int_equal(parts.count, 8);
+    AffineLanes scratch[32], out;
+    assert_true(parts.scratch_size <= VTS_ARRAY_COUNT(scratch));
+    size_t early = 0;
+    for (uint64_t i = 0; i < 20000; i++) {
+        double level = 4 * unit(i, 90);
+        for (uint32_t l = 0; l < AFFINE_LANES; l++)
+            for (uint32_t k = 0; k < 3; k++) {
+                AffineForm line = some_line(i * 8 + l, 10 * k, true);
+                line.centre /= i % 2 ? 8 : 1;
+                affine_set_lane(&scratch[k], (int)l, with_rounding(line));
+            }
+        AffineLanes in[3] = {scratch[0], scratch[1], scratch[2]};
+        early += tape_sum_lanes(&parts, level, &out, scratch) < parts.count;
+        for (uint32_t l = 0; l < AFFINE_LANES; l++) {
+            double s = 2 * unit(i, l) - 1, x[3], value;
+            for (int k = 0; k < 3; k++) x[k] = in[k].centre[l] + in[k].slope[l] * s;
+            tape_eval_once(tape, x, &value);
+            assert_true(out.error[l] < HUGE_VAL);
+            assert_true(fabs(value - level - (out.centre[l] + out.slope[l] * s)) <= out.error[l]);
+        }
+    }
+    assert_true(early > 1000 && early < 19000);
+    arena_destroy(&arena);
+}
+
+static void nodes_hold_their_values(void **state) {
+    (void)state;
+    for (uint64_t i = 0; i < 6000; i++) {
+        Interval box[3];
+        double size = ldexp(1, -(int)(bits(i, 1) % 12)), far = i % 5 ? 20 : 1e9;
+        for (uint32_t k = 0; k < 3; k++) {
+            double low = far * (unit(i, 2 + k) - 0.5);
+            box[k] = interval(low, low + size * unit(i, 5 + k));
+        }
+        int index = (int)(i % WORLEY_NODES), count = 1 + (int)(i % 4);
+        Interval worley = interval_worley(box, index), sparse = interval_sparse_convolution(box, count);
+        for (uint32_t t = 0; t < 4; t++) {
+            Vec3 p = {some_place(box[0], i, 10 + 9 * t), some_place(box[1], i, 13 + 9 * t), some_place(box[2], i, 16 + 9 * t)};
+            assert_true(interval_holds(worley, noise_worley(p, index)));
+            assert_true(interval_holds(sparse, noise_sparse_convolution(p, count)));
+        }
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_operation_holds_its_values), cmocka_unit_test(noises_hold_their_values), cmocka_unit_test(constants_hold_their_values),
+        cmocka_unit_test(sums_hold_their_values),           cmocka_unit_test(nodes_hold_their_values),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -203,7 +203,7 @@ void compiled_scene_destroy(CompiledScene *compiled) {
     exact_skins_destroy(compiled->exact);
     for (size_t i = 0; i < compiled->skin_count; i++) cell_tree_destroy(compiled->skins[i].tree);
     for (size_t i = 0; i < compiled->texel_count; i++) {
-        if (compiled->texels[i]->sky) texel_sky_destroy(compiled->texels[i]->sky);
+        if (compiled->texels[i]->sky && !compiled->texels[i]->sky_is_kept) texel_sky_destroy(compiled->texels[i]->sky);
         for (size_t k = 0; k < compiled->texels[i]->matter_count; k++) voxel_layer_destroy(compiled->texels[i]->matter[k].voxels);
     }
     rigid_copies_destroy(compiled->rigid);

@@ -61,6 +61,7 @@ typedef struct BuiltTexel {
     double build_seconds;     /* or of loading */
     bool cached;              /* nothing of it had to be built */
     TexelSky *sky;            /* NULL: ambient light is the same everywhere */
+    bool sky_is_kept;         /* it belongs to the cache of texels */
     ExactTexel *exact;        /* instead of voxels, for the reference; else NULL */
     const BeamTexel *beam;    /* its triangles, for beams; NULL where there are none */
     size_t triangles_known;   /* it has at least so many; all, if `beam` */

@@ -104,6 +104,28 @@ static TexelSky *build_sky(const BuiltTexel *texel, const CompileOptions *option
     return built;
 }
 
+/* All that the view of the sky depends on. */
+static Hash128 sky_key(const BuiltTexel *texel, const CompiledScene *compiled) {
+    enum { KIND_SKY = 0x736b79 };
+    Hash128 key = hash_begin(KIND_SKY);
+    hash_add_u64(&key, compiled->march.opacity);
+    hash_add_u64(&key, texel->def->cyclic);
+    for (size_t i = 0; i < texel->def->layer_count; i++)
+        hash_add_hash(&key, texel->def->file ? texel->def->file_content
+                                             : texel_layer_key(texel->def, &texel->def->layers[i], texel->built, compiled->filtering));
+    return key;
+}
+
+static void find_or_build_sky(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled) {
+    Hash128 key = sky_key(texel, compiled);
+    texel->sky = options->texels ? texel_cache_find_sky(options->texels, key) : NULL;
+    texel->sky_is_kept = texel->sky != NULL;
+    if (texel->sky) return;
+    TexelSky *sky = build_sky(texel, options, compiled);
+    texel->sky = sky;
+    texel->sky_is_kept = sky && options->texels && texel_cache_add_sky(options->texels, key, sky);
+}
+
 static bool build_matter(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
     const TexelDef *def = texel->def;
     double start = stopwatch_wall();
@@ -115,7 +137,7 @@ static bool build_matter(BuiltTexel *texel, const CompileOptions *options, Compi
         for (int l = 0; l < voxel_layer_levels(voxels); l++) texel->voxel_count += voxel_layer_voxels(voxels, l);
         texel->bytes += voxel_layer_bytes(voxels);
     }
-    if (compiled->scene->settings.sky_light) texel->sky = build_sky(texel, options, compiled);
+    if (compiled->scene->settings.sky_light) find_or_build_sky(texel, options, compiled);
     texel->build_seconds = stopwatch_wall() - start;
     return true;
 }

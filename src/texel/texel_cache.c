@@ -6,10 +6,13 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* One built layer, or a whole file, whose key is its content. */
+/* One built layer, what a texel sees of the sky, or a whole file, whose key is its content. */
+typedef enum EntryKind { ENTRY_VOXELS, ENTRY_SKY, ENTRY_FILE } EntryKind;
 typedef struct CacheEntry {
     Hash128 key;
-    VoxelLayer *voxels; /* NULL: a file */
+    EntryKind kind;
+    VoxelLayer *voxels;
+    TexelSky *sky;
     TexelFile file;
     bool used; /* since the last trim */
     struct CacheEntry *next;
@@ -40,6 +43,7 @@ static void drop(CacheEntry **place) {
     CacheEntry *entry = *place;
     *place = entry->next;
     voxel_layer_destroy(entry->voxels);
+    if (entry->sky) texel_sky_destroy(entry->sky);
     texel_file_release(&entry->file);
     free(entry);
 }
@@ -85,16 +89,16 @@ Hash128 texel_layer_key(const TexelDef *def, const TexelLayer *layer, int resolu
 
 /* ---- memory ---- */
 
-static CacheEntry *add_entry(TexelCache *cache, Hash128 key) {
+static CacheEntry *add_entry(TexelCache *cache, Hash128 key, EntryKind kind) {
     CacheEntry *entry = calloc(1, sizeof *entry);
     if (!entry) return NULL;
-    *entry = (CacheEntry){.key = key, .used = true, .next = cache->entries};
+    *entry = (CacheEntry){.key = key, .kind = kind, .used = true, .next = cache->entries};
     return cache->entries = entry;
 }
 
-static CacheEntry *find_entry(TexelCache *cache, Hash128 key, bool is_file) {
+static CacheEntry *find_entry(TexelCache *cache, Hash128 key, EntryKind kind) {
     for (CacheEntry *e = cache->entries; e; e = e->next) {
-        if (!hash_equal(e->key, key) || (e->voxels == NULL) != is_file) continue;
+        if (!hash_equal(e->key, key) || e->kind != kind) continue;
         e->used = true;
         return e;
     }
@@ -103,12 +107,23 @@ static CacheEntry *find_entry(TexelCache *cache, Hash128 key, bool is_file) {
 
 /* Short of memory it is not kept, which only costs time. */
 static void keep(TexelCache *cache, Hash128 key, VoxelLayer *voxels) {
-    CacheEntry *entry = add_entry(cache, key);
+    CacheEntry *entry = add_entry(cache, key, ENTRY_VOXELS);
     if (entry) entry->voxels = voxel_layer_share(voxels);
 }
 
+TexelSky *texel_cache_find_sky(TexelCache *cache, Hash128 key) {
+    const CacheEntry *entry = find_entry(cache, key, ENTRY_SKY);
+    return entry ? entry->sky : NULL;
+}
+
+bool texel_cache_add_sky(TexelCache *cache, Hash128 key, TexelSky *sky) {
+    CacheEntry *entry = add_entry(cache, key, ENTRY_SKY);
+    if (entry) entry->sky = sky;
+    return entry != NULL;
+}
+
 const TexelFile *texel_cache_opened(TexelCache *cache, Hash128 content) {
-    const CacheEntry *entry = find_entry(cache, content, true);
+    const CacheEntry *entry = find_entry(cache, content, ENTRY_FILE);
     return entry ? &entry->file : NULL;
 }
 
@@ -117,8 +132,8 @@ const TexelFile *texel_cache_open(TexelCache *cache, const char *path, TexelFile
     TexelFile file;
     *status = texel_file_load(path, cache->memory, &file, error);
     if (*status != TEXEL_FILE_OK) return NULL;
-    CacheEntry *entry = find_entry(cache, file.content, true);
-    if (!entry && (entry = add_entry(cache, file.content))) {
+    CacheEntry *entry = find_entry(cache, file.content, ENTRY_FILE);
+    if (!entry && (entry = add_entry(cache, file.content, ENTRY_FILE))) {
         entry->file = file;
         return &entry->file;
     }
@@ -161,7 +176,7 @@ static VoxelLayer *find_in_folder(TexelCache *cache, Hash128 key, const TexelDef
 }
 
 VoxelLayer *texel_cache_find(TexelCache *cache, Hash128 key, const TexelDef *def, int resolution) {
-    const CacheEntry *entry = find_entry(cache, key, false);
+    const CacheEntry *entry = find_entry(cache, key, ENTRY_VOXELS);
     if (entry) return voxel_layer_share(entry->voxels);
     if (!cache->folder) return NULL;
     VoxelLayer *voxels = find_in_folder(cache, key, def, resolution);

@@ -5,6 +5,7 @@
 #define VTS_TEXEL_TEXEL_CACHE_H
 
 #include "texel/texel_file.h"
+#include "texel/texel_sky.h"
 
 typedef struct TexelCache TexelCache;
 
@@ -27,6 +28,11 @@ const TexelFile *texel_cache_open(TexelCache *cache, const char *path, TexelFile
                                   StrBuf *error);
 /* The texel that was opened with this content, or NULL. */
 const TexelFile *texel_cache_opened(TexelCache *cache, Hash128 content);
+
+/* What a texel sees of the sky, kept in memory until texel_cache_trim(). The key is made of those of its layers and of all else that it
+ * depends on. The second takes `sky` over if it returns true; false when memory is short. */
+TexelSky *texel_cache_find_sky(TexelCache *cache, Hash128 key);
+bool texel_cache_add_sky(TexelCache *cache, Hash128 key, TexelSky *sky);
 
 /* Lets go in memory what was neither found nor added since the last time; all of it. */
 void texel_cache_trim(TexelCache *cache);

@@ -140,48 +140,6 @@ void beam_add_light(BeamTracer *tr, const Light *light) {
     take_light(tr);
 }
 
-/* Whether the sky that a sight sees is asked for. */
-static bool under_sky(const BeamTracer *tr, const Sight *sight) {
-    return tr->compiled->scene->settings.sky_light && sight->look && vec3f_length(sight->up) > 0 && sight->sky < 0;
-}
-
-static uint32_t add_sky_points(BeamTracer *tr, const Sight *sight, uint32_t count) {
-    uint32_t first = tr->beam.samples.first[sight->pixel];
-    uint64_t x = (uint64_t)(tr->x0 + sight->pixel % tr->columns), y = (uint64_t)(tr->y0 + sight->pixel / tr->columns);
-    uint32_t turn = (uint32_t)random_hash(x, y, 2, tr->seed);
-    for (int i = sight->first; i != BEAM_NOTHING; i = tr->next[i], count++) {
-        double t;
-        tr->points[count] = vec3f_from(vec3_sub(beam_sample_point(tr, (uint32_t)i, &t), tr->beam.origin));
-        tr->distance[count] = (float)beam_faded_distance(tr, (uint32_t)i, t);
-        tr->sky_up[count] = sight->up;
-        tr->sky_flat[count] = sight->bias;
-        tr->sky_turn[count] = (uint8_t)((turn + (uint32_t)tr->before + (uint32_t)i - first) % SKY_PAIRS);
-    }
-    return count;
-}
-
-static void ask_sky(BeamTracer *tr) {
-    uint32_t count = 0;
-    for (uint32_t k = 0; k < tr->sight_count; k++) {
-        tr->sights[k].begin = count;
-        if (under_sky(tr, &tr->sights[k])) count = add_sky_points(tr, &tr->sights[k], count);
-    }
-    SkySamples samples = {tr->beam.origin, tr->points, tr->sky_up, tr->sky_flat, tr->distance, tr->sky_turn, tr->hidden, count};
-    if (count) beam_sky(&tr->sky, &tr->shadow, tr->compiled, &samples);
-}
-
-void beam_add_ambient(BeamTracer *tr) {
-    ask_sky(tr);
-    for (uint32_t k = 0; k < tr->sight_count; k++) {
-        Sight *s = &tr->sights[k];
-        if (!s->look) continue;
-        float seen = s->sky >= 0 ? s->sky : 1, odd_seen = seen;
-        if (under_sky(tr, s)) shares_seen(tr, s, &seen, &odd_seen);
-        s->light = vec3f_mul(vec3f_madd(s->look->emission, s->look->ambient, seen), s->color);
-        s->odd_light = vec3f_mul(vec3f_madd(s->look->emission, s->look->ambient, odd_seen), s->color);
-    }
-}
-
 void beam_add_beyond(BeamTracer *tr) {
     if (!tr->compiled->secondary) return;
     for (uint32_t k = 0; k < tr->sight_count; k++) {
@@ -198,6 +156,7 @@ void beam_add_beyond(BeamTracer *tr) {
             if (!hierarchy_intersect(tr->compiled->hierarchy, &(Ray){cone.origin, cone.direction}, 1e-9, VTS_INFINITY, &hit)) continue;
             tr->volumes.seed = random_hash((uint64_t)(tr->x0 + sight->pixel % tr->columns), (uint64_t)(tr->y0 + sight->pixel / tr->columns),
                                            3 + (uint64_t)(tr->before + i), tr->seed);
+            tr->volumes.part = 1.0 / (tr->before + tr->samples);
             SurfaceTracer surfaces = tracer_of_surfaces(&tr->volumes);
             Leg leg;
             surface_leg(&cone, &leg);

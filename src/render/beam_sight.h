@@ -114,10 +114,13 @@ void beam_gather_sights(BeamTracer *tracer);
  * through the pixel's middle would end before what they see or behind it, by more than a thin layer's height. */
 Cone beam_sight_cone(const BeamTracer *tracer, const Sight *sight, double *t);
 
-/* ---- beam_light.c ---- */
+/* ---- beam_ambient.c ---- */
 
 /* Ambient and emitted light of all sights: sets their `light`. */
 void beam_add_ambient(BeamTracer *tracer);
+
+/* ---- beam_light.c ---- */
+
 /* Adds what explicit surfaces mirror and let through. */
 void beam_add_beyond(BeamTracer *tracer);
 /* Adds what a light sends by way of them. */

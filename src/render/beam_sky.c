@@ -11,6 +11,11 @@ static Vec3 sky_direction(int pair) {
     return vec3(r * cos(turn), height, r * sin(turn));
 }
 
+Vec3 beam_sky_direction(int turn, Vec3f up) {
+    Vec3 d = sky_direction(turn);
+    return vec3f_dot(up, vec3f_from(d)) > 0 ? d : vec3_negate(d);
+}
+
 static void look_along(SkyScratch *scratch, ShadowScratch *shadow, const CompiledScene *compiled, const SkySamples *in, int pair, Vec3 d) {
     Vec3f direction = vec3f_from(d);
     uint32_t count = 0;

@@ -24,6 +24,8 @@ typedef struct SkyScratch {
     uint32_t *sample;
 } SkyScratch;
 
+/* The direction that a sample with this turn asks, in the hemisphere about `up`. */
+Vec3 beam_sky_direction(int turn, Vec3f up);
 void sky_scratch_init(SkyScratch *scratch, uint32_t samples, Arena *arena);
 void beam_sky(SkyScratch *scratch, ShadowScratch *shadow, const CompiledScene *compiled, const SkySamples *samples);
 

@@ -48,7 +48,8 @@ BeamTracer *beam_tracer_create(const CompiledScene *compiled, const BeamPlan *pl
     tr->compiled = compiled;
     tr->plan = *plan;
     tr->seed = seed;
-    if (!isinf(compiled->all_exact_to) || compiled->secondary) tracer_init(&tr->volumes, compiled, arena);
+    bool sky = compiled->scene->settings.sky_light && compiled->voxels;
+    if (!isinf(compiled->all_exact_to) || compiled->secondary || sky) tracer_init(&tr->volumes, compiled, arena);
     samples_init(&tr->beam.samples, all, arena);
     draft_init(tr, all, arena);
     tr->bounded = hierarchy_bounds(compiled->hierarchy, &tr->explicit_bounds);

@@ -127,6 +127,7 @@ static CompileStatus build_texels(const CompileOptions *options, Detail detail, 
     }
     for (size_t i = 0; i < out->skin_count; i++)
         if (!skin_finish(&out->skins[i], options, out)) memory_budget_fail(options->memory);
+    out->voxels = !options->exact;
     return COMPILE_OK;
 }
 

@@ -45,6 +45,7 @@ typedef struct CompiledScene {
     double shadow_aperture;
     bool secondary;       /* some explicit objects mirror or let light through: lines of sight go on from them */
     bool clear_shadows;   /* some explicit objects let light through */
+    bool voxels;          /* skins have voxels, not exact geometry alone */
     double max_error;     /* the RMSE that is accepted */
     int most_samples;     /* a pixel, to keep it */
     int samples;          /* a pixel, of the first pass of what is drawn by beams */

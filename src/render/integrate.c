@@ -29,7 +29,8 @@ struct ShadeRecord {
     double tolerance; /* of finding the place in the skin again */
     uint32_t skin;
     SkinPoint point;  /* where shadows start: a guess */
-    Vec3f ambient;    /* light that no shadow takes away; as that of lights it includes the weight */
+    Vec3f glow;       /* light that nothing takes away; as that of lights it includes the weight */
+    Vec3f ambient;    /* that only the sky's shadows take away; as that of lights it includes the weight */
 };
 /* Groups of less weight than this go on growing: where little is seen, little is shaded. */
 static const float GROUP_WEIGHT = 1.0f / 24;
@@ -98,10 +99,10 @@ static void group_add(Group *group, const Cone *cone, const SkinSegment *segment
     }
 }
 
-/* Shades a group for all lights: `direct`. Returns the light that needs no shadow test. */
-static Vec3f shade_group(const Tracer *tr, const Cone *cone, const Group *group, const LightRay *rays, Vec3f *direct) {
+/* Shades a group for all lights: `direct`; and with its own light and the ambient. */
+static void shade_group(const Tracer *tr, const Cone *cone, const Group *group, const LightRay *rays, ShadeRecord *record, Vec3f *direct) {
     size_t lights = tr->compiled->scene->light_count;
-    Vec3f ambient = {0, 0, 0}, view = vec3f_from(vec3_negate(cone->direction));
+    Vec3f ambient = {0, 0, 0}, glow = {0, 0, 0}, view = vec3f_from(vec3_negate(cone->direction));
     memset(direct, 0, lights * sizeof *direct);
     for (int i = 0; i < group->sum_count; i++) {
         const MatterSum *sum = &group->sums[i];
@@ -109,13 +110,14 @@ static Vec3f shade_group(const Tracer *tr, const Cone *cone, const Group *group,
         if (!(sum->weight > 0)) continue;
         Vec3f color = vec3f_scale(sum->color, 1 / sum->weight);
         ambient = vec3f_madd(ambient, vec3f_mul(look->ambient, color), sum->sky);
-        ambient = vec3f_madd(ambient, vec3f_mul(look->emission, color), sum->weight);
+        glow = vec3f_madd(glow, vec3f_mul(look->emission, color), sum->weight);
         for (size_t l = 0; l < lights; l++) {
             NdfShade shade = ndf_shade(tr->compiled->quadrature, &sum->s, view, vec3f_from(rays[l].direction), &look->sheet);
             direct[l] = vec3f_madd(direct[l], vec3f_mul(shade_tone(&shade, look, color), rays[l].color), sum->weight);
         }
     }
-    return ambient;
+    record->ambient = ambient;
+    record->glow = glow;
 }
 
 /* Makes a record of the group, whose last segment is in skin `nearest`, and empties it. */
@@ -129,7 +131,7 @@ static void close_group(Tracer *tr, const Cone *cone, Group *group, int nearest,
     }
     *record = (ShadeRecord){.weight = group->weight, .t = t, .tolerance = 0.02 * group->voxel_world / (double)group->weight,
                             .skin = (uint32_t)nearest, .point = skin_march_guess(&tr->marches[nearest], t)};
-    record->ambient = shade_group(tr, cone, group, tr->light_rays, direct);
+    shade_group(tr, cone, group, tr->light_rays, record, direct);
     for (int i = 0; tr->matter && i < group->sum_count; i++) tr->matter->albedo = vec3f_add(tr->matter->albedo, group->sums[i].color);
     *group = (Group){0};
 }
@@ -304,17 +306,35 @@ static Vec3f add_shadowed(Tracer *tr, const Cone *cone, size_t count, size_t lig
     return sum;
 }
 
+/* What explicit objects leave of the sky over the matter that the records tell of: as at that of the most light. The skins know themselves. */
+static Vec3f sky_over(Tracer *tr, const Cone *cone, size_t count, Vec3f ambient) {
+    const ShadeRecord *most = tr->records;
+    SurfaceTracer surfaces = {.compiled = tr->compiled, .counters = &tr->counters, .part = tr->part};
+    if (!tr->compiled->scene->settings.sky_light || !(luminance(ambient) > 0)) return vec3f(1, 1, 1);
+    for (size_t i = 1; i < count; i++)
+        if (luminance(tr->records[i].ambient) > luminance(most->ambient)) most = &tr->records[i];
+    TexturePlace place = skin_texture_place(&tr->compiled->skins[most->skin].cells[most->point.cell], &most->point);
+    Vec3 up = vec3_normalize(place.grad_layer);
+    if (vec3_length_squared(up) == 0) return vec3f(1, 1, 1);
+    Leg leg;
+    surface_leg(cone, &leg);
+    const SkyPlace over = {cone_point(cone, most->t), up, up, most->tolerance, &leg, true};
+    return surface_sky(&surfaces, &over, float_max(ambient.x, float_max(ambient.y, ambient.z)), random_mix(tr->seed + 13));
+}
+
 Vec3f trace_skins(Tracer *tr, const Cone *cone, const ConeStart *start, double t_max, float *transmittance) {
     const Scene *scene = tr->compiled->scene;
     tr->counters.camera_rays++;
     if (tr->matter) matter_sum_begin(tr->matter);
     size_t count = gather(tr, cone, start, t_max, transmittance);
-    Vec3f color = {0, 0, 0};
+    Vec3f color = {0, 0, 0}, ambient = {0, 0, 0};
     double mean_t = 0;
     for (size_t i = 0; i < count; i++) {
-        color = vec3f_add(color, tr->records[i].ambient);
+        color = vec3f_add(color, tr->records[i].glow);
+        ambient = vec3f_add(ambient, tr->records[i].ambient);
         mean_t += (double)tr->records[i].weight * tr->records[i].t;
     }
+    color = vec3f_add(color, vec3f_mul(ambient, sky_over(tr, cone, count, ambient)));
     for (size_t l = 0; l < scene->light_count; l++) color = vec3f_add(color, add_shadowed(tr, cone, count, l));
     float covered = 1 - *transmittance;
     if (count && covered > 0) {
@@ -336,7 +356,7 @@ static float passing_matter(void *tracer, const Cone *cone, double t_max, Vec3 t
 }
 
 SurfaceTracer tracer_of_surfaces(Tracer *tr) {
-    SurfaceTracer surfaces = {.compiled = tr->compiled, .counters = &tr->counters, .seed = tr->seed, .skins = tr};
+    SurfaceTracer surfaces = {.compiled = tr->compiled, .counters = &tr->counters, .seed = tr->seed, .part = tr->part, .skins = tr};
     if (tr->compiled->skin_count) surfaces.matter = matter_before, surfaces.passing = passing_matter;
     return surfaces;
 }

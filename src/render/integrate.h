@@ -26,6 +26,7 @@ typedef struct Tracer {
     Vec3f *direct;             /* [record][light] */
     LightRay *light_rays;      /* [light], at the segment that is being shaded */
     uint64_t seed;             /* of what is sampled in this pixel */
+    double part;               /* of its lines of sight, what one of these is; 0: all */
     Draw draw;                 /* likewise, of samples that follow each other in one pixel: lens, lights, glossy directions */
     MatterAov *matter;         /* gets what a cone sees of skins; NULL: not wanted */
     TraceCounters counters;

@@ -16,6 +16,7 @@ typedef struct Sample {
     Ray ray;
     double width, spread; /* of the pixel's cone: what is too small to matter */
     uint64_t random; /* of the directions that it asks */
+    double part;     /* of all rays of the pixel */
     TraceCounters *counters;
     AovSum *aovs;    /* or NULL */
 } Sample;
@@ -75,7 +76,7 @@ static Ray leaving(const Sample *s, const Facet *facet, Vec3 direction) {
     return (Ray){vec3_madd(facet_point(s, facet->t), facet->flat, side), direction};
 }
 
-/* Whether the sky is seen in one direction of the hemisphere over the layer, each alike, past all skins: explicit objects do not count. */
+/* Whether the sky is seen in one direction of the hemisphere over the layer, each alike. */
 static bool sky_lit(const Sample *s, const Facet *facet) {
     if (!s->compiled->scene->settings.sky_light || vec3_length_squared(facet->up) == 0) return true;
     Vec3 a, b;
@@ -83,6 +84,7 @@ static bool sky_lit(const Sample *s, const Facet *facet) {
     double height = random_unit(random_mix(s->random)), turn = 2 * VTS_PI * random_unit(random_mix(s->random + 1)), r = sqrt(1 - height * height);
     Vec3 d = vec3_madd(vec3_madd(vec3_scale(a, r * cos(turn)), b, r * sin(turn)), facet->up, height);
     Ray ray = leaving(s, facet, d);
+    if (hierarchy_occluded(s->compiled->hierarchy, &ray, facet->bias, VTS_INFINITY)) return false;
     return !exact_skins_occluded(s->compiled->exact, &ray, 0, VTS_INFINITY, s->counters);
 }
 
@@ -96,8 +98,8 @@ static float exact_passing(void *sample, const Cone *cone, double t_max, Vec3 to
 }
 
 static SurfaceTracer tracer_of(Sample *s) {
-    SurfaceTracer tracer = {.compiled = s->compiled, .counters = s->counters, .seed = random_mix(s->random + 7), .skins = s};
-    if (s->compiled->skin_count) tracer.matter = exact_matter, tracer.passing = exact_passing;
+    SurfaceTracer tracer = {.compiled = s->compiled, .counters = s->counters, .seed = random_mix(s->random + 7), .part = s->part, .skins = s};
+    if (s->compiled->skin_count) tracer.matter = exact_matter, tracer.passing = exact_passing, tracer.exact = true;
     return tracer;
 }
 
@@ -200,7 +202,8 @@ static Radiance see_pixel(void *context, int worker, int px, int py, AovSum *aov
             double u = random_unit(random_mix(bits + 3)), v = random_unit(random_mix(bits + 4));
             Cone cone;
             if (!view_ray(&reference->compiled->view, px + x, py + y, u, v, 1, &cone)) continue;
-            Sample sample = {reference->compiled, {cone.origin, cone.direction}, cone.width, cone.spread, random_mix(bits + 2), &reference->counters[worker], aovs};
+            Sample sample = {reference->compiled, {cone.origin, cone.direction}, cone.width, cone.spread, random_mix(bits + 2), 1.0 / strata.samples,
+                             &reference->counters[worker], aovs};
             Radiance seen = trace_sample(&sample);
             sum.color = vec3f_madd(sum.color, seen.color, share);
             sum.alpha += seen.alpha * share;

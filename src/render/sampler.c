@@ -184,6 +184,7 @@ static void see(Sampler *sp, const Aim *aim, const Cell *cell, Sighting *out) {
     uint64_t pixel = random_hash((uint64_t)aim->px, (uint64_t)aim->py, sp->plan.seed, 0);
     tracer->draw = (Draw){pixel, (uint32_t)aim->number};
     tracer->seed = aim->number ? random_mix(pixel + (uint64_t)aim->number) : pixel;
+    tracer->part = aim->width * aim->width;
     bool ray = view_sample(&sp->compiled->view, &tracer->draw, aim->px + aim->x, aim->py + aim->y, aim->width, &cone);
     AovSum *aovs = aovs_of(sp, aim->px, aim->py);
     MatterAov matter = {.share = 0};

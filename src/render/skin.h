@@ -177,6 +177,9 @@ static inline Vec3f texel_copy_rate(const TexelCopy *copy, Vec3 rate) {
 /* skin_sky.c. The share of the hemisphere over the layer that `at`, in the space of a texel that has a sky, sees past its texel's own matter, if
  * the eye, which is in the unit direction `to_eye` of the scene, sees it. */
 float skin_sky_seen(const TexelCopy *copy, const TexturePlace *place, Vec3f at, Vec3 to_eye);
+/* What the eye sees has a gap towards it, and gaps have a width: so much of what voxels, who know the mean place alone, would hide in a
+ * direction under this cosine to the eye's is open. */
+float skin_open_to_eye(double cosine);
 /* A normal of texel space at the place, in the scene: by the transposed map world → texel. Its length is that of texel space against the scene along it;
  * zero where the mapping is singular. */
 Vec3 texel_normal_in_scene(const TexelCopy *copy, const TexturePlace *place, Vec3 normal);

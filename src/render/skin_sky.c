@@ -4,9 +4,7 @@
 static const Vec3 SKY_DIRECTIONS[] = {{0.9682, 0.25, 0},        {0, 0.25, 0.9682},       {-0.9682, 0.25, 0},       {0, 0.25, -0.9682},
                                       {0.4677, 0.75, 0.4677},   {-0.4677, 0.75, 0.4677}, {-0.4677, 0.75, -0.4677}, {0.4677, 0.75, -0.4677}};
 
-/* What the eye sees has a gap towards it, and gaps have a width: so much of what voxels, who know the mean place alone, would hide in a
- * direction under this cosine to the eye's is open. */
-static float open_to_eye(double cosine) {
+float skin_open_to_eye(double cosine) {
     double near = 2 * cosine - 1;
     return near > 0 ? (float)(near * near) : 0;
 }
@@ -22,7 +20,7 @@ float skin_sky_seen(const TexelCopy *copy, const TexturePlace *place, Vec3f at, 
         Vec3f way = texel_copy_rate(copy, rate);
         float length = vec3f_length(way);
         float open = length > 0 ? sky_view_toward(&view, vec3f_scale(way, 1 / length)) : view.mean;
-        sum += open + (1 - open) * open_to_eye(vec3_dot(world, to_eye));
+        sum += open + (1 - open) * skin_open_to_eye(vec3_dot(world, to_eye));
     }
     return sum / (float)VTS_ARRAY_COUNT(SKY_DIRECTIONS);
 }

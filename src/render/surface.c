@@ -108,14 +108,26 @@ static void read_layers(Meeting *m, float bailout) {
 
 /* ---- light of its own and from lights ---- */
 
-static Vec3f own_light(const SurfaceTracer *tracer, const Meeting *m) {
-    Vec3f sum = {0, 0, 0}, everywhere = rgb_of(tracer->compiled->scene->settings.ambient_light);
+/* The share of ambient light that comes to the place; `worth`: the most that all of it makes. */
+static Vec3f sky_seen(SurfaceTracer *tracer, const Meeting *m, float worth) {
+    const SurfaceHit *hit = m->hit;
+    double side = vec3_dot(hit->flat, m->leg->cone.direction) > 0 ? -1 : 1;
+    Vec3 flat = vec3_scale(hit->flat, side), normal = vec3_dot(hit->normal, flat) < 0 ? vec3_negate(hit->normal) : hit->normal;
+    const SkyPlace place = {vec3_madd(m->point, flat, m->clear), flat, normal, m->clear, m->leg, false};
+    return surface_sky(tracer, &place, m->leg->weight * worth, m->seed ^ 0x736B79);
+}
+
+static Vec3f own_light(SurfaceTracer *tracer, const Meeting *m) {
+    const GlobalSettings *settings = &tracer->compiled->scene->settings;
+    Vec3f ambient = {0, 0, 0}, glow = {0, 0, 0}, everywhere = rgb_of(settings->ambient_light);
     for (int i = 0; i < m->layer_count; i++) {
         const SurfaceLayer *layer = &m->layers[i];
-        Vec3f glow = vec3f_add(vec3f_mul(rgb_of(layer->finish->ambient), everywhere), rgb_of(layer->finish->emission));
-        sum = vec3f_madd(sum, vec3f_mul(vec3f_mul(glow, layer->color), layer->above), layer->opaque);
+        Vec3f back = vec3f_scale(vec3f_mul(layer->color, layer->above), layer->opaque);
+        ambient = vec3f_add(ambient, vec3f_mul(vec3f_mul(rgb_of(layer->finish->ambient), everywhere), back));
+        glow = vec3f_add(glow, vec3f_mul(rgb_of(layer->finish->emission), back));
     }
-    return sum;
+    if (settings->sky_light) ambient = vec3f_mul(ambient, sky_seen(tracer, m, (float)m->part->weight * most_of(ambient)));
+    return vec3f_add(ambient, glow);
 }
 
 static Vec3f light_from(SurfaceTracer *tracer, const Meeting *m, size_t number) {

@@ -31,10 +31,12 @@ typedef struct SurfaceTracer {
     const CompiledScene *compiled;
     TraceCounters *counters;
     uint64_t seed;      /* of what is sampled: for each line of sight anew */
+    double part;        /* of its pixel's lines of sight, what one of these is; 0: all */
     /* Matter of skins: what a cone gathers of it before t_max, the air before it included, and what shows of the rest; NULL: none. */
     Vec3f (*matter)(void *skins, const Cone *cone, double t_max, float *transmittance);
     /* The share of light that passes it, to a place that is seen from the direction `to_eye`. */
     float (*passing)(void *skins, const Cone *cone, double t_max, Vec3 to_eye);
+    bool exact;         /* of a ray without width, so that any number of them may be asked */
     void *skins;
 } SurfaceTracer;
 
@@ -84,8 +86,24 @@ Vec3f surface_faded(const Interior *interior, double distance);
 int surface_enclosure(const Enclosure *enclosures, int count, const SurfaceHit *hit);
 /* Steps over the surface: into its object, or out. */
 void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit);
+/* What comes along the ray past explicit objects, between `clear` and `distance`. */
+Vec3f surface_open(SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, double clear);
 /* The share of a light's colours that comes to the point, `bias` beside which rays begin; `width` and `spread`: of the cone that saw it. */
 Vec3f surface_shadow(SurfaceTracer *tracer, const Light *light, const LightRay *ray, const Leg *leg, Vec3 point, double bias,
                      uint64_t seed);
+
+/* ---- surface_sky.c ---- */
+
+/* A place that ambient light comes to. */
+typedef struct SkyPlace {
+    Vec3 point;         /* beside the surface, on the side that is seen */
+    Vec3 flat, normal;  /* unit, to that side: of the surface, and that by which it is lit */
+    double clear;       /* what is nearer is not met */
+    const Leg *leg;     /* that has met it */
+    bool even;          /* light comes alike from all directions, not by the cosine */
+} SkyPlace;
+
+/* The share of an even sky's light that comes to the place, past explicit objects and skins; `worth`: the most that all of it makes in the eye. */
+Vec3f surface_sky(SurfaceTracer *tracer, const SkyPlace *place, float worth, uint64_t seed);
 
 #endif

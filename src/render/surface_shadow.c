@@ -73,12 +73,16 @@ static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from,
     return vec3f(0, 0, 0);
 }
 
+Vec3f surface_open(SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, double clear) {
+    const CompiledScene *compiled = tracer->compiled;
+    tracer->counters->shadow_rays++;
+    if (compiled->clear_shadows) return clear_way(tracer, ray, clear, distance, leg);
+    return hierarchy_occluded(compiled->hierarchy, ray, clear, distance) ? vec3f(0, 0, 0) : vec3f(1, 1, 1);
+}
+
 static Vec3f one_way(SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, double clear, double width) {
     const CompiledScene *compiled = tracer->compiled;
-    Vec3f through = {1, 1, 1};
-    tracer->counters->shadow_rays++;
-    if (compiled->clear_shadows) through = clear_way(tracer, ray, clear, distance, leg);
-    else if (hierarchy_occluded(compiled->hierarchy, ray, clear, distance)) return vec3f(0, 0, 0);
+    Vec3f through = surface_open(tracer, ray, distance, leg, clear);
     if (!tracer->passing || most_of(through) <= 0) return through;
     double aperture = compiled->shadow_aperture;
     Cone cone = {ray->origin, ray->direction, width * aperture, leg->cone.spread * aperture};

@@ -668,7 +668,7 @@ typedef struct GlobalSettings {
     const char *ray_path;      /* NULL: box */
     const char *filtering;     /* NULL: linear */
     const char *detail;        /* NULL: auto */
-    bool sky_light;            /* ambient light of matter in skins comes from the sky that it sees */
+    bool sky_light;            /* ambient light comes from the sky that a place sees */
     GeoOrigin geo_origin;      /* geo_origin, else the first terrain's */
 } GlobalSettings;
 

@@ -20,6 +20,7 @@ size_of() {
     skies) echo 640x290 ;;
     fur) echo 448x252 ;;
     meadow) echo 512x288 ;;
+    seasons) echo 480x278 ;;
     species) echo 512x296 ;;
     tree) echo 400x320 ;;
     still_life) echo 400x300 ;;

@@ -4,6 +4,7 @@
 
 #include "eval/build_reader.h"
 #include "eval/eval.h"
+#include "grow/cloth.h"
 #include "grow/lsystem.h"
 #include "scene/scene_hash.h"
 
@@ -150,6 +151,9 @@ const Vec3 *vectors_read(Reader *reader, const EvalBlock *body, const char *what
 BlockBuilder build_terrain;                   /* build_terrain.c */
 /* The ground of the maps that the text at `span` names (eval_path.c); false after a report. */
 bool terrain_load(const BuildContext *context, EvalTerrainRequest *request, const Span *spans, Span span, Terrain *out);
+BlockBuilder build_cloth;                     /* build_cloth.c */
+/* Where the masses of a cloth are at the scene's time (eval_cloth.c); false after a report, or interrupted. */
+bool cloth_places(const BuildContext *context, const ClothSpec *spec, Span span, Vec3 *places);
 BlockBuilder build_skin;                                                   /* build_skin.c */
 bool mapping_read(Reader *parent, const Word *word, SkinMapping *mapping); /* build_mapping.c */
 bool jitter_read(Reader *parent, const Word *word, SkinJitter *jitter);

@@ -50,7 +50,7 @@ static const struct BlockWord {
     {"lsystem", build_lsystem},
     {"volume", build_unmodelled},
     {"terrain", build_terrain},
-    {"cloth", build_unmodelled},
+    {"cloth", build_cloth},
     /* looks */
     {"texture", build_texture},
     {"pigment", build_pigment},

@@ -53,6 +53,7 @@ static void read_how(How *how, char *words) {
         if (w[0] != '-') continue;
         char *value = strtok_r(NULL, " \n", &rest);
         if (!value) return;
+        if (strcmp(w, "--clock") == 0) o->clock = atof(value);
         if (strcmp(w, "--limit") == 0) how->limits[o->limit_count++] = pair_of(value);
         if (strcmp(w, "--set") == 0) how->settings[o->setting_count++] = pair_of(value);
         if (strcmp(w, "--declare") == 0) how->declares[o->declare_count++] = pair_of(value);

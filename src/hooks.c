@@ -5,6 +5,7 @@
 #include "shape/extent.h"
 #include "shape/mesh_file.h"
 #include "terrain/sun.h"
+#include "terrain/drape.h"
 #include "terrain/ground.h"
 #include "volume/grid_file.h"
 
@@ -153,6 +154,16 @@ static bool geo(void *context, const GeoOrigin *origin, const EvalGeoRequest *re
     return false;
 }
 
+static bool picture_place(void *context, Arena *arena, const GeoOrigin *origin, ImageMap *image, StrBuf *error) {
+    GeoFrame frame;
+    (void)context;
+    if (!image->picture || !geo_frame_init(&frame, place_of(origin->place), origin->flat)) return false;
+    const PictureLevel *level = &image->picture->levels[0];
+    image->place = drape_open(image->path, level->width, level->height, &frame, arena, error);
+    if (image->place) hash_add_hash(&image->hash, image->place->hash);
+    return image->place != NULL;
+}
+
 /* ---- terrains ---- */
 
 static bool map_place(const EvalTerrainPlace *in, HeightmapPlace *out) {
@@ -211,6 +222,7 @@ EvalGeometry hooks_geometry(Arena *arena, TexelCache *texels) {
         .texel_file = texel_file,
         .mesh_file = mesh_file,
         .picture_file = picture_file,
+        .picture_place = picture_place,
         .density_grid = density_grid,
         .geo = geo,
         .terrain = terrain,

@@ -91,6 +91,7 @@ static const WordRule rules[] = {
     {"map_type", WORD_CUSTOM, 0, read_map_type, false},
     {"interpolate", WORD_INT, FIELD(interpolate), NULL, false},
     {"once", WORD_MARK, FIELD(once), NULL, false},
+    {"georeferenced", WORD_MARK, FIELD(georeferenced), NULL, false},
     {"use_index", WORD_MARK, FIELD(use_index), NULL, false},
     {"use_color", WORD_IGNORED, 0, NULL, false},
     {"use_colour", WORD_IGNORED, 0, NULL, false},
@@ -127,7 +128,7 @@ static void rehash(ImageMap *image) {
     double numbers[] = {image->map_type,   image->interpolate,   image->once,
                         image->use_index,  image->premultiplied, image->straight,
                         image->filter_all, image->transmit_all,  image->gamma,
-                        image->use_alpha,  image->assumed_gamma};
+                        image->use_alpha,  image->assumed_gamma, image->georeferenced};
     hash_add(h, numbers, sizeof numbers);
     hash_add(h, image->palette_filter, 3 * image->palette_count * sizeof(double));
 }
@@ -140,6 +141,17 @@ static double usual_gamma(const ImageMap *image, const char *word) {
     bool is_plain = strcmp(word, "image_map") != 0;
     for (size_t i = 0; i < VTS_ARRAY_COUNT(plain); i++) is_plain |= strcasecmp(format, plain[i]) == 0;
     return is_plain ? 1 : 0;
+}
+
+/* By its own place: nothing is left for map_type to say, and a scene that is nowhere has none for it. */
+static void check_place(Reader *reader, const ImageDraft *draft, const Word *word) {
+    if (!draft->image.georeferenced || reader->failed) return;
+    if (draft->image.map_type != 0) reader_error(reader, word->span, "'georeferenced' and 'map_type' both say how the picture lies");
+    if (draft->made) reader_error(reader, word->span, "'georeferenced' is for pictures from files, which say where they lie");
+    if (reader->context->geo_origin.set) return;
+    Diagnostic *d = diag_error(reader->context->diags, word->span, "'georeferenced' needs the scene's place on the globe, which is not known yet");
+    diag_hint(reader->context->diags, d, "write before it: global_settings { geo_origin <latitude, longitude, height> }, or a terrain");
+    reader->failed = true;
 }
 
 const ImageMap *image_read(Reader *parent, const Word *word) {
@@ -157,6 +169,7 @@ const ImageMap *image_read(Reader *parent, const Word *word) {
     reader_run(&reader);
     if (!reader.failed && !draft.image.path && !draft.made)
         reader_error(&reader, word->span, "'%s' needs the name of a file", word->text);
+    check_place(&reader, &draft, word);
     if (!reader_end_nested(parent, &reader)) return NULL;
     draft.image.palette_filter = draft.palette.items;
     draft.image.palette_count = draft.palette.count / 3;

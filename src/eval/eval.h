@@ -96,6 +96,8 @@ typedef struct EvalGeometry {
     /* path NULL: a fractal. False with a line of text in `error`. */
     bool (*density_grid)(void *context, Arena *arena, const char *path, const EvalDensityRequest *request, DensityGrid *out, StrBuf *error);
     /* Loads the picture at image->path into `arena`, as image->gamma says, and adds its content to image->hash. False with a line of text in `error`. */
+    /* Sets image->place, of a picture that was read; false with a line in `error`. */
+    bool (*picture_place)(void *context, Arena *arena, const GeoOrigin *origin, ImageMap *image, StrBuf *error);
     bool (*picture_file)(void *context, Arena *arena, ImageMap *image, StrBuf *error);
     /* The ground of maps, in `arena`; sets request->origin. False after a report at `span`. */
     bool (*terrain)(void *context, Arena *arena, EvalTerrainRequest *request, DiagList *diags, Span span, Terrain *out);

@@ -187,7 +187,9 @@ bool mesh_file_load(const BuildContext *context, const char *name, Span span, co
 bool picture_file_load(const BuildContext *context, ImageMap *image, Span span) {
     const EvalGeometry *geometry = geometry_of(context);
     StrBuf error = {0};
-    if (!geometry || !geometry->picture_file || geometry->picture_file(geometry->context, context->arena, image, &error)) return true;
+    if (!geometry || !geometry->picture_file) return true;
+    bool good = geometry->picture_file(geometry->context, context->arena, image, &error);
+    if (good && (!image->georeferenced || geometry->picture_place(geometry->context, context->arena, &context->geo_origin, image, &error))) return true;
     refuse_file(context, "picture", image->path, span, &error);
     return false;
 }

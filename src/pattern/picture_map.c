@@ -42,7 +42,14 @@ static Place angular(Vec3 p) {
     return across > 0 ? (Place){0.5 + r * p.x / across, 0.5 + r * p.y / across, false} : (Place){0.5, 0.5 + r, false};
 }
 
+static Place on_the_globe(const PicturePlace *place, Vec3 p) {
+    double u, v;
+    if (!place->find(place, p, &u, &v)) return (Place){0, 0, true};
+    return (Place){u, v, !(u >= 0 && u < 1 && v >= 0 && v < 1)};
+}
+
 static Place place_of(const ImageMap *image, Vec3 p) {
+    if (image->place) return on_the_globe(image->place, p);
     switch (image->map_type) {
     case MAP_SPHERICAL: return spherical(p);
     case MAP_CYLINDRICAL: return cylindrical(p, image->once);
@@ -56,11 +63,15 @@ static double shorter_way(double turns) { return turns - floor(turns + 0.5); }
 
 /* What one axis of the spot is in the picture: half the way of its ends from each other, doubled, across a seam the short way. */
 static void project(const ImageMap *image, Vec3 p, Vec3 axis, double out[2]) {
-    if (image->map_type == MAP_PLANAR) {
+    if (image->map_type == MAP_PLANAR && !image->place) {
         out[0] = axis.x, out[1] = axis.y;
         return;
     }
     Place a = place_of(image, vec3_madd(p, axis, -0.5)), b = place_of(image, vec3_madd(p, axis, 0.5));
+    if (image->place) {
+        out[0] = b.u - a.u, out[1] = b.v - a.v;
+        return;
+    }
     out[0] = shorter_way(b.u - a.u);
     out[1] = image->map_type == MAP_CYLINDRICAL ? b.v - a.v : shorter_way(b.v - a.v);
 }
@@ -86,7 +97,7 @@ static bool look_up(const ImageMap *image, const Spot *spot, PictureColor *out) 
     if (place.outside || !image->picture || !isfinite(place.u) || !isfinite(place.v)) return false;
     PictureSpot at = {.u = place.u, .v = place.v};
     if (!spot_is_point(spot)) footprint(image, spot, at.axes);
-    *out = picture_color(image->picture, &at, (PictureFilter)image->interpolate, image->once);
+    *out = picture_color(image->picture, &at, (PictureFilter)image->interpolate, image->once || image->place);
     return true;
 }
 

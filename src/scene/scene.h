@@ -100,6 +100,15 @@ typedef struct DensityGrid {
 } DensityGrid;
 
 /* A picture in the unit square of pattern space, or wrapped about the origin. */
+/* Where a picture lies that was taken of the ground. */
+typedef struct PicturePlace PicturePlace;
+struct PicturePlace {
+    Hash128 hash;
+    /* What the picture has at a point of the scene: u from its left to its right, v from its lower to its upper rim, 0 to 1; beyond them
+     * outside. False where no such place is. Thread-safe. */
+    bool (*find)(const PicturePlace *place, Vec3 p, double *u, double *v);
+};
+
 typedef struct ImageMap {
     Span span;
     Hash128 hash;
@@ -116,6 +125,8 @@ typedef struct ImageMap {
     double filter_all, transmit_all;
     double bump_size;             /* of a bump_map; 0: not given */
     const struct Picture *picture; /* image/picture.h; NULL: not drawn */
+    bool georeferenced;
+    const PicturePlace *place;    /* of what is georeferenced; else NULL */
     const double *palette_filter; /* triples: index, filter, transmit */
     size_t palette_count;
 } ImageMap;

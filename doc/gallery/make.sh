@@ -21,6 +21,7 @@ size_of() {
     fur) echo 448x252 ;;
     meadow) echo 512x288 ;;
     seasons) echo 480x278 ;;
+    woods) echo 400x250 ;;
     species) echo 512x296 ;;
     tree) echo 400x320 ;;
     still_life) echo 400x300 ;;

@@ -1,4 +1,4 @@
-/* density { … } in a layer of a texel: numbers of place, from a grid, a function or any pattern. */
+/* density { … } in a layer of a texel or in a volume: numbers of place, from a grid, a function or any pattern. */
 #include "eval/build_pattern.h"
 
 #include <string.h>
@@ -120,6 +120,7 @@ static void read_fractal(Reader *reader, const Word *word, void *target) {
 static void read_threshold(Reader *reader, const Word *word, void *target) {
     DensityField *field = &((DensityDraft *)target)->field;
     if (!word_arguments(reader, word, 2, 2) || !word_float(reader, word, 0, &field->low) || !word_float(reader, word, 1, &field->high)) return;
+    field->has_threshold = true;
     if (!(field->low < field->high))
         reader_error(reader, word->arguments[1].span, "the upper threshold must be above the lower, found %g and %g", field->low, field->high);
 }
@@ -155,7 +156,7 @@ static bool has_source(const DensityDraft *draft) {
 }
 
 static void rehash(DensityField *field) {
-    const double numbers[] = {field->low, field->high, field->extinction, field->in_bounds};
+    const double numbers[] = {field->low, field->high, field->extinction, field->in_bounds, field->has_threshold};
     field->hash = hash_begin(0x64656e73);
     hash_add_hash(&field->hash, field->pattern->hash);
     hash_add(&field->hash, numbers, sizeof numbers);

@@ -1,5 +1,6 @@
 /* The scene under construction: takes what stands at top level, warns of what is used and not drawn. */
 #include "eval/build_parts.h"
+#include "scene/volumes.h"
 
 #include <string.h>
 
@@ -154,6 +155,12 @@ static void walk_surface(SceneDraft *draft, BuildContext *context, const Surface
     if (surface->object) walk_object(draft, context, surface->object);
 }
 
+static void walk_volume(SceneDraft *draft, BuildContext *context, const Volume *volume) {
+    if (!visit(draft, context, volume)) return;
+    if (volume->density) walk_pigment(draft, context, volume->density->pattern);
+    walk_object(draft, context, volume->container);
+}
+
 static void walk_object(SceneDraft *draft, BuildContext *context, const Object *object) {
     if (!visit(draft, context, object)) return;
     warn_inert(draft, context, object_inert(object));
@@ -170,6 +177,7 @@ static void walk_object(SceneDraft *draft, BuildContext *context, const Object *
             walk_texture(draft, context, object->as.mesh->textures[i]);
     if (object->kind == OBJECT_SURFACE) walk_surface(draft, context, object->as.surface);
     if (object->kind == OBJECT_TEXEL) walk_texel(draft, context, object->as.texel);
+    if (object->kind == OBJECT_VOLUME) walk_volume(draft, context, object->as.volume);
 }
 
 /* ---- adding ---- */

@@ -149,6 +149,7 @@ BlockBuilder build_surface;                   /* build_surface.c */
 /* ARRAY of `count` vectors, or a kept block { n, <…>, … } of them; `what` names it in messages. NULL after an error. */
 const Vec3 *vectors_read(Reader *reader, const EvalBlock *body, const char *what, size_t *count);
 BlockBuilder build_terrain;                   /* build_terrain.c */
+BlockBuilder build_volume;                    /* build_volume.c */
 /* The ground of the maps that the text at `span` names (eval_path.c); false after a report. */
 bool terrain_load(const BuildContext *context, EvalTerrainRequest *request, const Span *spans, Span span, Terrain *out);
 BlockBuilder build_cloth;                     /* build_cloth.c */

@@ -48,7 +48,7 @@ static const struct BlockWord {
     {"superellipsoid", build_superellipsoid},
     {"text", build_text},
     {"lsystem", build_lsystem},
-    {"volume", build_unmodelled},
+    {"volume", build_volume},
     {"terrain", build_terrain},
     {"cloth", build_cloth},
     /* looks */

@@ -73,21 +73,21 @@ static bool see_bow(const Rainbow *bow, const Ray *ray, double t, Air *out) {
 
 /* Where bows cross it is their mean that is seen. */
 static void lay_bows(Air *air, const Scene *scene, const Ray *ray, double t) {
-    Air sum = {{0, 0, 0}, {0, 0, 0}}, one;
+    Air sum = {{0, 0, 0}, {0, 0, 0}, 0}, one;
     int count = 0;
     for (size_t i = 0; i < scene->rainbow_count; i++) {
         if (!see_bow(&scene->rainbows[i], ray, t, &one)) continue;
-        sum = (Air){vec3f_add(sum.keep, one.keep), vec3f_add(sum.add, one.add)};
+        sum = (Air){vec3f_add(sum.keep, one.keep), vec3f_add(sum.add, one.add), 0};
         count++;
     }
-    if (count) *air = (Air){vec3f_scale(sum.keep, 1 / (float)count), vec3f_scale(sum.add, 1 / (float)count)};
+    if (count) *air = (Air){vec3f_scale(sum.keep, 1 / (float)count), vec3f_scale(sum.add, 1 / (float)count), 0};
 }
 
 /* Fogs lie before rainbows, and among each other each as if it were alone. */
 Air air_between(const Scene *scene, const Ray *ray, double t) {
-    Air air = {{1, 1, 1}, {0, 0, 0}};
+    Air air = {{1, 1, 1}, {0, 0, 0}, 0};
     lay_bows(&air, scene, ray, t);
-    Air fog = {{1, 1, 1}, {0, 0, 0}};
+    Air fog = {{1, 1, 1}, {0, 0, 0}, 0};
     for (size_t i = 0; i < scene->fog_count; i++) lay_fog(&fog, &scene->fogs[i], ray, t);
-    return (Air){vec3f_mul(air.keep, fog.keep), vec3f_add(fog.add, vec3f_mul(air.add, fog.keep))};
+    return (Air){vec3f_mul(air.keep, fog.keep), vec3f_add(fog.add, vec3f_mul(air.add, fog.keep)), 0};
 }

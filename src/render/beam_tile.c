@@ -2,6 +2,7 @@
 
 #include "base/random.h"
 #include "render/beam_rigid.h"
+#include "render/volume_set.h"
 
 #include <string.h>
 
@@ -91,15 +92,22 @@ static void draw_skins(BeamTracer *tr, uint32_t cells) {
     beam_draw_cells(&tr->draft, tr->compiled, cells);
 }
 
+/* Of what volumes ask for the light that comes to them. */
+static SurfaceTracer air_tracer(BeamTracer *tr) {
+    if (tr->compiled->volumes) return tracer_of_surfaces(&tr->volumes);
+    return (SurfaceTracer){.compiled = tr->compiled};
+}
+
 /* The sky's pixels, where there is nothing else. */
-static bool see_sky(const BeamTracer *tr, Radiance *out) {
+static bool see_sky(BeamTracer *tr, Radiance *out) {
     const Scene *scene = tr->compiled->scene;
     if (!tr->bounded || beam_meets_box(&tr->beam, &tr->explicit_bounds) || !isinf(tr->compiled->all_exact_to)) return false;
     if (tr->compiled->rigid && rigid_meets(tr->compiled->rigid, &tr->beam)) return false;
+    SurfaceTracer surfaces = air_tracer(tr);
     for (int i = 0; i < tr->columns * tr->rows; i++) {
         Vec3f color = sky_radiance(scene, tr->cones[i].direction, tr->cones[i].spread);
-        Air air = air_between(scene, &(Ray){tr->cones[i].origin, tr->cones[i].direction}, VTS_INFINITY);
-        out[i] = (Radiance){air_over(&air, color, 1), 0};
+        Air air = air_along(&surfaces, &tr->cones[i], VTS_INFINITY);
+        out[i] = (Radiance){air_over(&air, color, 1), air.cover};
         if (tr->aovs) tr->aovs[i].samples = 1;
     }
     return true;
@@ -150,8 +158,9 @@ static void see_sight(BeamTracer *tr, const Sight *sight, Radiance *all, Vec3f *
     double t = sight->look ? (double)sight->t : VTS_INFINITY;
     Vec3f sky = {0, 0, 0};
     if (!sight->look) sky = sky_radiance(scene, cone.direction, cone.spread);
-    Air air = air_between(scene, &(Ray){cone.origin, cone.direction}, t);
-    *all = (Radiance){air_over(&air, sight->look ? sight->light : sky, 1), sight->look ? 1 : 0};
+    SurfaceTracer surfaces = air_tracer(tr);
+    Air air = air_along(&surfaces, &cone, t);
+    *all = (Radiance){air_over(&air, sight->look ? sight->light : sky, 1), sight->look ? 1 : air.cover};
     *odd = air_over(&air, sight->look ? sight->odd_light : sky, 1);
     MatterAov met = {.share = 0};
     if (!sight->beyond) {

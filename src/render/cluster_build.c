@@ -348,6 +348,7 @@ static void add_object(Builder *b, Cluster *cluster, const Object *object, const
     case OBJECT_DIFFERENCE:
     case OBJECT_SOLID: add_solid(b, cluster, object, &place, &has, false); return;
     case OBJECT_TEXEL: return; /* a skin of its own */
+    case OBJECT_VOLUME: return; /* volumes.h */
     case OBJECT_UNMODELLED: return; /* named in a warning when the scene was read */
     }
 }

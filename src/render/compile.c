@@ -4,6 +4,7 @@
 #include "render/beam_rigid.h"
 #include "render/exact_skin.h"
 #include "render/terrain_view.h"
+#include "render/volume_light.h"
 
 #include <string.h>
 
@@ -174,7 +175,10 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     out->hierarchy = hierarchy_build(scene, arena, diags);
     if (!out->hierarchy) return COMPILE_FAILED;
     out->clear_shadows = hierarchy_is_clear(out->hierarchy);
-    out->secondary = !hierarchy_is_plain(out->hierarchy);
+    if (!volumes_compile(out, diags)) return COMPILE_FAILED;
+    out->exact_paths = options->exact;
+    out->clear_shadows |= out->volumes != NULL; /* which let some light through, too */
+    out->secondary = !hierarchy_is_plain(out->hierarchy) || out->volumes; /* which ask the voxels of skins for their shadows */
     SkinList skins = {0};
     for (size_t i = 0; i < scene->skin_count; i++) *list_push(arena, &skins) = scene->skins[i];
     Transform identity = transform_identity();
@@ -192,6 +196,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     CompileStatus status = build_texels(options, detail, diags, out);
     if (status != COMPILE_OK) return status;
     out->skin_tree = tree_over_skins(out);
+    if (out->volumes && !options->exact && !volumes_light(out)) return COMPILE_INTERRUPTED;
     beam_pilot(out);
     if (options->exact && out->skin_count) out->exact = exact_skins_build(out->skins, out->skin_count, hierarchy_device(out->hierarchy));
     if (options->exact && out->skin_count && !out->exact) memory_budget_fail(options->memory);

@@ -37,6 +37,8 @@ typedef struct CompiledScene {
     ExactSkins *exact;    /* the skins' geometry, for the reference; else NULL */
     struct RigidCopies *rigid; /* copies that rays meet, or NULL */
     struct WangKept *wang; /* texels taken apart */
+    struct VolumeSet *volumes; /* clouds, or NULL */
+    bool exact_paths;     /* one path of light through volumes for each sample, of which there are many */
     BuiltTexel **texels;  /* every texel built, for the report */
     size_t texel_count;
     MarchSettings march, shadow_march;

@@ -1,6 +1,7 @@
 #include "render/integrate.h"
 
 #include "base/random.h"
+#include "render/volume_set.h"
 
 #include <string.h>
 
@@ -338,7 +339,8 @@ Vec3f trace_skins(Tracer *tr, const Cone *cone, const ConeStart *start, double t
     for (size_t l = 0; l < scene->light_count; l++) color = vec3f_add(color, add_shadowed(tr, cone, count, l));
     float covered = 1 - *transmittance;
     if (count && covered > 0) {
-        Air air = air_between(scene, &(Ray){cone->origin, cone->direction}, mean_t / (double)covered);
+        SurfaceTracer surfaces = tracer_of_surfaces(tr);
+        Air air = air_along(&surfaces, cone, mean_t / (double)covered);
         color = air_over(&air, color, covered);
     }
     return color;
@@ -373,10 +375,11 @@ Radiance trace_cone(Tracer *tr, const Cone *cone, const SurfaceHit *hit, float *
     }
     *reaching = transmittance;
     if (transmittance <= 0) return out;
-    Air air = air_between(scene, &(Ray){cone->origin, cone->direction}, hit ? hit->t : VTS_INFINITY);
+    SurfaceTracer surfaces = tracer_of_surfaces(tr);
+    Air air = air_along(&surfaces, cone, hit ? hit->t : VTS_INFINITY);
     Vec3f behind;
+    out.alpha += transmittance * air.cover;
     if (hit) {
-        SurfaceTracer surfaces = tracer_of_surfaces(tr);
         Leg leg;
         surface_leg(cone, &leg);
         leg.weight = transmittance;

@@ -33,6 +33,7 @@ Vec3f sky_radiance(const Scene *scene, Vec3 direction, double spread);
 /* What fogs and rainbows do to light on a leg of its way: color·keep + alpha·add. */
 typedef struct Air {
     Vec3f keep, add;
+    float cover; /* share that volumes hide */
 } Air;
 /* air.c. Between the origin and what is seen at t (VTS_INFINITY: the sky) along the unit direction. */
 Air air_between(const Scene *scene, const Ray *ray, double t);

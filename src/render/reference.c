@@ -3,6 +3,7 @@
 #include "base/random.h"
 #include "render/exact_skin.h"
 #include "render/surface.h"
+#include "render/volume_set.h"
 
 typedef struct Reference {
     const CompiledScene *compiled;
@@ -148,7 +149,8 @@ static Vec3f exact_matter(void *sample, const Cone *cone, double t_max, float *t
     if (!exact_skins_intersect(s.compiled->exact, &s.ray, 0, t_max, s.counters, &matter)) return vec3f(0, 0, 0);
     *transmittance = 0;
     const Facet facet = skin_facet(&s, &matter);
-    Air air = air_between(s.compiled->scene, &s.ray, facet.t);
+    SurfaceTracer tracer = tracer_of(&s);
+    Air air = air_along(&tracer, cone, facet.t);
     return air_over(&air, shade(&s, &facet), 1);
 }
 
@@ -170,8 +172,10 @@ static Radiance trace_sample(Sample *s) {
     } else {
         light = met ? shade(s, &facet) : sky_radiance(scene, s->ray.direction, 0);
     }
-    Air air = air_between(scene, &s->ray, met ? facet.t : VTS_INFINITY);
-    return (Radiance){air_over(&air, light, 1), met};
+    SurfaceTracer tracer = tracer_of(s);
+    const Cone cone = ray_cone(s);
+    Air air = air_along(&tracer, &cone, met ? facet.t : VTS_INFINITY);
+    return (Radiance){air_over(&air, light, 1), met ? 1 : air.cover};
 }
 
 /* ---- samples ---- */

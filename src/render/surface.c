@@ -4,6 +4,7 @@
 #include "pattern/pattern.h"
 #include "render/footprint.h"
 #include "render/surface_parts.h"
+#include "render/volume_set.h"
 
 #include <string.h>
 
@@ -298,7 +299,7 @@ static bool gather_before(SurfaceTracer *tracer, const Leg *leg, double t, Vec3f
         *through = vec3f_scale(*through, transmittance);
         if (transmittance <= 0) return false;
     }
-    Air air = air_between(tracer->compiled->scene, &(Ray){leg->cone.origin, leg->cone.direction}, t);
+    Air air = air_along(tracer, &leg->cone, t);
     *sum = vec3f_add(*sum, vec3f_mul(*through, air.add));
     *through = vec3f_mul(*through, air.keep);
     return true;

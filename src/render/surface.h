@@ -38,6 +38,7 @@ typedef struct SurfaceTracer {
     float (*passing)(void *skins, const Cone *cone, double t_max, Vec3 to_eye);
     bool exact;         /* of a ray without width, so that any number of them may be asked */
     void *skins;
+    bool no_volumes;    /* whoever asks sees to what volumes take of light */
 } SurfaceTracer;
 
 /* The first leg of a line of sight. */
@@ -86,8 +87,10 @@ Vec3f surface_faded(const Interior *interior, double distance);
 int surface_enclosure(const Enclosure *enclosures, int count, const SurfaceHit *hit);
 /* Steps over the surface: into its object, or out. */
 void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit);
-/* What comes along the ray past explicit objects, between `clear` and `distance`. */
+/* What comes along the ray past explicit objects and volumes, between `clear` and `distance`. */
 Vec3f surface_open(SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, double clear);
+/* The share of light from one place of the light, to a point within volumes. */
+Vec3f surface_shadow_way(SurfaceTracer *tracer, const Light *light, const LightRay *way, const Leg *leg, Vec3 point);
 /* The share of a light's colours that comes to the point, `bias` beside which rays begin; `width` and `spread`: of the cone that saw it. */
 Vec3f surface_shadow(SurfaceTracer *tracer, const Light *light, const LightRay *ray, const Leg *leg, Vec3 point, double bias,
                      uint64_t seed);

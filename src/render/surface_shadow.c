@@ -2,6 +2,7 @@
 
 #include "base/random.h"
 #include "render/surface_parts.h"
+#include "render/volume_set.h"
 
 static float most_of(Vec3f c) { return float_max(c.x, float_max(c.y, c.z)); }
 
@@ -76,8 +77,10 @@ static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from,
 Vec3f surface_open(SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, double clear) {
     const CompiledScene *compiled = tracer->compiled;
     tracer->counters->shadow_rays++;
-    if (compiled->clear_shadows) return clear_way(tracer, ray, clear, distance, leg);
-    return hierarchy_occluded(compiled->hierarchy, ray, clear, distance) ? vec3f(0, 0, 0) : vec3f(1, 1, 1);
+    if (!compiled->clear_shadows) return hierarchy_occluded(compiled->hierarchy, ray, clear, distance) ? vec3f(0, 0, 0) : vec3f(1, 1, 1);
+    Vec3f through = clear_way(tracer, ray, clear, distance, leg);
+    if (!compiled->volumes || tracer->no_volumes || most_of(through) <= 0) return through;
+    return vec3f_mul(through, volumes_passing(compiled->volumes, ray, clear, distance, RAY_SHADOWS));
 }
 
 static Vec3f one_way(SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, double clear, double width) {
@@ -120,4 +123,10 @@ Vec3f surface_shadow(SurfaceTracer *tracer, const Light *light, const LightRay *
     bool agreed;
     Vec3f mean = mean_of_places(tracer, light, leg, point, clear, width, FEW_PLACES, seed, &agreed);
     return agreed ? mean : mean_of_places(tracer, light, leg, point, clear, width, MANY_PLACES, seed + 2, &agreed);
+}
+
+Vec3f surface_shadow_way(SurfaceTracer *tracer, const Light *light, const LightRay *way, const Leg *leg, Vec3 point) {
+    if (light->shadowless) return vec3f(1, 1, 1);
+    Ray ray = {point, way->direction};
+    return one_way(tracer, &ray, way->distance, leg, 0, 0);
 }

@@ -97,6 +97,7 @@ typedef struct DensityGrid {
     Hash128 hash;
     int size[3];
     const float *values;
+    size_t bad; /* 1 + the index of the first number of the file that is negative or none, and counts as 0; 0: there is no such */
 } DensityGrid;
 
 /* A picture in the unit square of pattern space, or wrapped about the origin. */
@@ -283,6 +284,7 @@ typedef enum ObjectKind {
     OBJECT_SURFACE,   /* the surface of a skin drawn itself */
     OBJECT_SOLID,     /* the rarer shapes: solids.h */
     OBJECT_TEXEL,     /* a texel placed once, without a surface */
+    OBJECT_VOLUME,    /* a cloud: matter that scatters light, without a surface; volumes.h */
     OBJECT_UNMODELLED /* parses, is inert: `word` names it */
 } ObjectKind;
 
@@ -339,6 +341,7 @@ typedef struct Plant {
 
 typedef struct Surface Surface;
 typedef struct TexelDef TexelDef;
+typedef struct Volume Volume;
 typedef struct Light Light;
 
 typedef struct ObjectList {
@@ -399,6 +402,7 @@ struct Object {
         struct { const BranchNode *items; size_t count; } branches;
         const Surface *surface;
         const TexelDef *texel;
+        const Volume *volume;
         const char *word; /* of OBJECT_UNMODELLED */
     } as;
 };
@@ -433,6 +437,7 @@ typedef struct DensityField {
     const Pigment *pattern;       /* its value, before frequency and colours; PATTERN_DENSITY: between the centres of cells */
     bool in_bounds;               /* pattern space is the texel's bounds as the unit cube; else the scene's */
     double low, high, extinction; /* 0, 1, 64 */
+    bool has_threshold;           /* low and high were given: of volumes, whose densities have no upper end else */
     const char *unmodelled;       /* a word that makes it inert, or NULL */
 } DensityField;
 

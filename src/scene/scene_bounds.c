@@ -1,5 +1,7 @@
 #include "scene/scene_bounds.h"
 
+#include "scene/volumes.h"
+
 static Box3 everything(void) {
     return (Box3){{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL, HUGE_VAL}};
 }
@@ -147,6 +149,7 @@ static Box3 bounds_under(const Object *o, const Transform *outer) {
     case OBJECT_SURFACE: return surface_bounds(o->as.surface, &t);
     case OBJECT_TEXEL:
         return is_bounded(o->as.texel->bounds) ? box3_transform(&t, o->as.texel->bounds) : everything();
+    case OBJECT_VOLUME: return bounds_under(o->as.volume->container, &t);
     case OBJECT_SOLID:
     case OBJECT_UNMODELLED: return box3_empty();
     }

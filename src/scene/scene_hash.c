@@ -1,5 +1,7 @@
 #include "scene/scene_hash.h"
 
+#include "scene/volumes.h"
+
 #include <string.h>
 
 /* One number for each type of node, so that nodes of different types with equal bytes differ. */
@@ -245,7 +247,7 @@ void object_group_settle(ObjectGroup *group) {
     group->plain = group->light_count == 0 && !group->light_group;
     for (size_t i = 0; i < group->count; i++) {
         const Object *object = group->items[i];
-        if (object->kind == OBJECT_TEXEL) group->plain = false;
+        if (object->kind == OBJECT_TEXEL || object->kind == OBJECT_VOLUME) group->plain = false;
         if (!object_has_group(object)) continue;
         group->plain = group->plain && object->as.group->plain;
         group->unhashed_depth = int_max(group->unhashed_depth, object->as.group->unhashed_depth + 1);
@@ -297,6 +299,7 @@ Hash128 object_shape_hash(const Object *o) {
     case OBJECT_SURFACE: hash_add_hash(&h, o->as.surface->hash); break;
     case OBJECT_TEXEL: hash_add_hash(&h, o->as.texel->hash); break;
     case OBJECT_SOLID: hash_add_hash(&h, o->as.solid->hash); break;
+    case OBJECT_VOLUME: hash_add_hash(&h, o->as.volume->hash); break;
     case OBJECT_UNMODELLED: add_text(&h, o->as.word); break;
     }
     return h;

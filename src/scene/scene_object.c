@@ -1,4 +1,4 @@
-#include "scene/scene.h"
+#include "scene/volumes.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -18,7 +18,7 @@ const char *object_word(const Object *o) {
         [OBJECT_UNION] = "union",         [OBJECT_INTERSECTION] = "intersection",
         [OBJECT_DIFFERENCE] = "difference", [OBJECT_MERGE] = "merge",
         [OBJECT_PARTICLES] = "particles", [OBJECT_BRANCHES] = "lsystem", [OBJECT_SURFACE] = "surface",
-        [OBJECT_TEXEL] = "texel",
+        [OBJECT_TEXEL] = "texel", [OBJECT_VOLUME] = "volume",
     };
     if (o->kind == OBJECT_UNMODELLED) return o->as.word;
     if (o->kind == OBJECT_SOLID) return o->as.solid->word;
@@ -50,6 +50,7 @@ static size_t object_size(ObjectKind kind) {
     case OBJECT_MERGE:
     case OBJECT_SURFACE:
     case OBJECT_TEXEL:
+    case OBJECT_VOLUME:
     case OBJECT_SOLID:
     case OBJECT_UNMODELLED: member = sizeof(void *); break;
     }
@@ -80,6 +81,7 @@ int object_depth_by_parts(const Object *o) {
     if (object_has_group(o) && o->as.group) depth = int_max(depth, deepest(o->as.group->items, o->as.group->count));
     if (o->kind == OBJECT_SURFACE && o->as.surface->object) depth = int_max(depth, o->as.surface->object->depth);
     if (o->kind == OBJECT_TEXEL) depth = int_max(depth, depth_of_texel(o->as.texel));
+    if (o->kind == OBJECT_VOLUME && o->as.volume->container) depth = int_max(depth, o->as.volume->container->depth);
     if (o->kind == OBJECT_SOLID) depth = int_max(depth, depth_of_solid(o->as.solid));
     return depth + 1;
 }

@@ -1,6 +1,7 @@
 /* The graph as text: one node a line, two spaces of indent for what belongs to the node above, defaults left out. Numbers are
  * printed with %g: enough to compare, short enough to read. */
 #include "scene/scene.h"
+#include "scene/volumes.h"
 
 typedef struct Printer {
     StrBuf *out;
@@ -267,6 +268,7 @@ static void add_shape(const Printer *p, const Object *o) {
     case OBJECT_PARTICLES: strbuf_addf(p->out, " of %zu", o->as.particles.count); break;
     case OBJECT_BRANCHES: strbuf_addf(p->out, " of %zu branch nodes", o->as.branches.count); break;
     case OBJECT_TEXEL: strbuf_addf(p->out, " %s", o->as.texel->name); break;
+    case OBJECT_VOLUME: volume_print(o->as.volume, p->out); break;
     case OBJECT_SURFACE:
     case OBJECT_SOLID:
     case OBJECT_UNMODELLED: break;

@@ -58,6 +58,7 @@ static bool inside_shape(const Object *object, Vec3 p) {
     case OBJECT_BRANCHES:
     case OBJECT_SURFACE:
     case OBJECT_TEXEL:
+    case OBJECT_VOLUME:
     case OBJECT_SOLID:
     case OBJECT_UNMODELLED: break;
     }
@@ -205,6 +206,7 @@ Box3 shape_bounds(const Object *object) {
         return box;
     case OBJECT_SURFACE: return surface_bounds(object->as.surface);
     case OBJECT_TEXEL: return object->as.texel->bounds;
+    case OBJECT_VOLUME:
     case OBJECT_SOLID:
     case OBJECT_UNMODELLED: break;
     }

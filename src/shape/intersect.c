@@ -339,6 +339,7 @@ int shape_crossings(const Object *object, const Ray *ray, ShapeCrossing out[SHAP
     case OBJECT_BRANCHES:
     case OBJECT_SURFACE:
     case OBJECT_TEXEL:
+    case OBJECT_VOLUME:
     case OBJECT_SOLID:
     case OBJECT_UNMODELLED: break;
     }

@@ -45,6 +45,7 @@ const SolidOps *solid_ops(const Object *object) {
     case OBJECT_PARTICLES:
     case OBJECT_BRANCHES:
     case OBJECT_TEXEL:
+    case OBJECT_VOLUME:
     case OBJECT_UNMODELLED: break;
     }
     return &nothing;

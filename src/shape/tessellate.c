@@ -81,6 +81,7 @@ bool tessellate_shape(TessellateWalk *walk, const Object *object, double toleran
         return true;
     case OBJECT_SOLID: return push_rare(walk, object, tolerance, region);
     case OBJECT_TEXEL: return tessellate_refuse(walk, object, "a texel has no surface");
+    case OBJECT_VOLUME: return tessellate_refuse(walk, object, "a volume has no surface");
     case OBJECT_INTERSECTION:
     case OBJECT_DIFFERENCE:
     case OBJECT_UNION:

@@ -22,12 +22,13 @@ static float share(const unsigned char *bytes, size_t width, bool big) {
     return (float)(whole_number(bytes, width, big) / most[width]);
 }
 
-static float float_number(const unsigned char *bytes, bool big) {
+static float float_number(const unsigned char *bytes, bool big, bool *sound) {
     uint32_t bits = 0;
     float value;
     for (int k = 0; k < 4; k++) bits = bits << 8 | bytes[big ? k : 3 - k];
     memcpy(&value, &bits, sizeof value);
-    return isfinite(value) && value > 0 ? value : 0;
+    *sound = isfinite(value) && value >= 0;
+    return *sound ? value : 0;
 }
 
 /* The product of the sides, or 0 when it is none or past `most`. */
@@ -64,14 +65,17 @@ bool grid_decode_df3(const unsigned char *bytes, size_t size, Arena *arena, Dens
 
 bool grid_decode_raw(const unsigned char *bytes, size_t size, const GridRaw *raw, Arena *arena, DensityGrid *out, StrBuf *error) {
     static const size_t widths[] = {1, 2, 4};
-    size_t width = widths[raw->sample], count = cell_count(raw->size, size / width);
+    size_t bad = 0, width = widths[raw->sample], count = cell_count(raw->size, size / width);
     if (count == 0 || count * width != size) return refuse(error, "its size is not what the sides and the kind of number make");
     float *values = arena_new_array(arena, float, count);
     for (size_t i = 0; i < count; i++) {
         const unsigned char *at = bytes + i * width;
-        values[i] = raw->sample == GRID_FLOAT ? float_number(at, raw->big) : share(at, width, raw->big);
+        bool sound = true;
+        values[i] = raw->sample == GRID_FLOAT ? float_number(at, raw->big, &sound) : share(at, width, raw->big);
+        if (!sound && !bad) bad = i + 1;
     }
     finish(out, raw->size, values, bytes, size);
+    out->bad = bad;
     hash_add_u64(&out->hash, (uint64_t)raw->sample << 1 | raw->big);
     return true;
 }

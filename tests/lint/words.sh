@@ -32,7 +32,7 @@ require() {
   fail
 }
 
-pages=(doc/scene.md doc/reference/*.md)
+pages=(doc/scene.md doc/volumes.md doc/reference/*.md)
 table_words "${pages[@]}" > "$folder/all"
 table_words doc/reference/functions.md > "$folder/functions"
 table_words doc/reference/directives.md > "$folder/directives"

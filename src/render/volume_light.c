@@ -1,0 +1,233 @@
+#include "render/volume_light.h"
+
+#include "render/integrate.h"
+#include "render/volume_shoot.h"
+
+/* ---- spherical harmonics ---- */
+
+void volume_harmonics(Vec3 d, int count, double out[VOLUME_HARMONICS]) {
+    out[0] = 0.28209479177387814;
+    if (count == 1) return;
+    static const double first = 0.48860251190291992, mixed = 1.0925484305920792;
+    out[1] = first * d.x, out[2] = first * d.y, out[3] = first * d.z;
+    out[4] = mixed * d.x * d.y, out[5] = mixed * d.y * d.z, out[6] = mixed * d.x * d.z;
+    out[7] = 0.31539156525252001 * (3 * d.z * d.z - 1);
+    out[8] = 0.54627421529603959 * (d.x * d.x - d.y * d.y);
+}
+
+/* ---- lamps ---- */
+
+enum { LEAST_LAMP_CELLS = 40, MOST_LAMP_CELLS = 160, LAMP_PLACES = 3 };
+/* Thicker than this nothing is told apart. */
+static const double MOST_DEPTH = 80;
+
+/* The eight nodes, or bins, around a place, and their weights. */
+typedef struct Corners {
+    size_t at[8];
+    double weight[8];
+} Corners;
+
+/* Nodes of a lattice of `cells` over the unit cube. */
+static Corners corners_of(const int cells[3], Vec3 unit) {
+    Corners out;
+    int first[3];
+    double t[3];
+    for (int k = 0; k < 3; k++) {
+        double x = double_clamp(vec3_get(unit, k), 0, 1) * cells[k];
+        first[k] = double_to_int(x, 0, cells[k] - 1);
+        t[k] = x - first[k];
+    }
+    for (int corner = 0; corner < 8; corner++) {
+        size_t index = 0;
+        out.weight[corner] = 1;
+        for (int k = 2; k >= 0; k--) {
+            int far = corner >> k & 1;
+            index = index * (size_t)(cells[k] + 1) + (size_t)(first[k] + far);
+            out.weight[corner] *= far ? t[k] : 1 - t[k];
+        }
+        out.at[corner] = index;
+    }
+    return out;
+}
+
+Vec3f volume_lamp(const CompiledVolume *v, SurfaceTracer *tracer, size_t l, const LightRay *way, Vec3 unit, Vec3 point) {
+    const VolumeLight *light = v->light;
+    const Corners c = corners_of(light->cells, unit);
+    const uint8_t *states = light->states + l * light->nodes;
+    const float(*depths)[3] = (const float(*)[3])light->depths + l * light->nodes;
+    uint8_t state = states[c.at[0]];
+    double depth[3] = {0, 0, 0};
+    for (int i = 0; i < 8; i++) {
+        if (states[c.at[i]] != state) state = LIGHT_PARTLY;
+        for (int k = 0; k < 3; k++) depth[k] += c.weight[i] * (double)depths[c.at[i]][k];
+    }
+    if (state == LIGHT_HIDDEN) return vec3f(0, 0, 0);
+    Vec3f through = vec3f((float)exp(-depth[0]), (float)exp(-depth[1]), (float)exp(-depth[2]));
+    if (state == LIGHT_SEEN) return through;
+    const Light *lamp = &tracer->compiled->scene->lights[l];
+    Leg leg;
+    surface_leg(&(Cone){point, way->direction, 0, 0}, &leg);
+    SurfaceTracer past = *tracer;
+    past.no_volumes = true;
+    return vec3f_mul(through, surface_shadow(&past, lamp, way, &leg, point, 0, random_hash(l, 0x6c, 0, 0)));
+}
+
+typedef struct LampFill {
+    CompiledScene *compiled;
+    CompiledVolume *volume;
+    Tracer **tracers;
+    size_t light;
+} LampFill;
+
+static void fill_node(const LampFill *f, SurfaceTracer *tracer, Vec3 point, float depth[3], uint8_t *state) {
+    const CompiledScene *compiled = f->compiled;
+    const Light *lamp = &compiled->scene->lights[f->light];
+    int across = light_is_area(lamp) ? LAMP_PLACES : 1;
+    double through[3] = {0, 0, 0}, hidden = 0, whole = 0;
+    SurfaceTracer past = *tracer;
+    past.no_volumes = true;
+    for (int i = 0; i < across * across; i++) {
+        LightRay way = across > 1 ? light_ray_from(lamp, point, light_place(lamp, point, (i % across + 0.5) / across, (i / across + 0.5) / across))
+                                  : light_ray(lamp, point);
+        const Ray ray = {point, way.direction};
+        Leg leg;
+        surface_leg(&(Cone){point, way.direction, 0, 0}, &leg);
+        Vec3f share = surface_shadow_way(&past, lamp, &way, &leg, point);
+        Vec3f passed = lamp->shadowless ? vec3f(1, 1, 1) : volumes_passing(compiled->volumes, &ray, 0, way.distance, RAY_MIRRORS);
+        hidden += share.x <= 0 && share.y <= 0 && share.z <= 0;
+        whole += share.x == 1 && share.y == 1 && share.z == 1;
+        through[0] += (double)passed.x, through[1] += (double)passed.y, through[2] += (double)passed.z;
+    }
+    int places = across * across;
+    *state = hidden == places ? LIGHT_HIDDEN : whole == places ? LIGHT_SEEN : LIGHT_PARTLY;
+    for (int c = 0; c < 3; c++) depth[c] = (float)double_clamp(-log(through[c] / places), 0, MOST_DEPTH);
+}
+
+Vec3 volume_point(const CompiledVolume *v, Vec3 unit) {
+    const int *n = v->lattice.size;
+    Vec3 cells = vec3(unit.x * n[0] + 0.5, unit.y * n[1] + 0.5, unit.z * n[2] + 0.5);
+    return mat3_apply(&v->from_cells, vec3_sub(cells, v->to_cells.offset));
+}
+
+static void fill_lamp_row(void *context, size_t row, int worker) {
+    const LampFill *f = context;
+    const VolumeLight *light = f->volume->light;
+    const int *n = light->cells;
+    size_t base = f->light * light->nodes + row * (size_t)(n[0] + 1);
+    SurfaceTracer tracer = tracer_of_surfaces(f->tracers[worker]);
+    int y = (int)(row % (size_t)(n[1] + 1)), z = (int)(row / (size_t)(n[1] + 1));
+    for (int x = 0; x <= n[0]; x++) {
+        Vec3 point = volume_point(f->volume, vec3((double)x / n[0], (double)y / n[1], (double)z / n[2]));
+        fill_node(f, &tracer, point, light->depths[base + (size_t)x], &light->states[base + (size_t)x]);
+    }
+}
+
+/* ---- making ready ---- */
+
+enum { LEAST_ACROSS = 4, MOST_ACROSS = 24 };
+
+/* Cells as cubic as may be, `longest` of them along the longest side; but across what is flat as many as its optical depth asks for. */
+static void divide(const CompiledVolume *v, int longest, int out[3]) {
+    double sides[3], most = 0, extinction = double_max(v->extinction[0], double_max(v->extinction[1], v->extinction[2])) * lattice_mean(&v->lattice);
+    for (int k = 0; k < 3; k++) {
+        sides[k] = vec3_length(v->from_cells.c[k]) * v->lattice.size[k];
+        most = double_max(most, sides[k]);
+    }
+    for (int k = 0; k < 3; k++) {
+        int least = (int)double_clamp(4 * extinction * sides[k], LEAST_ACROSS, MOST_ACROSS);
+        out[k] = int_clamp((int)ceil(longest * sides[k] / most - 1e-6), least, longest);
+    }
+}
+
+static int longest_of(const Lattice *lattice) { return int_max(lattice->size[0], int_max(lattice->size[1], lattice->size[2])); }
+
+static bool light_lamps(CompiledScene *compiled, CompiledVolume *v, Tracer **tracers) {
+    VolumeLight *light = v->light;
+    size_t lamps = compiled->scene->light_count;
+    divide(v, int_clamp(longest_of(&v->lattice), LEAST_LAMP_CELLS, MOST_LAMP_CELLS), light->cells);
+    light->nodes = (size_t)(light->cells[0] + 1) * (size_t)(light->cells[1] + 1) * (size_t)(light->cells[2] + 1);
+    light->depths = arena_push_array_(compiled->arena, lamps * light->nodes + 1, sizeof *light->depths);
+    light->states = arena_new_array(compiled->arena, uint8_t, lamps * light->nodes + 1);
+    for (size_t l = 0; l < lamps; l++) {
+        LampFill fill = {compiled, v, tracers, l};
+        if (!pool_run(compiled->options->pool, (size_t)(light->cells[1] + 1) * (size_t)(light->cells[2] + 1), fill_lamp_row, &fill)) return false;
+    }
+    return true;
+}
+
+enum { LEAST_BINS = 24, MOST_BINS = 40 };
+
+static void make_bins(CompiledScene *compiled, CompiledVolume *v) {
+    VolumeLight *light = v->light;
+    bool even = fabs(v->moments[1]) < 1e-3 && fabs(v->moments[2]) < 1e-3;
+    divide(v, int_clamp(longest_of(&v->lattice), LEAST_BINS, MOST_BINS), light->bins);
+    size_t bins = (size_t)light->bins[0] * (size_t)light->bins[1] * (size_t)light->bins[2];
+    light->harmonics = even || v->volume->storage == VOLUME_STORAGE_ISOTROPIC ? 1 : VOLUME_HARMONICS;
+    light->kept = arena_push_array_(compiled->arena, bins * (size_t)light->harmonics, sizeof *light->kept);
+    light->matter = arena_new_array(compiled->arena, float, bins);
+}
+
+bool volumes_light(CompiledScene *compiled) {
+    VolumeSet *set = compiled->volumes;
+    if (set->method == VOLUME_PATH) return true;
+    int workers = pool_threads(compiled->options->pool);
+    Tracer **tracers = arena_new_array(compiled->arena, Tracer *, (size_t)workers);
+    for (int i = 0; i < workers; i++) {
+        tracers[i] = arena_new(compiled->arena, Tracer);
+        tracer_init(tracers[i], compiled, compiled->arena);
+    }
+    for (size_t i = 0; i < set->count; i++) {
+        set->items[i].light = arena_new(compiled->arena, VolumeLight);
+        if (!light_lamps(compiled, &set->items[i], tracers)) return false;
+    }
+    if (set->orders == 1 && !set->sky) return true;
+    for (size_t i = 0; i < set->count; i++) make_bins(compiled, &set->items[i]);
+    return volumes_shoot(compiled, tracers);
+}
+
+/* ---- asking ---- */
+
+/* The eight bins around a place. Bins have their light in their middles; beyond the outermost it goes on as it went, where the density there is even
+ * enough for that. */
+static Corners bins_around(const VolumeLight *light, Vec3 unit) {
+    Corners out;
+    int first[3];
+    double t[3];
+    for (int k = 0; k < 3; k++) {
+        double x = double_clamp(vec3_get(unit, k), 0, 1) * light->bins[k] - 0.5;
+        first[k] = double_to_int(x, 0, light->bins[k] - 2);
+        t[k] = x - first[k];
+    }
+    float least = INFINITY, most = 0;
+    for (int corner = 0; corner < 8; corner++) {
+        size_t index = 0;
+        for (int k = 2; k >= 0; k--) index = index * (size_t)light->bins[k] + (size_t)(first[k] + (corner >> k & 1));
+        out.at[corner] = index;
+        least = float_min(least, light->matter[index]), most = float_max(most, light->matter[index]);
+    }
+    bool even = least > 0.5f * most;
+    for (int corner = 0; corner < 8; corner++) {
+        out.weight[corner] = 1;
+        for (int k = 0; k < 3; k++) {
+            double far = even ? t[k] : double_clamp(t[k], 0, 1);
+            out.weight[corner] *= corner >> k & 1 ? far : 1 - far;
+        }
+    }
+    return out;
+}
+
+Vec3f volume_kept(const CompiledVolume *v, Vec3 unit, const double shape[VOLUME_HARMONICS]) {
+    const VolumeLight *light = v->light;
+    double sum[3] = {0, 0, 0}, matter = 0;
+    if (!light->kept) return vec3f(0, 0, 0);
+    const Corners around = bins_around(light, unit);
+    for (int corner = 0; corner < 8; corner++) {
+        size_t index = around.at[corner];
+        const float(*kept)[3] = (const float(*)[3])light->kept + index * (size_t)light->harmonics;
+        matter += around.weight[corner] * (double)light->matter[index];
+        for (int i = 0; i < light->harmonics; i++)
+            for (int c = 0; c < 3; c++) sum[c] += around.weight[corner] * shape[i] * (double)kept[i][c];
+    }
+    if (!(matter > 0)) return vec3f(0, 0, 0);
+    return vec3f((float)double_max(0, sum[0] / matter), (float)double_max(0, sum[1] / matter), (float)double_max(0, sum[2] / matter));
+}

@@ -1,0 +1,275 @@
+#include "render/volume_shoot.h"
+
+#include <string.h>
+
+/* Paths begin where lamps' light is scattered first: at places drawn in proportion to how much that is, which is known from the lamps' depths. (Blasi, Le
+ * Saec & Schlick 1993 shoot from the lamps, which loses what misses, and lamps whose light does not fall with distance are none that could shoot.) */
+
+enum { BATCHES = 8, MOST_TURNS = 20000, MATTER_ACROSS = 3 };
+static const double RAYS_AUTO = 1 << 17, LEAST_RAYS = 1 << 12, MOST_RAYS = 1 << 26;
+
+typedef struct Shooting {
+    CompiledScene *compiled;
+    const VolumeSet *set;
+    Tracer **tracers;
+    double *chances;         /* sums so far of what each (volume, lamp, cell) scatters first */
+    size_t entries;
+    size_t *first_entry;     /* of each volume */
+    size_t *first_bin;       /* of each volume in a batch, in harmonics */
+    size_t batch_size;
+    float (*batches)[3];
+    uint64_t lamp_rays, sky_rays; /* of each batch */
+    double lamp_total;
+    Vec3 middle;
+    double radius;
+} Shooting;
+
+Vec3 volume_unit(const CompiledVolume *v, Vec3 point) {
+    Vec3 cells = vec3_add(mat3_apply(&v->to_cells.linear, point), v->to_cells.offset);
+    const int *n = v->lattice.size;
+    return vec3((cells.x - 0.5) / n[0], (cells.y - 0.5) / n[1], (cells.z - 0.5) / n[2]);
+}
+
+static double density_at(const CompiledVolume *v, Vec3 unit, Vec3 point) {
+    if (v->body && !body_inside(v->body, transform_point_back(&v->body_place, point))) return 0;
+    const int *n = v->lattice.size;
+    return lattice_value(&v->lattice, vec3(unit.x * n[0] + 0.5, unit.y * n[1] + 0.5, unit.z * n[2] + 0.5));
+}
+
+static double volume_of(const CompiledVolume *v) {
+    const int *n = v->lattice.size;
+    return fabs(mat3_determinant(&v->from_cells)) * n[0] * n[1] * n[2];
+}
+
+static double brightness(const double c[3]) { return (c[0] + c[1] + c[2]) / 3; }
+
+/* ---- where light is scattered first ---- */
+
+static size_t cells_of(const VolumeLight *light) { return (size_t)light->cells[0] * (size_t)light->cells[1] * (size_t)light->cells[2]; }
+
+/* About how much of a lamp's light a cell scatters: never 0 where it is any. */
+static double cell_share(const CompiledScene *compiled, const CompiledVolume *v, size_t l, const int at[3]) {
+    const VolumeLight *light = v->light;
+    const int *n = light->cells;
+    double light_sum = 0, density = 0, density_most = 0;
+    for (int corner = 0; corner < 8; corner++) {
+        size_t node = 0;
+        for (int k = 2; k >= 0; k--) node = node * (size_t)(n[k] + 1) + (size_t)(at[k] + (corner >> k & 1));
+        const float *depth = light->depths[l * light->nodes + node];
+        double through = (exp(-(double)depth[0]) + exp(-(double)depth[1]) + exp(-(double)depth[2])) / 3;
+        light_sum += light->states[l * light->nodes + node] == LIGHT_HIDDEN ? 0.02 * through : through;
+        Vec3 unit = vec3((at[0] + 0.25 + 0.5 * (corner & 1)) / n[0], (at[1] + 0.25 + 0.5 * (corner >> 1 & 1)) / n[1], (at[2] + 0.25 + 0.5 * (corner >> 2)) / n[2]);
+        double here = lattice_value(&v->lattice, vec3(unit.x * v->lattice.size[0] + 0.5, unit.y * v->lattice.size[1] + 0.5, unit.z * v->lattice.size[2] + 0.5));
+        density += here;
+        density_most = double_max(density_most, here);
+    }
+    Vec3 point = volume_point(v, vec3((at[0] + 0.5) / n[0], (at[1] + 0.5) / n[1], (at[2] + 0.5) / n[2]));
+    LightRay way = light_ray(&compiled->scene->lights[l], point);
+    double color = (double)(way.color.x + way.color.y + way.color.z) / 3;
+    double floor = 1e-3 * (double)v->lattice.most; /* between the samples there may be a little more */
+    return brightness(v->scattering) * double_max(color, 0) * light_sum / 8 * double_max((density / 8 + density_most) / 2, floor);
+}
+
+static void tabulate(Shooting *s) {
+    const Scene *scene = s->compiled->scene;
+    double sum = 0;
+    size_t e = 0;
+    for (size_t i = 0; i < s->set->count; i++) {
+        const CompiledVolume *v = &s->set->items[i];
+        const int *n = v->light->cells;
+        double cell = volume_of(v) / (double)cells_of(v->light);
+        s->first_entry[i] = e;
+        for (size_t l = 0; l < scene->light_count; l++)
+            for (int z = 0; z < n[2]; z++)
+                for (int y = 0; y < n[1]; y++)
+                    for (int x = 0; x < n[0]; x++) {
+                        double share = light_shines_on(&scene->lights[l], NULL) ? cell_share(s->compiled, v, l, (int[3]){x, y, z}) * cell : 0;
+                        s->chances[e++] = sum += share > 0 && isfinite(share) ? share : 0;
+                    }
+    }
+    s->first_entry[s->set->count] = e;
+    s->lamp_total = sum;
+}
+
+static size_t draw_entry(const Shooting *s, double u) {
+    size_t lo = 0, hi = s->entries - 1;
+    double target = u * s->lamp_total;
+    while (lo < hi) {
+        size_t middle = (lo + hi) / 2;
+        if (s->chances[middle] > target) hi = middle;
+        else lo = middle + 1;
+    }
+    return lo;
+}
+
+/* ---- paths ---- */
+
+typedef struct Shot {
+    const Shooting *shooting;
+    SurfaceTracer tracer;
+    RandomStream random;
+    float (*bins)[3]; /* of the batch */
+    double weight[3]; /* power */
+    double whole;     /* at the beginning */
+} Shot;
+
+static void keep(const Shot *shot, const Collision *at, Vec3 point, Vec3 direction) {
+    const CompiledVolume *v = at->volume;
+    const VolumeLight *light = v->light;
+    Vec3 unit = volume_unit(v, point);
+    double shape[VOLUME_HARMONICS];
+    size_t bin = 0;
+    for (int k = 2; k >= 0; k--) bin = bin * (size_t)light->bins[k] + (size_t)double_to_int(vec3_get(unit, k) * light->bins[k], 0, light->bins[k] - 1);
+    float(*out)[3] = shot->bins + shot->shooting->first_bin[v - shot->shooting->set->items] + bin * (size_t)light->harmonics;
+    volume_harmonics(direction, light->harmonics, shape);
+    for (int i = 0; i < light->harmonics; i++)
+        for (int c = 0; c < 3; c++) out[i][c] += (float)(shot->weight[c] * shape[i]);
+}
+
+static Vec3 scatter(Shot *shot, const CompiledVolume *v, Vec3 direction) {
+    double mu = phase_draw(&v->volume->phase, random_next_unit(&shot->random), random_next_unit(&shot->random));
+    return phase_turn(direction, mu, random_next_unit(&shot->random));
+}
+
+/* On from a place; `order` turns are behind it. */
+static void follow(Shot *shot, Ray ray, int order) {
+    const Shooting *s = shot->shooting;
+    int most = s->set->orders ? int_min(s->set->orders, MOST_TURNS) : MOST_TURNS;
+    for (; order < most; order++) {
+        Collision at;
+        bool met;
+        double clear = volume_clear_way(s->compiled, &ray, &met);
+        if (!volume_collide(s->set, &shot->random, shot->weight, &ray, clear, RAY_MIRRORS, &at)) return;
+        Vec3 point = vec3_madd(ray.origin, ray.direction, at.t);
+        keep(shot, &at, point, ray.direction);
+        if (!volume_survives(&shot->random, shot->weight, shot->whole)) return;
+        ray = (Ray){point, scatter(shot, at.volume, ray.direction)};
+    }
+}
+
+static bool set_power(Shot *shot, const double power[3]) {
+    for (int c = 0; c < 3; c++) shot->weight[c] = power[c];
+    shot->whole = double_max(power[0], double_max(power[1], power[2]));
+    return shot->whole > 0 && isfinite(shot->whole);
+}
+
+static void shoot_lamp(Shot *shot, double u, double rays) {
+    const Shooting *s = shot->shooting;
+    size_t entry = draw_entry(s, u), i = 0;
+    while (entry >= s->first_entry[i + 1]) i++;
+    const CompiledVolume *v = &s->set->items[i];
+    const VolumeLight *light = v->light;
+    const int *n = light->cells;
+    size_t cell = (entry - s->first_entry[i]) % cells_of(light), l = (entry - s->first_entry[i]) / cells_of(light);
+    double chance = (s->chances[entry] - (entry ? s->chances[entry - 1] : 0)) / s->lamp_total, power[3];
+    double a = random_next_unit(&shot->random), b = random_next_unit(&shot->random), c = random_next_unit(&shot->random);
+    Vec3 unit = vec3(((double)(cell % (size_t)n[0]) + a) / n[0], ((double)(cell / (size_t)n[0] % (size_t)n[1]) + b) / n[1],
+                     ((double)(cell / (size_t)n[0] / (size_t)n[1]) + c) / n[2]);
+    Vec3 point = volume_point(v, unit);
+    double density = density_at(v, unit, point);
+    if (!(density > 0) || !(chance > 0)) return;
+    LightRay way = light_ray(&s->compiled->scene->lights[l], point);
+    Vec3f color = vec3f_mul(way.color, volume_lamp(v, &shot->tracer, l, &way, unit, point));
+    double scale = VOLUME_IRRADIANCE * density * volume_of(v) / (double)cells_of(light) / chance / rays;
+    const double colors[3] = {(double)color.x, (double)color.y, (double)color.z};
+    for (int k = 0; k < 3; k++) power[k] = colors[k] * v->scattering[k] * scale;
+    if (!set_power(shot, power)) return;
+    follow(shot, (Ray){point, scatter(shot, v, vec3_negate(way.direction))}, 1);
+}
+
+/* From all around, through discs that the volumes lie behind. */
+static void shoot_sky(Shot *shot, double u, double rays) {
+    const Shooting *s = shot->shooting;
+    double z = 1 - 2 * u, turn = 2 * VTS_PI * random_next_unit(&shot->random), r = sqrt(double_max(0, 1 - z * z)), power[3];
+    Vec3 from = vec3(r * cos(turn), z, r * sin(turn)), a, b;
+    Vec3f sky = sky_radiance(s->compiled->scene, from, 0);
+    double out = s->radius * sqrt(random_next_unit(&shot->random)), around = 2 * VTS_PI * random_next_unit(&shot->random);
+    double scale = 4 * VTS_PI * VTS_PI * s->radius * s->radius / rays;
+    power[0] = (double)sky.x * scale, power[1] = (double)sky.y * scale, power[2] = (double)sky.z * scale;
+    if (!set_power(shot, power)) return;
+    vec3_frame(from, &a, &b);
+    Vec3 start = vec3_madd(vec3_madd(vec3_madd(s->middle, a, out * cos(around)), b, out * sin(around)), from, s->radius);
+    if (hierarchy_object_count(s->compiled->hierarchy) && hierarchy_occluded(s->compiled->hierarchy, &(Ray){start, from}, 0, VTS_INFINITY)) return;
+    follow(shot, (Ray){start, vec3_negate(from)}, 0);
+}
+
+static void shoot_batch(void *context, size_t batch, int worker) {
+    Shooting *s = context;
+    Shot shot = {.shooting = s, .tracer = tracer_of_surfaces(s->tracers[worker]), .bins = s->batches + batch * s->batch_size};
+    const atomic_bool *interrupted = s->compiled->options->interrupted;
+    for (uint64_t i = 0; i < s->lamp_rays && s->lamp_total > 0 && !(interrupted && *interrupted); i++) {
+        shot.random.state = random_hash(batch, i, 0x6c616d70, 0);
+        double u = ((double)(i * BATCHES + batch) + random_next_unit(&shot.random)) / (double)(s->lamp_rays * BATCHES);
+        shoot_lamp(&shot, u, (double)(s->lamp_rays * BATCHES));
+    }
+    for (uint64_t i = 0; i < s->sky_rays && !(interrupted && *interrupted); i++) {
+        shot.random.state = random_hash(batch, i, 0x736b79, 0);
+        double u = ((double)(i * BATCHES + batch) + random_next_unit(&shot.random)) / (double)(s->sky_rays * BATCHES);
+        shoot_sky(&shot, u, (double)(s->sky_rays * BATCHES));
+    }
+}
+
+/* ---- what is kept ---- */
+
+static double mean_density(const CompiledVolume *v, const int at[3]) {
+    const int *n = v->light->bins;
+    double sum = 0;
+    for (int i = 0; i < MATTER_ACROSS * MATTER_ACROSS * MATTER_ACROSS; i++) {
+        Vec3 unit = vec3((at[0] + (i % 3 + 0.5) / 3) / n[0], (at[1] + (i / 3 % 3 + 0.5) / 3) / n[1], (at[2] + (i / 9 + 0.5) / 3) / n[2]);
+        sum += density_at(v, unit, volume_point(v, unit));
+    }
+    return sum / (MATTER_ACROSS * MATTER_ACROSS * MATTER_ACROSS);
+}
+
+static void settle_volume(const Shooting *s, size_t number) {
+    const CompiledVolume *v = &s->set->items[number];
+    VolumeLight *light = v->light;
+    const int *n = light->bins;
+    double size = volume_of(v) / ((double)n[0] * n[1] * n[2]);
+    size_t bin = 0;
+    for (int z = 0; z < n[2]; z++)
+        for (int y = 0; y < n[1]; y++)
+            for (int x = 0; x < n[0]; x++, bin++) {
+                light->matter[bin] = (float)mean_density(v, (int[3]){x, y, z});
+                for (int i = 0; i < light->harmonics; i++)
+                    for (int c = 0; c < 3; c++) {
+                        double sum = 0;
+                        size_t place = bin * (size_t)light->harmonics + (size_t)i;
+                        for (size_t b = 0; b < BATCHES; b++) sum += (double)s->batches[b * s->batch_size + s->first_bin[number] + place][c];
+                        light->kept[place][c] = (float)(sum / size * v->moments[volume_harmonic_degree(i)]);
+                    }
+            }
+}
+
+static double rays_wanted(const CompiledScene *compiled, const VolumeSet *set) {
+    double rays = 0, e = compiled->max_error * 255;
+    for (size_t i = 0; i < set->count; i++) rays = double_max(rays, set->items[i].volume->rays);
+    return rays > 0 ? double_clamp(rays, 1, MOST_RAYS) : double_clamp(RAYS_AUTO / (e * e), LEAST_RAYS, 16 * RAYS_AUTO);
+}
+
+bool volumes_shoot(CompiledScene *compiled, Tracer **tracers) {
+    const VolumeSet *set = compiled->volumes;
+    Arena *scratch = &compiled->scratch;
+    ArenaMark mark = arena_mark(scratch);
+    Shooting s = {.compiled = compiled, .set = set, .tracers = tracers};
+    s.first_entry = arena_new_array(scratch, size_t, set->count + 1);
+    s.first_bin = arena_new_array(scratch, size_t, set->count);
+    for (size_t i = 0; i < set->count; i++) {
+        const VolumeLight *light = set->items[i].light;
+        s.entries += compiled->scene->light_count * cells_of(light);
+        s.first_bin[i] = s.batch_size;
+        s.batch_size += (size_t)light->bins[0] * (size_t)light->bins[1] * (size_t)light->bins[2] * (size_t)light->harmonics;
+    }
+    s.chances = arena_new_array(scratch, double, s.entries + 1);
+    s.batches = arena_push_array_(scratch, s.batch_size * BATCHES, sizeof *s.batches);
+    s.middle = vec3_lerp(set->bounds.min, set->bounds.max, 0.5);
+    s.radius = vec3_length(vec3_sub(set->bounds.max, set->bounds.min)) / 2;
+    tabulate(&s);
+    double rays = rays_wanted(compiled, set);
+    s.lamp_rays = set->orders == 1 ? 0 : (uint64_t)ceil(rays / BATCHES);
+    s.sky_rays = set->sky ? (uint64_t)ceil(rays / BATCHES) : 0;
+    bool done = pool_run(compiled->options->pool, BATCHES, shoot_batch, &s);
+    for (size_t i = 0; i < set->count; i++) settle_volume(&s, i);
+    arena_reset_to(scratch, mark);
+    return done && !(compiled->options->interrupted && *compiled->options->interrupted);
+}

@@ -2,13 +2,20 @@
 
 /* ---- values: each times 4 pi has the mean 1 ---- */
 
+/* Backwards as forwards, so that nothing cancels. */
+static double henyey_greenstein(double g, double mu) {
+    if (g < 0) return henyey_greenstein(-g, -mu);
+    double a = (1 - g) * (1 - g) + 2 * g * (1 - mu);
+    return (1 - g * g) / (a * sqrt(a));
+}
+
 static double lobe_value(const PhaseLobe *lobe, double mu) {
     double k = lobe->k, a;
     switch (lobe->kind) {
     case PHASE_ISOTROPIC: return 1;
     case PHASE_RAYLEIGH: return 0.75 * (1 + mu * mu);
     case PHASE_POWER: return (k + 1) * pow(double_clamp((1 + mu) / 2, 0, 1), k);
-    case PHASE_HENYEY_GREENSTEIN: a = (1 - k) * (1 - k) + 2 * k * (1 - mu); return (1 - k * k) / (a * sqrt(a));
+    case PHASE_HENYEY_GREENSTEIN: return henyey_greenstein(k, mu);
     case PHASE_SCHLICK: a = 1 - k * mu; return (1 - k * k) / (a * a);
     }
     return 1;
@@ -29,6 +36,7 @@ static double rayleigh_draw(double u) {
 }
 
 static double henyey_greenstein_draw(double g, double u) {
+    if (g < 0) return -henyey_greenstein_draw(-g, 1 - u);
     if (fabs(g) < 1e-4) return 2 * u - 1 + 1.5 * g * (1 - (2 * u - 1) * (2 * u - 1));
     double a = (1 - g * g) / (1 - g + 2 * g * u);
     return (1 + g * g - a * a) / (2 * g);

@@ -60,14 +60,14 @@ double lattice_mean(const Lattice *l) {
     return sum / ((double)l->size[0] * l->size[1] * l->size[2]);
 }
 
+static double between(const float *v, double x) { return (double)v[0] + x * ((double)v[1] - (double)v[0]); }
+
 /* Within a cell, also a little beside it. */
 static double cell_value(const Lattice *l, const int cell[3], Vec3 p) {
     const float *v = l->values + node_index(l, cell[0], cell[1], cell[2]);
     size_t row = (size_t)l->nodes[0], slice = row * (size_t)l->nodes[1];
     double x = p.x - cell[0], y = p.y - cell[1], z = p.z - cell[2];
-    double c00 = (double)v[0] + x * (double)(v[1] - v[0]), c10 = (double)v[row] + x * (double)(v[row + 1] - v[row]);
-    v += slice;
-    double c01 = (double)v[0] + x * (double)(v[1] - v[0]), c11 = (double)v[row] + x * (double)(v[row + 1] - v[row]);
+    double c00 = between(v, x), c10 = between(v + row, x), c01 = between(v + slice, x), c11 = between(v + slice + row, x);
     double c0 = c00 + y * (c10 - c00), c1 = c01 + y * (c11 - c01);
     return double_max(0, c0 + z * (c1 - c0));
 }

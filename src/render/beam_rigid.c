@@ -117,10 +117,22 @@ static bool copies_are_whole(const CompiledSkin *skin, const PlacedTexel *placed
     return true;
 }
 
+/* Embree takes rays into a copy's own space in floats, and ends the program where they have no room there: copies must not be so thin
+ * that lengths up to FARTHEST leave it, nor so large. */
+static const double THINNEST = 1e-7, LARGEST = 1e7, FARTHEST = 1e10;
+
+static bool has_room(const SkinCell *cell) {
+    const Vec3 *p = cell->foot.c, h = cell->height.c[0];
+    double volume = fabs(vec3_dot(vec3_cross(p[1], p[2]), h));
+    double side = fmax(vec3_length(vec3_cross(p[1], p[2])), fmax(vec3_length(vec3_cross(p[2], h)), vec3_length(vec3_cross(h, p[1]))));
+    double longest = fmax(vec3_length(p[1]), fmax(vec3_length(p[2]), vec3_length(h)));
+    return volume >= THINNEST * side && longest <= LARGEST;
+}
+
 bool skin_is_rigid(const CompiledSkin *skin) {
     TileRect rect;
     const SkinCell *first = &skin->cells[0];
-    if (!skin->cell_count || first->rim || first->side == CELL_FLAT || !cell_is_affine(first)) return false;
+    if (!skin->cell_count || first->rim || first->side == CELL_FLAT || !cell_is_affine(first) || !has_room(first)) return false;
     if (fabs(first->w_foot.c[0]) > ROUNDING || fabs(first->w_tip.c[0] - skin->top) > ROUNDING) return false;
     for (size_t i = 0; i < skin->texel_count; i++)
         if (!copies_are_whole(skin, &skin->texels[i])) return false;
@@ -288,7 +300,8 @@ static void bundle_clear(Bundle *bundle) {
 static void bundle_add(Bundle *bundle, Vec3f origin, Vec3f direction, float near, float far, uint32_t sample) {
     struct RTCRay one = {.org_x = origin.x, .org_y = origin.y, .org_z = origin.z, .dir_x = direction.x, .dir_y = direction.y, .dir_z = direction.z,
                          .tnear = near, .tfar = far};
-    if (!embree_takes(&one)) return;
+    bool near_enough = fabsf(origin.x) < (float)FARTHEST && fabsf(origin.y) < (float)FARTHEST && fabsf(origin.z) < (float)FARTHEST;
+    if (!near_enough || !embree_takes(&one)) return;
     struct RTCRay8 *r = &bundle->rays.ray;
     int i = bundle->count++;
     r->org_x[i] = origin.x, r->org_y[i] = origin.y, r->org_z[i] = origin.z;

@@ -1,6 +1,8 @@
 #include "terrain/heightmap_parts.h"
 
 enum { MOST_POSTS = 1 << 30, PROBES = 33 };
+/* A mosaic of small maps far apart would else be a lattice of mostly nothing: that of a coarser map is taken, or none. */
+static const double MOST_POSTS_IN_ALL = 0x1p33;
 
 /* A box in columns and rows. */
 typedef struct Box {
@@ -37,7 +39,8 @@ static bool all_boxes(const Heightmap *map, const Georeference *lattice, Box *al
         if (!layer_box(&map->layers[i], lattice, &box)) return false;
         *all = (Box){fmin(all->left, box.left), fmin(all->top, box.top), fmax(all->right, box.right), fmax(all->bottom, box.bottom)};
     }
-    return all->right - all->left < MOST_POSTS && all->bottom - all->top < MOST_POSTS;
+    double columns = all->right - all->left, rows = all->bottom - all->top;
+    return columns < MOST_POSTS && rows < MOST_POSTS && columns * rows < MOST_POSTS_IN_ALL;
 }
 
 /* Continues the lattice of one layer over all. */

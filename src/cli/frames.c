@@ -84,7 +84,7 @@ static void take_over(Animation *a, const VtsFilm *film) {
     if (!a->first_clock_given) a->first_clock = film->first_clock;
     if (!a->last_clock_given) a->last_clock = film->last_clock;
     if (!a->cyclic_given) a->cyclic = film->cyclic;
-    if (!a->fps) a->fps = film->fps;
+    if (a->fps == 0) a->fps = film->fps;
     a->on = a->timed = true;
 }
 

@@ -26,6 +26,6 @@ double ground_source_beyond(const GroundSource *s, double column, double row) {
 }
 
 double ground_source_height(const GroundSource *s, double column, double row) {
-    if (!(column >= 0 && row >= 0 && column <= s->columns - 1 && row <= s->rows - 1)) return NAN;
+    if (!(column >= 0 && row >= 0 && column <= s->columns - 1 && row <= s->rows - 1)) return (double)NAN;
     return ground_source_beyond(s, column, row);
 }

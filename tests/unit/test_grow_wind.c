@@ -27,11 +27,12 @@ static void gusts_follow_the_formula(void **state) {
         w.turbulence_amplitude = 0;
         Vec3 p = some_place(i, 20), d = w.direction;
         double t = draw(i, 30, 0, 60);
-        long double s = (long double)p.x * d.x + (long double)p.y * d.y + (long double)p.z * d.z - (long double)w.speed * t;
-        long double wave = (1 + sinl(2 * 3.14159265358979323846264338327950288L * s / w.gust_wavelength)) / 2;
-        long double along = w.strength * (1 + w.gust_amplitude * (2 * powl(wave, w.gust_sharpness) - 1));
+        const long double x = (long double)p.x, y = (long double)p.y, z = (long double)p.z, dx = (long double)d.x, dy = (long double)d.y, dz = (long double)d.z;
+        long double s = x * dx + y * dy + z * dz - (long double)w.speed * (long double)t;
+        long double wave = (1 + sinl(2 * 3.14159265358979323846264338327950288L * s / (long double)w.gust_wavelength)) / 2;
+        long double along = (long double)w.strength * (1 + (long double)w.gust_amplitude * (2 * powl(wave, (long double)w.gust_sharpness) - 1));
         Vec3 f = wind_force(&w, p, t);
-        long double most = fabsl(f.x - along * d.x) + fabsl(f.y - along * d.y) + fabsl(f.z - along * d.z);
+        long double most = fabsl((long double)f.x - along * dx) + fabsl((long double)f.y - along * dy) + fabsl((long double)f.z - along * dz);
         assert_true(most < 1e-9L); /* s/λ up to 1e4 turns */
     }
 }

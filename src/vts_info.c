@@ -172,29 +172,15 @@ static VtsStatus info_geoid(Info *info, const char *path, StrBuf *error) {
 
 /* ---- pictures ---- */
 
-static const char *sample_name(ImageSample sample) {
-    static const char *const names[] = {"",
-                                        "8-bit unsigned",
-                                        "8-bit signed",
-                                        "16-bit unsigned",
-                                        "16-bit signed",
-                                        "32-bit unsigned",
-                                        "32-bit signed",
-                                        "16-bit float",
-                                        "32-bit float",
-                                        "64-bit float"};
-    return names[sample];
-}
-
 static void tell_picture(Info *info, const char *path, const OiioHeader *header, const Georeference *place, const MapSurvey *measured) {
     const char *dot = strrchr(path, '.');
     begin(info, path, "picture", dot ? dot + 1 : "");
     say(info, "pixels", "%d x %d, %d channel%s, %s", header->width, header->height, header->channels, header->channels == 1 ? "" : "s",
-        sample_name(header->sample));
+        image_sample_name(header->sample));
     give_number(info, "width", header->width);
     give_number(info, "height", header->height);
     give_number(info, "channels", header->channels);
-    give_text(info, "samples", sample_name(header->sample));
+    give_text(info, "samples", image_sample_name(header->sample));
     StrBuf names = {0};
     for (int i = 0; i < header->channels && i < 64; i++) strbuf_addf(&names, "%s%s", i ? ", " : "", header->names[i]);
     say(info, "channels", "%s", names.data ? names.data : "");

@@ -18,6 +18,21 @@ typedef enum ImageSample {
     IMAGE_SAMPLE_DOUBLE
 } ImageSample;
 
+/* In words: "16-bit signed"; "" for AUTO. */
+static inline const char *image_sample_name(ImageSample sample) {
+    static const char *const names[] = {"",
+                                        "8-bit unsigned",
+                                        "8-bit signed",
+                                        "16-bit unsigned",
+                                        "16-bit signed",
+                                        "32-bit unsigned",
+                                        "32-bit signed",
+                                        "16-bit float",
+                                        "32-bit float",
+                                        "64-bit float"};
+    return names[sample];
+}
+
 /* A piece of metadata: a text or a number. */
 typedef struct ImageAttribute {
     const char *name;

@@ -144,3 +144,15 @@ unsigned char *whole_file_read(const char *path, size_t *size, StrBuf *error) {
     fail(error, "read", path, number);
     return NULL;
 }
+
+const unsigned char *whole_file_read_into(Arena *arena, const char *path, size_t most, size_t *size) {
+    struct stat info;
+    if (stat(path, &info) != 0 || !S_ISREG(info.st_mode) || (uint64_t)info.st_size > most) return NULL;
+    *size = (size_t)info.st_size;
+    unsigned char *bytes = arena_push(arena, *size);
+    FILE *file = fopen(path, "rb");
+    if (!file) return NULL;
+    bool whole = fread(bytes, 1, *size, file) == *size;
+    fclose(file);
+    return whole ? bytes : NULL;
+}

@@ -2,6 +2,7 @@
 #ifndef VTS_IMAGE_WHOLE_FILE_H
 #define VTS_IMAGE_WHOLE_FILE_H
 
+#include "base/arena.h"
 #include "base/strbuf.h"
 
 /* Puts a file with this content in the place of `path`: written under a temporary name in the same folder, renamed when
@@ -14,5 +15,8 @@ bool whole_file_can_replace(const char *path, StrBuf *error);
 
 /* The content of a file in memory that the caller frees; NULL on failure. */
 unsigned char *whole_file_read(const char *path, size_t *size, StrBuf *error);
+/* The same in an arena, of ordinary files of at most `most` bytes. Allocated before the file is opened: running out of memory leaves
+ * none open. */
+const unsigned char *whole_file_read_into(Arena *arena, const char *path, size_t most, size_t *size);
 
 #endif

@@ -1,11 +1,13 @@
 #include "terrain/geoid.h"
 
+#include "image/whole_file.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-enum { HEADER = 40, PATH_SIZE = 4096 };
+enum { HEADER = 40, PATH_SIZE = 4096, MOST_BYTES = 1 << 28 };
 
 static uint64_t big_endian(const unsigned char *bytes, int count) {
     uint64_t value = 0;
@@ -30,20 +32,6 @@ static float float_at(const unsigned char *bytes) {
 static bool refuse(StrBuf *error, const char *path, const char *why) {
     strbuf_addf(error, "'%s': %s", path, why);
     return false;
-}
-
-/* The whole file, in the arena; allocated before it is opened, so that running out of memory leaves no file open. */
-static const unsigned char *read_whole(const char *path, Arena *arena, size_t *size) {
-    enum { MOST = 1 << 28 };
-    struct stat info;
-    if (stat(path, &info) != 0 || !S_ISREG(info.st_mode) || info.st_size > MOST) return NULL;
-    *size = (size_t)info.st_size;
-    unsigned char *bytes = arena_push(arena, *size);
-    FILE *file = fopen(path, "rb");
-    if (!file) return NULL;
-    bool whole = fread(bytes, 1, *size, file) == *size;
-    fclose(file);
-    return whole ? bytes : NULL;
 }
 
 static bool decode(Geoid *geoid, const char *path, const unsigned char *bytes, size_t size, Arena *arena, StrBuf *error) {
@@ -99,7 +87,7 @@ bool geoid_load(Geoid *geoid, const char *name, const char *const *folders, size
         strbuf_addf(error, "the geoid '%s' is not found: Debian has 'egm96_15' in its package proj-data; other .gtx files are named by their path", name);
         return false;
     }
-    const unsigned char *bytes = read_whole(path, arena, &size);
+    const unsigned char *bytes = whole_file_read_into(arena, path, MOST_BYTES, &size);
     return bytes ? decode(geoid, path, bytes, size, arena, error) : refuse(error, path, "it cannot be read");
 }
 

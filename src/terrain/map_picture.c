@@ -17,17 +17,6 @@ typedef struct PictureReader {
     float *band;
 } PictureReader;
 
-static const char *const SAMPLES[] = {"",
-                                      "8-bit unsigned",
-                                      "8-bit signed",
-                                      "16-bit unsigned",
-                                      "16-bit signed",
-                                      "32-bit unsigned",
-                                      "32-bit signed",
-                                      "16-bit float",
-                                      "32-bit float",
-                                      "64-bit float"};
-
 static void picture_close(MapFile *file) {
     PictureReader *picture = file->state;
     if (picture->reader) picture->shim->close(picture->reader);
@@ -70,7 +59,7 @@ static bool open_picture(MapFile *file, PictureReader *picture, StrBuf *error) {
     picture->row_step = header.row_step;
     file->rows = picture->rows = header.height;
     file->columns = picture->columns = header.width;
-    file->samples = SAMPLES[header.sample];
+    file->samples = image_sample_name(header.sample);
     file->small_samples = header.sample == IMAGE_SAMPLE_I16;
     return true;
 }

@@ -1,8 +1,8 @@
 #include "volume/grid_file.h"
 
-#include <stdio.h>
+#include "image/whole_file.h"
+
 #include <string.h>
-#include <sys/stat.h>
 
 enum { DF3_HEADER = 6 };
 
@@ -80,22 +80,9 @@ bool grid_decode_raw(const unsigned char *bytes, size_t size, const GridRaw *raw
     return true;
 }
 
-/* The file in the arena, allocated before it is opened: running out of memory leaves no file open. */
-static const unsigned char *read_file(Arena *arena, const char *path, size_t *size) {
-    struct stat info;
-    if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) return NULL;
-    *size = (size_t)info.st_size;
-    unsigned char *bytes = arena_push(arena, *size);
-    FILE *file = fopen(path, "rb");
-    if (!file) return NULL;
-    bool whole = fread(bytes, 1, *size, file) == *size;
-    fclose(file);
-    return whole ? bytes : NULL;
-}
-
 bool grid_load(const char *path, const GridRaw *raw, Arena *arena, DensityGrid *out, StrBuf *error) {
     size_t size = 0;
-    const unsigned char *bytes = read_file(arena, path, &size);
+    const unsigned char *bytes = whole_file_read_into(arena, path, SIZE_MAX, &size);
     if (!bytes) return refuse(error, "it cannot be read");
     return raw ? grid_decode_raw(bytes, size, raw, arena, out, error) : grid_decode_df3(bytes, size, arena, out, error);
 }

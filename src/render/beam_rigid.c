@@ -9,6 +9,14 @@
 enum { MOST_RIGID_COPIES = 1 << 18, WIDE = 8, KEPT_FACETS = 1024 };
 /* What is affine but for rounding, in parts of the cell. */
 static const double ROUNDING = 1e-7;
+/* A tile that ends no farther than this before or behind the surface's border, in tiles, ends with it. */
+static const double TILE_HAIR = 1e-6;
+
+/* A surface in texture space, and the tiles that it touches: [u0, u1) × [v0, v1). */
+typedef struct TileRect {
+    double lo[2], hi[2];
+    int64_t u0, u1, v0, v1;
+} TileRect;
 
 /* A copy: box coordinates of its texel → (a, b, w) of the cell. */
 typedef struct RigidCopy {
@@ -17,6 +25,8 @@ typedef struct RigidCopy {
     const PlacedTexel *placed;
     TexelCopy copy;
     double a_x, a_z, a_0, b_x, b_z, b_0, w_y, w_0;
+    double u_x, u_z, u_0, v_x, v_z, v_0; /* and → (u, v) */
+    const TileRect *cut;                 /* the surface, if it ends within the copy; else NULL */
 } RigidCopy;
 
 /* A texel's triangles; of each, its cluster's number times CLUSTER_TRIANGLES, and its own there. */
@@ -24,6 +34,7 @@ typedef struct RigidTexel {
     const BeamTexel *beam;
     RTCScene scene;
     const uint32_t *facets;
+    const RigidCopies *copies;
     struct RigidTexel *next;
 } RigidTexel;
 
@@ -84,12 +95,8 @@ static double tiles_in_cell(const SkinCell *cell) {
     return fabs(twice) / 2;
 }
 
-/* The tiles of a surface that is a rectangle of whole tiles. */
-typedef struct TileRect {
-    int64_t u0, u1, v0, v1;
-} TileRect;
-
-static bool whole_tiles(const CompiledSkin *skin, TileRect *rect) {
+/* False of a surface that is no rectangle of texture space. */
+static bool tile_rect(const CompiledSkin *skin, TileRect *rect) {
     double lo[2] = {VTS_INFINITY, VTS_INFINITY}, hi[2] = {-VTS_INFINITY, -VTS_INFINITY}, area = 0;
     for (size_t i = 0; i < skin->cell_count; i++) {
         const SkinCell *cell = &skin->cells[i];
@@ -103,15 +110,16 @@ static bool whole_tiles(const CompiledSkin *skin, TileRect *rect) {
     }
     double all = (hi[0] - lo[0]) * (hi[1] - lo[1]);
     if (!(all <= MOST_RIGID_COPIES) || fabs(area - all) > 1e-6 * all) return false;
-    for (int k = 0; k < 2; k++)
-        if (!(fabs(lo[k]) < 1e9) || fabs(lo[k] - round(lo[k])) > 1e-6 || fabs(hi[k] - round(hi[k])) > 1e-6) return false;
-    *rect = (TileRect){(int64_t)round(lo[0]), (int64_t)round(hi[0]), (int64_t)round(lo[1]), (int64_t)round(hi[1])};
+    if (!(fabs(lo[0]) < 1e9 && fabs(lo[1]) < 1e9)) return false;
+    *rect = (TileRect){.lo = {lo[0], lo[1]}, .hi = {hi[0], hi[1]},
+                       .u0 = (int64_t)floor(lo[0] + TILE_HAIR), .u1 = (int64_t)ceil(hi[0] - TILE_HAIR),
+                       .v0 = (int64_t)floor(lo[1] + TILE_HAIR), .v1 = (int64_t)ceil(hi[1] - TILE_HAIR)};
     return true;
 }
 
-/* Whether its copies are whole: none ends at the surface's border, or at the layer's foot or top. */
+/* Whether none of its copies ends at the layer's foot or top, or within the surface, or where the tile_rect() would not tell. */
 static bool copies_are_whole(const CompiledSkin *skin, const PlacedTexel *placed) {
-    if (placed->shift_u > 0 || placed->shift_v > 0 || (placed->overhang > 0 && !skin->beyond)) return false;
+    if (placed->overhang > 0 && !skin->beyond) return false;
     for (size_t i = 0; i < placed->family_size; i++)
         if (placed->family[i]->def->cyclic & TEXEL_CYCLIC_Y) return false;
     return true;
@@ -138,7 +146,7 @@ bool skin_is_rigid(const CompiledSkin *skin) {
         if (!copies_are_whole(skin, &skin->texels[i])) return false;
     for (size_t i = 1; i < skin->cell_count; i++)
         if (!goes_on(first, &skin->cells[i])) return false;
-    return whole_tiles(skin, &rect);
+    return tile_rect(skin, &rect);
 }
 
 /* ---- building ---- */
@@ -167,6 +175,35 @@ static void fill_texel(const BeamTexel *beam, float *vertices, unsigned *indices
     }
 }
 
+/* Whether the surface goes on where a ray meets a triangle of a copy that it ends in. */
+static bool is_on_surface(const RigidTexel *texel, const RigidCopy *copy, unsigned triangle, double s, double t) {
+    uint32_t number = texel->facets[triangle];
+    const TexelCluster *cluster = &texel->beam->clusters[number / CLUSTER_TRIANGLES];
+    const uint8_t *v = cluster->triangles[number % CLUSTER_TRIANGLES];
+    double x = (1 - s - t) * (double)cluster->x[v[0]] + s * (double)cluster->x[v[1]] + t * (double)cluster->x[v[2]];
+    double z = (1 - s - t) * (double)cluster->z[v[0]] + s * (double)cluster->z[v[1]] + t * (double)cluster->z[v[2]];
+    double at[2] = {copy->u_x * x + copy->u_z * z + copy->u_0, copy->v_x * x + copy->v_z * z + copy->v_0};
+    for (int k = 0; k < 2; k++)
+        if (at[k] < copy->cut->lo[k] || at[k] > copy->cut->hi[k]) return false;
+    return true;
+}
+
+/* The fields of RTCHitN: arrays of N, one after the other. Its accessors are C++. */
+enum { HIT_U = 3, HIT_V = 4, HIT_TRIANGLE = 5, HIT_COPY = 7 };
+
+/* Of Embree: takes back hits beyond the border. */
+static void leave_cut_off(const struct RTCFilterFunctionNArguments *args) {
+    const RigidTexel *texel = args->geometryUserPtr;
+    const float *reals = (const float *)(const void *)args->hit;
+    const unsigned *numbers = (const unsigned *)(const void *)args->hit;
+    for (unsigned i = 0; i < args->N; i++) {
+        if (args->valid[i] != -1) continue;
+        const RigidCopy *copy = &texel->copies->items[numbers[HIT_COPY * args->N + i]];
+        double s = (double)reals[HIT_U * args->N + i], t = (double)reals[HIT_V * args->N + i];
+        if (copy->cut && !is_on_surface(texel, copy, numbers[HIT_TRIANGLE * args->N + i], s, t)) args->valid[i] = 0;
+    }
+}
+
 static RigidTexel *texel_of(Building *b, const BeamTexel *beam) {
     for (RigidTexel *t = b->out->texels; t; t = t->next)
         if (t->beam == beam) return t;
@@ -174,12 +211,15 @@ static RigidTexel *texel_of(Building *b, const BeamTexel *beam) {
     uint32_t *facets = arena_new_array(b->compiled->arena, uint32_t, beam->triangle_count);
     size_t vertices = 0;
     for (size_t c = 0; c < beam->cluster_count; c++) vertices += (size_t)beam->clusters[c].vertex_count;
-    *texel = (RigidTexel){beam, rtcNewScene(b->device), facets, b->out->texels};
+    *texel = (RigidTexel){beam, rtcNewScene(b->device), facets, b->out, b->out->texels};
     b->out->texels = texel;
     RTCGeometry geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices);
     unsigned *t = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), beam->triangle_count);
     if (v && t) fill_texel(beam, v, t, facets);
+    rtcSetGeometryUserData(geometry, texel);
+    rtcSetGeometryIntersectFilterFunction(geometry, leave_cut_off);
+    rtcSetGeometryOccludedFilterFunction(geometry, leave_cut_off);
     rtcSetSceneFlags(texel->scene, RTC_SCENE_FLAG_ROBUST);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(texel->scene, geometry);
@@ -198,6 +238,8 @@ static bool place_copy(RigidCopy *r) {
     if (!place_in_cell(r->cell, u_0, v_0, &a0, &b0)) return false;
     if (!place_in_cell(r->cell, u_0 + u_x, v_0 + v_x, &ax, &bx) || !place_in_cell(r->cell, u_0 + u_z, v_0 + v_z, &az, &bz)) return false;
     double foot = r->cell->w_foot.c[0], per = 1 / (r->cell->w_tip.c[0] - foot);
+    r->u_x = u_x, r->u_z = u_z, r->u_0 = u_0;
+    r->v_x = v_x, r->v_z = v_z, r->v_0 = v_0;
     r->a_0 = a0, r->a_x = ax - a0, r->a_z = az - a0;
     r->b_0 = b0, r->b_x = bx - b0, r->b_z = bz - b0;
     r->w_y = per / c->inverse_scale, r->w_0 = -foot * per;
@@ -226,21 +268,40 @@ static void add_copy(Building *b, const RigidCopy *r) {
     *list_push(b->compiled->arena, &b->copies) = *r;
 }
 
+/* Whether the surface has a part of the tile; *cut: not all of it. */
+static bool meets_tile(const TileRect *rect, double u, double v, bool *cut) {
+    const double from[2] = {u, v};
+    *cut = false;
+    for (int k = 0; k < 2; k++) {
+        if (from[k] + 1 <= rect->lo[k] + TILE_HAIR || from[k] >= rect->hi[k] - TILE_HAIR) return false;
+        *cut |= from[k] < rect->lo[k] - TILE_HAIR || from[k] + 1 > rect->hi[k] + TILE_HAIR;
+    }
+    return true;
+}
+
+/* A copy that may leave its tile stands, as a whole, where the middle of its tile does (skin_rim.h); others end with the surface. */
+static void add_texel(Building *b, const CompiledSkin *skin, const PlacedTexel *placed, const TileRect *rect) {
+    int64_t u0 = rect->u0 - (placed->shift_u > 0), v0 = rect->v0 - (placed->shift_v > 0);
+    for (int64_t iu = u0; iu < rect->u1; iu++)
+        for (int64_t iv = v0; iv < rect->v1; iv++) {
+            bool cut;
+            RigidCopy r = {.skin = skin, .cell = &skin->cells[0], .placed = placed};
+            if (!meets_tile(rect, (double)iu + placed->shift_u, (double)iv + placed->shift_v, &cut)) continue;
+            if (cut && !(placed->overhang > 0)) r.cut = rect;
+            if (skin_copy_of(skin, r.cell, placed, iu, iv, &r.copy) && r.copy.texel->beam->triangle_count && place_copy(&r)) add_copy(b, &r);
+        }
+}
+
 static void add_skin(Building *b, const CompiledSkin *skin) {
-    TileRect rect;
-    if (!whole_tiles(skin, &rect)) return;
-    for (size_t i = 0; i < skin->texel_count; i++)
-        for (int64_t iu = rect.u0; iu < rect.u1; iu++)
-            for (int64_t iv = rect.v0; iv < rect.v1; iv++) {
-                RigidCopy r = {.skin = skin, .cell = &skin->cells[0], .placed = &skin->texels[i]};
-                if (skin_copy_of(skin, r.cell, r.placed, iu, iv, &r.copy) && r.copy.texel->beam->triangle_count && place_copy(&r)) add_copy(b, &r);
-            }
+    TileRect *rect = arena_new(b->compiled->arena, TileRect);
+    if (!tile_rect(skin, rect)) return;
+    for (size_t i = 0; i < skin->texel_count; i++) add_texel(b, skin, &skin->texels[i], rect);
     b->out->bounds = box3_union(b->out->bounds, skin->bounds);
 }
 
 static size_t tiles_of(const CompiledSkin *skin) {
     TileRect rect;
-    return whole_tiles(skin, &rect) ? (size_t)((rect.u1 - rect.u0) * (rect.v1 - rect.v0)) * skin->texel_count : 0;
+    return tile_rect(skin, &rect) ? (size_t)((rect.u1 - rect.u0 + 1) * (rect.v1 - rect.v0 + 1)) * skin->texel_count : 0;
 }
 
 RigidCopies *rigid_copies_build(CompiledScene *compiled) {

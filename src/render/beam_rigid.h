@@ -2,7 +2,8 @@
  *
  * Where a skin is one affine map — a texel placed as an object, a flat field — its copies are rigid: one hierarchy over the texel's triangles serves all of them,
  * and a ray costs about the logarithm of what there is, where a beam maps every triangle that it meets. So samples of tiles, and what lies between them and
- * a light, ask Embree's instances; what they find is the same facets that beams draw. */
+ * a light, ask Embree's instances; what they find is the same facets that beams draw. Where a copy reaches over the border of the surface, hits beyond it are taken
+ * back. */
 #ifndef VTS_RENDER_BEAM_RIGID_H
 #define VTS_RENDER_BEAM_RIGID_H
 
@@ -10,7 +11,7 @@
 
 typedef struct RigidCopies RigidCopies;
 
-/* Whether all copies of the skin are whole and rigid: to be known before its texels' triangles are. */
+/* Whether all copies of the skin are rigid, and end at most with the surface: to be known before its texels' triangles are. */
 bool skin_is_rigid(const CompiledSkin *skin);
 /* Of all skins that are so and are drawn by beams, which from then on draw none of them. NULL if there are none. The copies live in compiled->arena, the
  * rest until rigid_copies_destroy(). */

@@ -27,7 +27,9 @@ static void fields(void **state) {
         {"orthographic", TREE FIELD("0", "0", "0") "camera { orthographic location <2, 4, -6> look_at 0 right 6*x up 4.5*y } skin { surface { Ground } texel { Tree } mapping { repeat <5, 5> height 1 } }", .04, .01, .04},
         {"far from the origin", TREE FIELD("1e5", "3e4", "-2e5") "Look(<1e5 + 1, 3e4 + 2, -2e5 - 6>, <1e5, 3e4, -2e5>, 45) skin { surface { Ground } texel { Tree } mapping { repeat <5, 5> height 1 } }", .04, .01, .04},
         {"cyclic, a field of patches", FIELD("0", "0", "0") "Look(<1, 2, -6>, <0, 0, 0>, 45) skin { surface { Ground } texel { Leaves(30, 0.12) } mapping { repeat <6, 6> height 0.8 } }", .05, .02, .04},
-        {"of half tiles: not whole", TREE FIELD("0", "0", "0") "Look(<1, 2, -6>, <0, 0, 0>, 45) skin { surface { Ground } texel { Tree } mapping { repeat <4.5, 3.3> height 1 } }", .04, .01, .04},
+        {"of half tiles: cut at the border", TREE FIELD("0", "0", "0") "Look(<1, 2, -6>, <0, 0, 0>, 45) skin { surface { Ground } texel { Tree } mapping { repeat <4.5, 3.3> height 1 } }", .04, .01, .04},
+        {"cyclic, of half tiles, in half light", FIELD("0", "0", "0") "Look(<1, 2, -6>, <0, 0, 0>, 45) skin { surface { Ground } texel { Leaves(30, 0.12) } mapping { repeat <4.6, 5.3> height 0.8 } }", .05, .02, .04},
+        {"wang, seen along its border", FIELD("0", "0", "0") "Look(<-3, 2, -6>, <-2.5, 0, 0>, 45) skin { surface { Ground } texel { choose Leaves(30, 0.12), Leaves(20, 0.12) } tiling wang mapping { repeat <5, 5> height 0.8 } }", .05, .02, .04},
         {"the upper half of them alone", TREE FIELD("0", "0", "0") "Look(<1, 2, -6>, <0, 0, 0>, 45) skin { surface { Ground } texel { Tree } mapping { repeat <4, 4> height 1 w 0.5, 1 } }", .04, .01, .04},
     };
     try_from(trials, VTS_ARRAY_COUNT(trials), 0);

@@ -316,6 +316,7 @@ static void describe(VtsSession *session, const char *scene_path) {
     image_set_text(picture, "Software", "vts " VTS_VERSION);
     image_set_text(picture, "vts:scene", slash ? slash + 1 : scene_path);
     image_set_text(picture, "vts:version", VTS_VERSION);
+    if (session_is_film(o)) image_set_number(picture, "vts:frame", o->frame);
     image_set_number(picture, "vts:clock", o->clock);
     image_set_number(picture, "vts:exposure", o->exposure);
     for (size_t i = 0; i < NAMED_KNOB_COUNT; i++) {
@@ -416,6 +417,7 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
     RenderStats stats;
     if ((status = session_draw(session, exact, &stats)) != VTS_OK) return status;
     double rendered = stopwatch_wall();
+    session_mark_part(session, exact);
     if ((status = session_save_picture(session, scene_path, output_path)) != VTS_OK) return status;
     double written = stopwatch_wall();
     FrameReport report = {.frame = o->frame, .clock = o->clock, .output = output_path, .wall_s = written - session->started_wall,

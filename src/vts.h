@@ -155,6 +155,11 @@ typedef struct VtsDifference {
 VTS_API VtsStatus vts_compare(const char *reference_path, const char *test_path, const char *map_path, VtsDifference *out,
                               char *error, size_t error_size);
 
+/* Joins pictures that were drawn with options.region, of one scene, frame and size, into the one that would have been drawn without: the
+ * same pixels in all channels. Parts may overlap. VTS_ERROR_USAGE when parts are missing or belong to another picture; VTS_ERROR_FILE when
+ * a file cannot be read or written. When it fails, `error` (if not NULL) holds one line of text. */
+VTS_API VtsStatus vts_stitch(const char *const *part_paths, size_t count, const char *output_path, char *error, size_t error_size);
+
 /* What renderings are measured by: a picture in memory, and how noisy it is. */
 typedef struct VtsReference VtsReference;
 

@@ -56,6 +56,8 @@ VtsStatus session_evaluate(VtsSession *session, const char *path, EvalMode mode)
 VtsStatus session_compile(VtsSession *session, bool exact, int texel_resolution);
 /* Draws session->compiled into session->picture. */
 VtsStatus session_draw(VtsSession *session, bool exact, RenderStats *stats);
+/* vts_stitch.c: the picture says which part it is, if it is one. */
+void session_mark_part(VtsSession *session, bool exact);
 VtsStatus session_save_picture(VtsSession *session, const char *scene_path, const char *output_path);
 /* VTS_ERROR_FILE, reported, when the output is a file that the scene was read from. */
 VtsStatus session_spare_sources(VtsSession *session, const char *output_path);

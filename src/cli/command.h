@@ -14,6 +14,8 @@ int command_compare(Settings *settings);
 int command_reference(Settings *settings);
 int command_chart(Settings *settings);
 int command_info(Settings *settings);
+int command_stitch(Settings *settings);
+int command_farm(Settings *settings);
 
 /* Whether all of these comma-separated metrics are known to compare. */
 bool compare_metrics_valid(const char *names);

@@ -32,7 +32,7 @@ static const Command COMMANDS[] = {
      "charts speed against accuracy: renders with several settings and measures each against the reference", COMMAND_CHART, command_chart},
     {"info", "vts info", "FILE… [options]", "tells what is in maps, texels, volumes and pictures", COMMAND_INFO, command_info},
     {"farm", NULL, NULL, NULL, 0, NULL},
-    {"stitch", NULL, NULL, NULL, 0, NULL},
+    {"stitch", "vts stitch", "PART… -o WHOLE [options]", "joins the parts of a picture that were drawn with --region", COMMAND_STITCH, command_stitch},
 };
 enum { COMMAND_COUNT = sizeof COMMANDS / sizeof *COMMANDS };
 

@@ -173,6 +173,9 @@ static const char *apply_keep(Settings *s, const char *value) {
 static const char *apply_repeat(Settings *s, const char *value) {
     return option_int(value, 1, 100, &s->repeats) ? NULL : "a number from 1 to 100";
 }
+static const char *apply_wait(Settings *s, const char *value) {
+    return option_double(value, &s->wait) && s->wait >= 0 ? NULL : "a number of seconds";
+}
 static const char *apply_save(Settings *s, const char *value) {
     s->save = value;
     return *value ? NULL : "a file name";
@@ -194,6 +197,7 @@ static const Option OPTIONS[] = {
      "name with .png"},
     {"output", 'o', "F", COMMAND_CHART, apply_output,
      "the plot, .svg, .png or .pdf, and beside it the numbers as .csv; default: the scene's name with .svg"},
+    {"output", 'o', "F", COMMAND_STITCH, apply_output, "the whole; its suffix names the format"},
     {"size", 's', "WxH", COMMAND_ALL, apply_size, "size of the picture in pixels; default 768x576"},
     {"threads", 't', "N", COMMAND_ALL, apply_threads, "workers; default 0: all processors"},
     {"clock", 0, "V", COMMAND_ALL, apply_clock, "value of `clock` in the scene"},
@@ -232,10 +236,12 @@ static const Option OPTIONS[] = {
     {"dump", 0, "tokens|ast|scene|tape|compiled", COMMAND_RUN, apply_dump,
      "prints one stage of the program instead"},
     {"verbose", 'v', NULL, COMMAND_ALL, apply_verbose, "says more about what is done"},
-    {"help", 'h', NULL, COMMAND_ALL | COMMAND_COMPARE | COMMAND_INFO, apply_help, "this text"},
+    {"wait", 0, "S", COMMAND_STITCH, apply_wait, "waits for parts that are not there yet, until none has come for so many seconds; default 0"},
+    {"help", 'h', NULL, COMMAND_ALL | COMMAND_COMPARE | COMMAND_INFO | COMMAND_STITCH, apply_help, "this text"},
     {"frames", 'f', "A-B[xSTEP],...", COMMAND_ALL, apply_frames, "frames of the scene's animation; default: all, of other commands than render the first"},
+    {"frames", 'f', "A-B[xSTEP],...", COMMAND_STITCH, apply_frames, "of these frames, whose numbers replace #### in all names"},
     {"fps", 0, "N", COMMAND_ALL, apply_fps, "frames a second; default: as the scene's animation says, else 24"},
-    {"resume", 0, NULL, COMMAND_RENDER | COMMAND_REFERENCE, apply_resume, "leaves out the pictures that are there: goes on with a film that was stopped"},
+    {"resume", 0, NULL, COMMAND_RENDER | COMMAND_REFERENCE | COMMAND_STITCH, apply_resume, "leaves out the pictures that are there: goes on with a film that was stopped"},
     {"aov", 0, "NAMES", COMMAND_RENDER | COMMAND_REFERENCE, apply_aov,
      "further channels of an EXR: some of depth,normal,albedo,alpha,position,object,uv,texel_level,samples"},
     {"preview", 0, "HOST:PORT", COMMAND_RENDER | COMMAND_REFERENCE, apply_preview,

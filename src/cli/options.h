@@ -16,6 +16,8 @@ enum {
     COMMAND_TEXEL = 32,
     COMMAND_CHART = 64,
     COMMAND_INFO = 128,
+    COMMAND_STITCH = 256,
+    COMMAND_FARM = 512, /* beside COMMAND_RENDER, whose options it hands on: these are its own */
     COMMAND_ALL = 119, /* that take scenes */
     COMMAND_DRAW = 49 /* that make pictures of them */
 };

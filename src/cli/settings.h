@@ -59,6 +59,7 @@ typedef struct Settings {
     ProgressStyle progress;
     bool verbose;
     bool help;
+    double wait; /* of stitch: seconds for which the next part may be missing; 0: none */
     bool resume; /* pictures that are there are not drawn again */
     bool dumps; /* `dump` was given */
     VtsDump dump;

@@ -44,7 +44,9 @@ typedef struct Image {
     ImageAttribute *attributes;
     size_t attribute_count, attribute_capacity;
     ImageSample stored_as; /* what the file it was loaded from holds; IMAGE_SAMPLE_FLOAT for others */
+    ImageSample colour_stored_as; /* the same of its colours alone: EXR may store further channels otherwise */
     bool stored_linear;    /* its integers are light, not sRGB codes */
+    bool coded; /* the pixels are integers as the file has them: image_save() writes them so in PNG, TIFF, PPM and PGM of that format's channels */
     Arena texts;           /* names and attributes */
     MemoryBudget *budget;  /* that the pixels were taken from; may be NULL */
 } Image;

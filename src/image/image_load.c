@@ -71,7 +71,9 @@ static bool read_opened(Image *image, const OiioShim *shim, OiioReader *reader, 
         return fail(error, path, why);
     }
     image->stored_as = header->sample;
+    image->colour_stored_as = header->colour_sample;
     image->stored_linear = header->linear;
+    image->coded = reading == IMAGE_AS_STORED && full_scale(header->sample) > 0;
     for (size_t i = 0; i < header->attribute_count; i++) {
         const ImageAttribute *attribute = &header->attributes[i];
         if (attribute->text)

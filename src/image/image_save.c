@@ -1,5 +1,6 @@
 #include "image/image.h"
 
+#include "image/image_part.h"
 #include "image/oiio_module.h"
 #include "image/pnm.h"
 #include "image/srgb.h"
@@ -78,6 +79,11 @@ static uint16_t quantize(double value, int largest) {
 static void encode_row(const Image *image, const Selection *selection, int y, int largest, uint16_t *codes) {
     for (int x = 0; x < image->width; x++) {
         const float *pixel = image_pixel(image, x, y);
+        if (image->coded) {
+            for (int c = 0; c < selection->colours; c++) *codes++ = (uint16_t)pixel[selection->index[c]];
+            if (selection->alpha >= 0) *codes++ = (uint16_t)pixel[selection->alpha];
+            continue;
+        }
         double alpha = selection->alpha >= 0 ? (double)pixel[selection->alpha] : 1;
         double factor = alpha > 0 ? 1 / alpha : 1;
         for (int c = 0; c < selection->colours; c++)
@@ -103,7 +109,7 @@ static bool save_pfm(const Image *image, const char *path, StrBuf *error) {
     float *samples = malloc(row * sizeof *samples);
     if (!samples) return fail(error, path, "not enough memory");
     StrBuf file = {0};
-    pnm_add_pfm_header(&file, image->width, image->height, selection.colours);
+    pnm_add_pfm_header(&file, image, selection.colours);
     for (int y = image->height - 1; y >= 0; y--) {
         select_row(image, &selection, y, samples);
         pnm_add_floats(&file, samples, row);
@@ -122,7 +128,7 @@ static bool save_pnm(const Image *image, const char *path, bool colour, bool wid
     if (!codes) return fail(error, path, "not enough memory");
     int largest = wide ? 0xFFFF : 0xFF;
     StrBuf file = {0};
-    pnm_add_header(&file, image->width, image->height, selection.colours, largest);
+    pnm_add_header(&file, image, selection.colours, largest);
     for (int y = 0; y < image->height; y++) {
         encode_row(image, &selection, y, largest, codes);
         pnm_add_codes(&file, codes, row, wide);
@@ -138,7 +144,9 @@ static bool save_pgm(const Image *image, const char *path, bool wide, StrBuf *er
     Selection selection = select_channels(image, false);
     if (selection.colours == 1) return save_pnm(image, path, false, wide, error);
     Image grey;
+    ImagePart part;
     if (!image_init(&grey, image->width, image->height, 1, NULL, NULL, error)) return false;
+    if (image_part_of(image, &part)) image_part_set(&grey, &part);
     for (int y = 0; y < image->height; y++)
         for (int x = 0; x < image->width; x++) {
             const float *pixel = image_pixel(image, x, y);
@@ -189,10 +197,13 @@ static bool save_exr(const Image *image, const char *path, bool half, StrBuf *er
             for (size_t i = 0; i < count; i++)
                 if (samples[i % (size_t)image->channels] == IMAGE_SAMPLE_HALF) clamp_to_half(&pixels[i], 1);
         }
-        OiioPicture picture = {"openexr",       image->width,      image->height,
-                               image->channels, image->names,      IMAGE_SAMPLE_FLOAT,
-                               pixels,          samples,           image_channel(image, "A"),
-                               false,           image->attributes, image->attribute_count};
+        ImagePart part;
+        OiioPicture picture = {.format = "openexr", .width = image->width, .height = image->height, .channels = image->channels,
+                               .names = image->names, .sample = IMAGE_SAMPLE_FLOAT, .data = pixels, .samples = samples,
+                               .alpha = image_channel(image, "A"), .attributes = image->attributes,
+                               .attribute_count = image->attribute_count};
+        if (image_part_of(image, &part))
+            picture.x = part.x, picture.y = part.y, picture.whole_width = part.whole_width, picture.whole_height = part.whole_height;
         done = encode_and_write(&picture, path, error);
     } else {
         fail(error, path, "not enough memory");
@@ -223,18 +234,10 @@ static bool save_codes(const Image *image, const char *path, const char *format,
     for (int y = 0; y < image->height; y++)
         encode_row(image, &selection, y, wide ? 0xFFFF : 0xFF, codes + (size_t)y * row);
     if (!wide) narrow(codes, count);
-    OiioPicture picture = {format,
-                           image->width,
-                           image->height,
-                           channels,
-                           names_of(&selection),
-                           wide ? IMAGE_SAMPLE_U16 : IMAGE_SAMPLE_U8,
-                           codes,
-                           NULL,
-                           selection.alpha >= 0 ? channels - 1 : -1,
-                           true,
-                           image->attributes,
-                           image->attribute_count};
+    OiioPicture picture = {.format = format, .width = image->width, .height = image->height, .channels = channels,
+                           .names = names_of(&selection), .sample = wide ? IMAGE_SAMPLE_U16 : IMAGE_SAMPLE_U8, .data = codes,
+                           .alpha = selection.alpha >= 0 ? channels - 1 : -1, .srgb = true, .attributes = image->attributes,
+                           .attribute_count = image->attribute_count};
     bool done = encode_and_write(&picture, path, error);
     free(codes);
     return done;
@@ -246,9 +249,8 @@ static bool save_hdr(const Image *image, const char *path, StrBuf *error) {
     float *samples = malloc(row * (size_t)image->height * sizeof *samples);
     if (!samples) return fail(error, path, "not enough memory");
     for (int y = 0; y < image->height; y++) select_row(image, &selection, y, samples + (size_t)y * row);
-    OiioPicture picture = {
-        "hdr", image->width, image->height, 3, names_of(&selection), IMAGE_SAMPLE_FLOAT, samples, NULL,
-        -1,    false,        NULL,          0};
+    OiioPicture picture = {.format = "hdr", .width = image->width, .height = image->height, .channels = 3, .names = names_of(&selection),
+                           .sample = IMAGE_SAMPLE_FLOAT, .data = samples, .alpha = -1};
     bool done = encode_and_write(&picture, path, error);
     free(samples);
     return done;

@@ -183,6 +183,10 @@ ImageSpec output_spec(const OiioPicture &picture) {
     std::string format = picture.format;
     for (int c = 0; c < picture.channels; c++) spec.channelnames[static_cast<size_t>(c)] = picture.names[c];
     spec.alpha_channel = picture.alpha;
+    if (picture.whole_width > 0) { /* the data window within the display window */
+        spec.x = picture.x, spec.y = picture.y;
+        spec.full_width = picture.whole_width, spec.full_height = picture.whole_height;
+    }
     if (picture.samples) {
         for (int c = 0; c < picture.channels; c++) spec.channelformats.push_back(type_of(picture.samples[c]));
         spec.format = TypeDesc::FLOAT;
@@ -208,6 +212,12 @@ bool tiles_arrive(ImageInput &input, const ImageSpec &spec) {
     return false;
 }
 
+ImageSample colour_sample(const ImageSpec &spec) {
+    for (size_t c = 0; c < spec.channelformats.size() && c < spec.channelnames.size(); c++)
+        if (spec.channelnames[c].size() == 1 && std::strchr("RGBAY", spec.channelnames[c][0])) return sample_of(spec.channelformats[c]);
+    return sample_of(spec.format);
+}
+
 bool shim_open(const char *path, OiioReader **out, OiioHeader *header, char error[OIIO_ERROR_SIZE]) try {
     stay_single_threaded();
     ImageSpec wish;
@@ -228,6 +238,7 @@ bool shim_open(const char *path, OiioReader **out, OiioHeader *header, char erro
     header->channels = spec.nchannels;
     header->names = reader->names.data();
     header->sample = sample_of(spec.format);
+    header->colour_sample = colour_sample(spec);
     header->alpha = spec.alpha_channel;
     header->alpha_unassociated = spec.get_int_attribute("oiio:UnassociatedAlpha") != 0 ||
                                  std::strcmp(reader->input->format_name(), "png") == 0;

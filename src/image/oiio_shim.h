@@ -10,7 +10,7 @@ extern "C" {
 #endif
 
 /* Changes with every change of this file; a module with another number is not used. */
-enum { OIIO_SHIM_VERSION = 2, OIIO_ERROR_SIZE = 512 };
+enum { OIIO_SHIM_VERSION = 3, OIIO_ERROR_SIZE = 512 };
 
 typedef struct OiioReader OiioReader;
 
@@ -19,6 +19,7 @@ typedef struct OiioHeader {
     int width, height, channels;
     const char *const *names;         /* of the channels */
     ImageSample sample;               /* the widest among the channels */
+    ImageSample colour_sample;        /* that of the first channel called R, G, B, A or Y; the same where there is none */
     int alpha;                        /* index of the alpha channel, or -1 */
     bool alpha_unassociated;          /* colours are not multiplied by alpha */
     bool linear;                      /* integers that hold linear light, says the file */
@@ -31,6 +32,7 @@ typedef struct OiioHeader {
 typedef struct OiioPicture {
     const char *format; /* OpenImageIO's name: "openexr", "png", "tiff", "jpeg", "hdr" */
     int width, height, channels;
+    int x, y, whole_width, whole_height; /* of what it is a part of; 0 wide: it is whole */
     const char *const *names;
     ImageSample sample;         /* of `data`: U8, U16 or FLOAT */
     const void *data;           /* [height][width][channels] */

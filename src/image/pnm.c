@@ -1,7 +1,10 @@
 #include "image/pnm.h"
 
+#include "image/image_part.h"
 #include "image/srgb.h"
 
+#include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,11 +13,16 @@ typedef struct Reader {
     const unsigned char *at, *end;
 } Reader;
 
+enum { LONGEST_WORD = 127 };
+/* What comes before a part's place in the decimals of PFM's scale. */
+#define SCALE_OF_PART "-1.000000000000000000000000"
+
 typedef struct PnmHeader {
     int width, height, channels;
     int largest;     /* code; 0 for PFM */
     bool text;       /* P2, P3: codes as decimal digits */
     bool big_endian; /* PFM */
+    ImagePart part;  /* 0 wide: it is none */
 } PnmHeader;
 
 bool pnm_recognizes(const unsigned char *data, size_t size) {
@@ -32,6 +40,19 @@ static void skip_space_and_comments(Reader *reader) {
             reader->at++;
 }
 
+/* A comment "# vts:part …" between here and the next number. */
+static void find_part(Reader reader, ImagePart *out) {
+    static const char mark[] = "# " IMAGE_PART_NAME " ";
+    for (; reader.at < reader.end && is_space(*reader.at); reader.at++) continue;
+    if ((size_t)(reader.end - reader.at) < sizeof mark || memcmp(reader.at, mark, sizeof mark - 1) != 0) return;
+    char text[LONGEST_WORD + 1];
+    size_t size = 0;
+    for (reader.at += sizeof mark - 1; reader.at < reader.end && *reader.at != '\n' && size < LONGEST_WORD; reader.at++)
+        text[size++] = (char)*reader.at;
+    text[size] = '\0';
+    if (!image_part_parse(text, out)) *out = (ImagePart){0};
+}
+
 /* A decimal number of the header or of a text raster, at most `largest`; -1 when there is none. */
 static int read_number(Reader *reader, int largest) {
     skip_space_and_comments(reader);
@@ -44,9 +65,19 @@ static int read_number(Reader *reader, int largest) {
     return reader->at > begin ? (int)value : -1;
 }
 
+static void read_part_digits(const char *word, ImagePart *out) {
+    int n[6];
+    char text[LONGEST_WORD + 1];
+    uint64_t key;
+    if (strncmp(word, SCALE_OF_PART, sizeof SCALE_OF_PART - 1) != 0) return;
+    if (sscanf(word + sizeof SCALE_OF_PART - 1, "%7d%7d%7d%7d%7d%7d%20" SCNu64, &n[0], &n[1], &n[2], &n[3], &n[4], &n[5], &key) != 7) return;
+    snprintf(text, sizeof text, "%d,%d,%d,%d of %dx%d %016" PRIx64, n[0], n[1], n[2], n[3], n[4], n[5], key);
+    if (!image_part_parse(text, out)) *out = (ImagePart){0};
+}
+
 /* PFM's scale: only its sign has a settled meaning (negative: little-endian). */
-static bool read_scale(Reader *reader, double *scale) {
-    char word[64];
+static bool read_scale(Reader *reader, double *scale, ImagePart *part) {
+    char word[LONGEST_WORD + 1];
     size_t size = 0;
     skip_space_and_comments(reader);
     while (reader->at < reader->end && !is_space(*reader->at) && size + 1 < sizeof word)
@@ -54,6 +85,7 @@ static bool read_scale(Reader *reader, double *scale) {
     word[size] = '\0';
     char *end;
     *scale = strtod(word, &end);
+    read_part_digits(word, part);
     return size > 0 && !*end && *scale != 0;
 }
 
@@ -64,10 +96,11 @@ static const char *read_header(Reader *reader, PnmHeader *header) {
     header->text = kind == '2' || kind == '3';
     header->width = read_number(reader, IMAGE_LARGEST_SIDE);
     header->height = read_number(reader, IMAGE_LARGEST_SIDE);
+    find_part(*reader, &header->part);
     if (header->width < 1 || header->height < 1) return "its width or height is missing or out of range";
     if (kind == 'f' || kind == 'F') {
         double scale;
-        if (!read_scale(reader, &scale)) return "its scale is not a number";
+        if (!read_scale(reader, &scale, &header->part)) return "its scale is not a number";
         header->big_endian = scale > 0;
     } else if ((header->largest = read_number(reader, 65535)) < 1) {
         return "its largest value is not between 1 and 65535";
@@ -136,6 +169,9 @@ bool pnm_decode(Image *image, const unsigned char *data, size_t size, const char
     image->stored_as = header.largest == 0    ? IMAGE_SAMPLE_FLOAT
                        : header.largest > 255 ? IMAGE_SAMPLE_U16
                                               : IMAGE_SAMPLE_U8;
+    image->colour_stored_as = image->stored_as;
+    image->coded = reading == IMAGE_AS_STORED && header.largest > 0;
+    if (header.part.width > 0) image_part_set(image, &header.part);
     if (header.largest == 0) {
         read_floats(&reader, &header, image->pixels);
         return true;
@@ -145,12 +181,25 @@ bool pnm_decode(Image *image, const unsigned char *data, size_t size, const char
     return fail(error, path, "a sample is missing or past the largest value");
 }
 
-void pnm_add_pfm_header(StrBuf *out, int width, int height, int channels) {
-    strbuf_addf(out, "%s\n%d %d\n-1.0\n", channels == 1 ? "Pf" : "PF", width, height);
+void pnm_add_pfm_header(StrBuf *out, const Image *image, int channels) {
+    ImagePart p;
+    strbuf_addf(out, "%s\n%d %d\n", channels == 1 ? "Pf" : "PF", image->width, image->height);
+    if (image_part_of(image, &p))
+        strbuf_addf(out, SCALE_OF_PART "%07d%07d%07d%07d%07d%07d%020" PRIu64 "\n", p.x, p.y, p.x + p.width, p.y + p.height, p.whole_width,
+                    p.whole_height, p.key);
+    else
+        strbuf_adds(out, "-1.0\n");
 }
 
-void pnm_add_header(StrBuf *out, int width, int height, int channels, int largest) {
-    strbuf_addf(out, "%s\n%d %d\n%d\n", channels == 1 ? "P5" : "P6", width, height, largest);
+void pnm_add_header(StrBuf *out, const Image *image, int channels, int largest) {
+    ImagePart part;
+    strbuf_addf(out, "%s\n%d %d\n", channels == 1 ? "P5" : "P6", image->width, image->height);
+    if (image_part_of(image, &part)) {
+        strbuf_adds(out, "# " IMAGE_PART_NAME " ");
+        image_part_print(&part, out);
+        strbuf_addc(out, '\n');
+    }
+    strbuf_addf(out, "%d\n", largest);
 }
 
 void pnm_add_floats(StrBuf *out, const float *samples, size_t count) {

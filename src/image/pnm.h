@@ -12,9 +12,11 @@ bool pnm_recognizes(const unsigned char *data, size_t size);
 bool pnm_decode(Image *image, const unsigned char *data, size_t size, const char *path, ImageReading reading,
                 MemoryBudget *budget, StrBuf *error);
 
-/* The header of a file of `channels` (1 or 3): PFM with little-endian floats, or PGM/PPM with that largest value. */
-void pnm_add_pfm_header(StrBuf *out, int width, int height, int channels);
-void pnm_add_header(StrBuf *out, int width, int height, int channels, int largest);
+/* The header of a file of `channels` (1 or 3): PFM with little-endian floats, or PGM/PPM with that largest value. Where the image belongs
+ * if it is a part (image_part.h) stands there as well, in a comment. PFM has none, and most readers take its lines as they come: there it
+ * is in the scale's decimals, behind so many zeros that no reader's number has room for them. */
+void pnm_add_pfm_header(StrBuf *out, const Image *image, int channels);
+void pnm_add_header(StrBuf *out, const Image *image, int channels, int largest);
 /* A row of `count` samples: floats; codes of one byte, or of two with the high byte first. */
 void pnm_add_floats(StrBuf *out, const float *samples, size_t count);
 void pnm_add_codes(StrBuf *out, const uint16_t *codes, size_t count, bool wide);

@@ -14,7 +14,7 @@ AovSample aov_of_surface(const Cone *cone, const SurfaceHit *hit, float share) {
                        .albedo = look_color(hit->look, local, local_normal, cone_diameter(cone, hit->t) * shrink),
                        .u = (float)hit->uv.u,
                        .v = (float)hit->uv.v,
-                       .object = hit->object + 1,
+                       .object = hit->number,
                        .level = -1};
 }
 

@@ -135,7 +135,7 @@ static ConeStart starts_of(const BeamTracer *tr, const Sight *sight) {
 static AovSample aov_of_sight(const Sight *s) {
     AovSample seen = {.share = 1, .depth = (double)s->t, .position = s->point, .normal = s->normal, .albedo = s->color, .level = -1};
     if (!s->surface) return seen;
-    seen.object = s->surface->object + 1;
+    seen.object = s->surface->number;
     seen.u = (float)s->surface->uv.u, seen.v = (float)s->surface->uv.v;
     return seen;
 }

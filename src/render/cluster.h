@@ -19,6 +19,7 @@ typedef struct Item {
     const Body *body;            /* NULL for the plain solids of intersect.h and for copies */
     const Cluster *cluster;      /* what it is a copy of; or NULL */
     const Look *inside;          /* of its surface seen from within; or NULL */
+    uint32_t number;             /* among all parts, from 1, in the scene's order */
     bool both_sides;             /* lights shine on both */
     uint8_t hidden;              /* bit 1 << RayPurpose: rays that pass */
     Affine back;                 /* cluster → its own space */

@@ -145,7 +145,7 @@ Box3 item_box(const Item *item) {
 
 static void add_item(Builder *b, Cluster *cluster, Item *item) {
     if (box3_is_empty(item_box(item))) return;
-    b->set->part_count++;
+    item->number = (uint32_t)++b->set->part_count;
     if ((item->look && !item->look->even) || item->body) {
         const Transform place = item_place(item);
         item->place = arena_copy(b->arena, &place, sizeof place);
@@ -213,8 +213,9 @@ static void add_mesh(Builder *b, Cluster *cluster, const Object *object, const T
         for (int k = 0; k < 3; k++)
             cluster->bounds = box3_add_point(cluster->bounds, transform_point(place, mesh->vertices[mesh->triangles[i][k]]));
     }
-    b->set->part_count++;
-    *list_push(b->arena, &cluster->owners) = new_item(object, place, has);
+    Item owner = new_item(object, place, has);
+    owner.number = (uint32_t)++b->set->part_count;
+    *list_push(b->arena, &cluster->owners) = owner;
 }
 
 /* Triangles that were made for an object, in its parent's space, as a mesh. */

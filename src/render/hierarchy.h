@@ -26,7 +26,8 @@ typedef struct SurfaceHit {
     double t;
     Vec3 normal;       /* unit, turned towards the ray's origin; of smooth triangles the interpolated one */
     Vec3 flat;         /* of the surface itself: on which side of it a place lies */
-    uint32_t object;   /* number of the drawn part, for telling edges */
+    uint32_t object;   /* tells the drawn part from others, until the program ends: for telling edges */
+    uint32_t number;   /* of the drawn part, from 1, the same in every run; a float holds it */
     const Look *look;
     Transform space;   /* object space of the texture → scene */
     TexCoord uv;       /* on the surface, as POV-Ray has it */

@@ -147,6 +147,17 @@ static void find_look(const ClusterSet *set, const Found *found, const Ray *ray,
 
 static uint64_t path_step(uint64_t path, const void *next) { return random_mix(path ^ (uintptr_t)next); }
 
+/* Parts that are drawn once have numbers of their own; parts of sets and of copies get larger ones, of their way there. */
+static uint32_t part_number(const Found *found) {
+    enum { HASHES = 1 << 23 };
+    const Item *item = found->path[found->depth - 1];
+    const Object *solid = found->cluster ? item->object : found->body.leaf;
+    if (found->depth == 1 && solid == item->object && item->number < HASHES) return item->number;
+    uint64_t path = random_hash(solid->span.file, solid->span.begin, solid->span.end, 0);
+    for (int i = 0; i < found->depth; i++) path = random_mix(path ^ found->path[i]->number);
+    return HASHES + (uint32_t)(path % HASHES);
+}
+
 static void find_filling(const Found *found, SurfaceHit *out) {
     uint64_t path = 0;
     out->interior = NULL;
@@ -165,6 +176,7 @@ static void find_filling(const Found *found, SurfaceHit *out) {
     }
     out->solid = found->cluster ? found->path[found->depth - 1]->object : found->body.leaf;
     out->object = (uint32_t)path_step(path, out->solid);
+    out->number = part_number(found);
 }
 
 static bool item_holds(const Item *item, Vec3 point) {

@@ -44,7 +44,7 @@ static Vec3 facet_point(const Sample *s, double t) { return vec3_madd(s->ray.ori
 
 static Facet surface_facet(const Sample *s, const SurfaceHit *hit) {
     const Cone cone = ray_cone(s);
-    Facet facet = {.t = hit->t, .normal = hit->normal, .flat = hit->flat, .look = hit->look, .object = hit->object + 1, .uv = hit->uv};
+    Facet facet = {.t = hit->t, .normal = hit->normal, .flat = hit->flat, .look = hit->look, .object = hit->number, .uv = hit->uv};
     surface_glance(&cone, hit, &facet.color, &facet.normal);
     return facet;
 }

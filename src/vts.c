@@ -67,6 +67,7 @@ static const char *option_fault(const VtsOptions *o) {
     if ((r[0] || r[1] || r[2] || r[3]) && (r[0] < 0 || r[1] < 0 || r[2] > o->width || r[3] > o->height || r[0] >= r[2] || r[1] >= r[3]))
         return "the region must lie in the picture and hold at least one pixel";
     if (!isfinite(o->clock) || !isfinite(o->exposure)) return "clock and exposure must be finite numbers";
+    if (!isfinite(o->shutter_clock) || !isfinite(o->shutter_time)) return "shutter_clock and shutter_time must be finite numbers";
     if (!isfinite(o->time) || !(o->cycle >= 0 && isfinite(o->cycle))) return "time and cycle must be finite numbers";
     if (o->preview && !preview_address_valid(o->preview)) return "preview must be HOST:PORT, the port 1 to 65535";
     if (fabs(o->exposure) > 100) return "exposure must be -100 to 100 EV";
@@ -116,7 +117,9 @@ static void end_call(VtsSession *session) {
     session->scene_name = NULL;
     compiled_scene_destroy(&session->compiled);
     image_free(&session->picture);
-    session->picture = (Image){0};
+    image_free(&session->blurred);
+    image_free(&session->between);
+    session->picture = session->blurred = session->between = (Image){0};
     arena_destroy(&session->parse);
     arena_destroy(&session->scene_arena);
     arena_destroy(&session->compiled_arena);
@@ -169,7 +172,7 @@ static void tell(VtsSession *session, const Diagnostic *d) {
 void session_print_diagnostics(VtsSession *session) {
     const Diagnostic *d = session->last_printed ? session->last_printed->next : session->diags.first;
     for (; d; d = d->next) {
-        if (!session->probing) tell(session, d);
+        if (!session->probing && (!session->silent || d->severity == SEVERITY_ERROR)) tell(session, d);
         session->last_printed = d;
     }
 }
@@ -253,7 +256,7 @@ static VtsStatus apply_limits(VtsSession *session, EvalLimits *limits) {
 static void pass_text(void *context, EvalStream stream, const char *text) {
     VtsSession *session = context;
     static const VtsStream streams[] = {VTS_STREAM_DEBUG, VTS_STREAM_WARNING, VTS_STREAM_RENDER, VTS_STREAM_STATISTICS};
-    if (session->options.on_text && !session->probing) session->options.on_text(session->options.context, streams[stream], text);
+    if (session->options.on_text && !session->probing && !session->silent) session->options.on_text(session->options.context, streams[stream], text);
 }
 
 static bool session_is_film(const VtsOptions *o) { return o->last_frame > o->first_frame || o->frame > 1; }
@@ -268,11 +271,11 @@ VtsStatus session_evaluate(VtsSession *session, const char *path, EvalMode mode)
     bool film = session_is_film(o), counted = film || !mode.is_program;
     EvalOptions options = {.geometry = &geometry, .include_dirs = o->include_dirs, .include_dir_count = o->include_dir_count,
                            .stdlib_dir = session->stdlib.size ? session->stdlib.data : NULL,
-                           .declares = declares, .declare_count = o->declare_count, .clock = o->clock, .clock_on = film || o->clock_set,
+                           .declares = declares, .declare_count = o->declare_count, .clock = o->clock + session->moment * o->shutter_clock, .clock_on = film || o->clock_set,
                            .clock_delta = film ? o->clock_delta : 0, .initial_clock = film ? o->first_clock : 0,
                            .final_clock = film ? o->last_clock : 0, .frame_number = counted ? o->frame : 0,
                            .initial_frame = counted ? o->first_frame : 0, .final_frame = counted ? o->last_frame : 0,
-                           .time = o->time_set ? o->time : o->clock, .cycle = o->cycle, .ends_at_film = mode.ends_at_film,
+                           .time = o->time_set ? o->time + session->moment * o->shutter_time : o->clock + session->moment * o->shutter_clock, .cycle = o->cycle, .ends_at_film = mode.ends_at_film,
                            .image_width = o->width, .image_height = o->height, .limits = eval_limits_default(),
                            .allow_read = o->allow_read, .allow_read_count = o->allow_read_count, .allow_write = o->allow_write,
                            .allow_write_count = o->allow_write_count, .keep_writes_in_memory = mode.writes_in_memory, .is_program = mode.is_program,
@@ -301,7 +304,7 @@ VtsStatus session_compile(VtsSession *session, bool exact, int texel_resolution)
     CompileOptions options = {.pool = session->pool, .memory = &session->memory, .texels = session->texels, .progress = &session->progress,
                               .width = session->options.width, .height = session->options.height,
                               .texel_resolution = texel_resolution,
-                              .interrupted = &session->interrupted, .exact = exact, .film = session_is_film(&session->options)};
+                              .interrupted = &session->interrupted, .exact = exact, .pilot = &session->pilot, .film = session_is_film(&session->options)};
     CompileStatus result = compile_scene(session->scene, &options, &session->compiled_arena, &session->diags, &session->compiled);
     session_print_diagnostics(session);
     return result == COMPILE_OK ? VTS_OK : result == COMPILE_INTERRUPTED ? VTS_INTERRUPTED : VTS_ERROR_SCENE;
@@ -347,7 +350,7 @@ VtsStatus session_save_picture(VtsSession *session, const char *scene_path, cons
 }
 
 /* A viewer is a help, not a result: without one the picture is made all the same. */
-static Preview *connect_preview(VtsSession *session) {
+Preview *session_connect_preview(VtsSession *session) {
     StrBuf why = {0};
     Preview *preview = preview_connect(session->options.preview, &why);
     if (!preview) diag_warning(&session->diags, (Span){0}, "--preview %s: %s; rendering without", session->options.preview, why.data ? why.data : "");
@@ -356,16 +359,17 @@ static Preview *connect_preview(VtsSession *session) {
     return preview;
 }
 
-VtsStatus session_draw(VtsSession *session, bool exact, RenderStats *stats) {
+VtsStatus session_draw(VtsSession *session, bool exact, const MomentPlan *plan, RenderStats *stats) {
     const VtsOptions *o = &session->options;
     RenderOptions options = {.pool = session->pool, .progress = &session->progress, .interrupted = &session->interrupted,
                              .samples = exact ? o->reference_samples : session->scene->settings.samples,
-                             .seed = o->seed, .exposure = o->exposure, .alpha = o->alpha};
+                             .seed = o->seed ^ plan->seed, .noise = plan->noise, .tiles = plan->tiles, .exposure = o->exposure, .alpha = o->alpha};
+    if (plan->samples) options.samples = plan->samples;
     snprintf(session->stage, sizeof session->stage, "picture");
-    if (o->aovs) options.aovs = &session->aovs;
+    if (o->aovs && !plan->unseen) options.aovs = &session->aovs;
     memcpy(options.region, o->region, sizeof options.region);
     if (options.region[2] == 0) options.region[2] = o->width, options.region[3] = o->height;
-    if (!session->interrupted && o->preview) options.preview = session->preview = connect_preview(session);
+    if (!session->interrupted && o->preview && !plan->unseen) options.preview = session->preview = session_connect_preview(session);
     options.name = session->scene_name ? session->scene_name : "vts";
     bool done = !session->interrupted && (exact ? reference_picture : render_picture)(&session->compiled, &options, &session->memory,
                                                                                       &session->picture, stats, NULL);
@@ -415,7 +419,7 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
     if ((status = session_compile(session, exact, 0)) != VTS_OK) return status;
     double built = stopwatch_wall();
     RenderStats stats;
-    if ((status = session_draw(session, exact, &stats)) != VTS_OK) return status;
+    if ((status = session_expose(session, scene_path, exact, &stats)) != VTS_OK) return status;
     double rendered = stopwatch_wall();
     session_mark_part(session, exact);
     if ((status = session_save_picture(session, scene_path, output_path)) != VTS_OK) return status;
@@ -498,7 +502,9 @@ static void report_memory(VtsSession *session) {
 static VtsStatus guarded(VtsSession *session, const Call *call) {
     session->started_wall = stopwatch_wall();
     session->started_cpu = stopwatch_cpu();
-    session->probing = false;
+    session->probing = session->silent = false;
+    session->moment = 0;
+    session->pilot = (PilotResult){.known = false};
     if (session->interrupted) return VTS_INTERRUPTED;
     arena_init(&session->parse, &session->memory, 0);
     arena_init(&session->scene_arena, &session->memory, 0);

@@ -78,7 +78,7 @@ static bool keep_half(VtsReference *reference, const Image *drawn, bool first, S
 static VtsStatus draw_half(VtsSession *session, const char *scene_path, const char *path, bool first, VtsReference *reference) {
     RenderStats stats;
     StrBuf why = {0};
-    VtsStatus status = session_draw(session, true, &stats);
+    VtsStatus status = session_expose(session, scene_path, true, &stats);
     if (status == VTS_OK && path) status = session_save_picture(session, scene_path, path);
     if (status == VTS_OK && !keep_half(reference, &session->picture, first, &why)) status = session_file_error(session, &why);
     strbuf_free(&why);
@@ -151,7 +151,7 @@ VtsStatus session_measure(VtsSession *session, const char *scene_path, const Vts
     lap(&watch, &out->parse_wall_s, &out->parse_user_s);
     if ((status = session_compile(session, false, 0)) != VTS_OK) return status;
     lap(&watch, &out->build_wall_s, &out->build_user_s);
-    if ((status = session_draw(session, false, &stats)) != VTS_OK) return status;
+    if ((status = session_expose(session, scene_path, false, &stats)) != VTS_OK) return status;
     lap(&watch, &out->render_wall_s, &out->render_user_s);
     count(session, &stats, out);
     if ((status = compare(session, reference, out)) != VTS_OK || !picture_path) return status;

@@ -57,5 +57,6 @@ void vts_set_frame(VtsSession *session, const VtsOptions *frame) {
     o->frame = frame->frame, o->first_frame = frame->first_frame, o->last_frame = frame->last_frame;
     o->first_clock = frame->first_clock, o->last_clock = frame->last_clock;
     o->time = frame->time, o->time_set = frame->time_set, o->cycle = frame->cycle;
+    o->shutter_clock = frame->shutter_clock, o->shutter_time = frame->shutter_time;
     session->in_film = session->renew = true;
 }

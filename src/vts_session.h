@@ -32,12 +32,16 @@ struct VtsSession {
     StrBuf frames;      /* of the report, so far */
     bool in_film, renew; /* vts_set_frame() was called; what the calls before have read is to be forgotten */
     bool probing;       /* nothing is told */
+    double moment;      /* of the exposure, 0 to 1, that the scene is evaluated at; */
+    bool silent;        /* after the first one errors alone are told */
     /* of one call */
     Arena parse, scene_arena, compiled_arena;
     const Scene *scene;
     Scene scene_with_settings;
     CompiledScene compiled;
     Image picture;
+    Image blurred, between; /* the mean over moments so far, and the sum over those between them */
+    PilotResult pilot;
     double started_wall, started_cpu;
 };
 
@@ -54,8 +58,19 @@ VtsStatus session_film(VtsSession *session, const char *scene_path, VtsFilm *out
 VtsStatus session_evaluate(VtsSession *session, const char *path, EvalMode mode);
 /* Prepares session->scene for drawing, or for the reference (exact); texel_resolution: see CompileOptions. */
 VtsStatus session_compile(VtsSession *session, bool exact, int texel_resolution);
+/* What drawing a moment differs by from the usual: RenderOptions' noise and tiles. */
+typedef struct MomentPlan {
+    uint64_t seed;
+    double noise;
+    const bool *tiles;
+    int samples;  /* 0: the usual */
+    bool unseen;  /* by viewers */
+} MomentPlan;
 /* Draws session->compiled into session->picture. */
-VtsStatus session_draw(VtsSession *session, bool exact, RenderStats *stats);
+VtsStatus session_draw(VtsSession *session, bool exact, const MomentPlan *plan, RenderStats *stats);
+/* vts_shutter.c: the same over the time that the picture is exposed. Leaves scene and compiled scene of some moment of it. */
+VtsStatus session_expose(VtsSession *session, const char *scene_path, bool exact, RenderStats *stats);
+struct Preview *session_connect_preview(VtsSession *session);
 /* vts_stitch.c: the picture says which part it is, if it is one. */
 void session_mark_part(VtsSession *session, bool exact);
 VtsStatus session_save_picture(VtsSession *session, const char *scene_path, const char *output_path);

@@ -199,7 +199,7 @@ static VtsStatus check_places(VtsSession *session, const char *save_path, const 
 
 static VtsStatus draw(VtsSession *session, const char *scene_path, const char *picture_path) {
     RenderStats stats;
-    VtsStatus status = session_draw(session, false, &stats);
+    VtsStatus status = session_draw(session, false, &(MomentPlan){0}, &stats);
     return status == VTS_OK ? session_save_picture(session, scene_path, picture_path) : status;
 }
 

@@ -85,6 +85,7 @@ static void take_over(Animation *a, const VtsFilm *film) {
     if (!a->last_clock_given) a->last_clock = film->last_clock;
     if (!a->cyclic_given) a->cyclic = film->cyclic;
     if (a->fps == 0) a->fps = film->fps;
+    if (!a->shutter_given) a->shutter = film->shutter;
     a->on = a->timed = true;
 }
 
@@ -93,6 +94,17 @@ static int steps_of(const Animation *a) { return a->last_frame - a->first_frame 
 static double cycle_of(const Animation *a) {
     if (!a->cyclic) return 0;
     return a->timed ? steps_of(a) / a->fps : a->last_clock > a->first_clock ? a->last_clock - a->first_clock : 0;
+}
+
+/* How far the frame's exposure goes; a film of one frame may pass all its time in it. */
+static void open_shutter(Settings *settings) {
+    const Animation *a = &settings->animation;
+    VtsOptions *o = &settings->options;
+    int steps = steps_of(a);
+    double range = a->last_clock - a->first_clock;
+    o->shutter_clock = a->shutter * (steps > 0 ? range / steps : range);
+    o->shutter_time = a->timed ? a->shutter / a->fps : 0;
+    if (!isfinite(o->shutter_clock)) o->shutter_clock = 0;
 }
 
 /* One picture, at a clock of its own, belongs to the moment of the film that has this clock. */
@@ -104,6 +116,7 @@ static void leave_film(Settings *settings) {
     if (!isfinite(o->time)) o->time = 0;
     o->time_set = true;
     o->cycle = cycle_of(a);
+    open_shutter(settings);
     a->on = false;
 }
 
@@ -175,6 +188,7 @@ static void set_options(Settings *settings, int frame) {
     o->time_set = a->timed;
     o->time = a->timed ? passed / a->fps : 0;
     o->cycle = cycle_of(a);
+    open_shutter(settings);
 }
 
 void film_enter(Settings *settings, VtsSession *session, int frame) {

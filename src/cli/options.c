@@ -92,6 +92,10 @@ static const char *apply_seed(Settings *s, const char *value) {
 static const char *apply_set(Settings *s, const char *value) {
     return settings_add_pair(s, &s->knobs, value) ? NULL : "KNOB=VALUE";
 }
+static const char *apply_shutter(Settings *s, const char *value) {
+    s->animation.shutter_given = true;
+    return option_double(value, &s->animation.shutter) && s->animation.shutter >= 0 && s->animation.shutter <= 1 ? NULL : "a number from 0 to 1";
+}
 static const char *apply_exposure(Settings *s, const char *value) {
     return option_double(value, &s->options.exposure) ? NULL : "a number (in EV)";
 }
@@ -240,6 +244,7 @@ static const Option OPTIONS[] = {
     {"help", 'h', NULL, COMMAND_ALL | COMMAND_COMPARE | COMMAND_INFO | COMMAND_STITCH, apply_help, "this text"},
     {"frames", 'f', "A-B[xSTEP],...", COMMAND_ALL, apply_frames, "frames of the scene's animation; default: all, of other commands than render the first"},
     {"frames", 'f', "A-B[xSTEP],...", COMMAND_STITCH, apply_frames, "of these frames, whose numbers replace #### in all names"},
+    {"shutter", 0, "F", COMMAND_ALL, apply_shutter, "part of a frame's time that it is exposed; default: as the scene's animation says, else 0"},
     {"fps", 0, "N", COMMAND_ALL, apply_fps, "frames a second; default: as the scene's animation says, else 24"},
     {"resume", 0, NULL, COMMAND_RENDER | COMMAND_REFERENCE | COMMAND_STITCH, apply_resume, "leaves out the pictures that are there: goes on with a film that was stopped"},
     {"aov", 0, "NAMES", COMMAND_RENDER | COMMAND_REFERENCE, apply_aov,

@@ -37,6 +37,8 @@ typedef struct Animation {
     double subset_first,
         subset_last; /* that are done: numbers of frames or, below 1, shares of them all; 0: all */
     double first_clock, last_clock;
+    double shutter;      /* the part of a frame's time that it is exposed */
+    bool shutter_given;  /* on the command line */
     double fps;      /* 0: as the scene says */
     bool cyclic;     /* the last clock is that of the frame after the last */
     FrameList asked; /* --frames; none: the subset */

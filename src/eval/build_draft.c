@@ -283,7 +283,6 @@ static bool add_film(SceneDraft *draft, BuildContext *context, const EvalBlock *
         diag_note(context->diags, d, draft->film->span, "the first one");
         return false;
     }
-    if (film.shutter > 0) warn_inert(draft, context, &(InertNote){"shutter", film.span, NULL});
     draft->film = arena_copy(context->arena, &film, sizeof film);
     return true;
 }

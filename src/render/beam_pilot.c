@@ -105,21 +105,29 @@ static double least_noise(const CompiledScene *compiled, const Block *blocks, in
     return sqrt(sum / (2 * 3 * BLOCK * BLOCK * count)) * pow((double)EXACT_SAMPLES / compiled->most_samples, NOISE_POWER);
 }
 
-void beam_pilot(CompiledScene *compiled) {
-    ArenaMark mark = arena_mark(&compiled->scratch);
-    compiled->voxel_error = -1;
-    if (!(compiled->all_exact_to > 0) || isinf(compiled->all_exact_to)) return;
+static PilotResult draw_trials(CompiledScene *compiled) {
+    PilotResult result = {true, 1, -1};
     Block *blocks = arena_new_array(&compiled->scratch, Block, BLOCKS);
     int count = choose_blocks(compiled, blocks);
-    if (count >= LEAST_BLOCKS) {
-        for (int way = 0; way < 3; way++) draw_blocks(compiled, way < 2 ? EXACT_REACH : 0, way < 2 ? EXACT_SAMPLES : VOXEL_SAMPLES, way, blocks, count);
-        double error = fmax(error_of_voxels(blocks, count), LEAST_ERROR * compiled->max_error);
-        double accepted = compiled->max_error * (least_noise(compiled, blocks, count) > compiled->max_error ? 1 : VOXELS_SHARE);
-        double factor = double_clamp(error / accepted, EARLIEST_VOXELS, LATEST);
-        for (size_t i = 0; i < compiled->skin_count; i++)
-            if (compiled->skins[i].boxes) compiled->skins[i].exact_to *= factor;
-        compiled->all_exact_to *= factor;
-        compiled->voxel_error = error / factor;
-    }
+    if (count < LEAST_BLOCKS) return result;
+    for (int way = 0; way < 3; way++) draw_blocks(compiled, way < 2 ? EXACT_REACH : 0, way < 2 ? EXACT_SAMPLES : VOXEL_SAMPLES, way, blocks, count);
+    double error = fmax(error_of_voxels(blocks, count), LEAST_ERROR * compiled->max_error);
+    double accepted = compiled->max_error * (least_noise(compiled, blocks, count) > compiled->max_error ? 1 : VOXELS_SHARE);
+    result.factor = double_clamp(error / accepted, EARLIEST_VOXELS, LATEST);
+    result.voxel_error = error / result.factor;
+    return result;
+}
+
+void beam_pilot(CompiledScene *compiled) {
+    compiled->voxel_error = -1;
+    if (!(compiled->all_exact_to > 0) || isinf(compiled->all_exact_to)) return;
+    PilotResult *kept = compiled->options->pilot, result = kept ? *kept : (PilotResult){.known = false};
+    ArenaMark mark = arena_mark(&compiled->scratch);
+    if (!result.known) result = draw_trials(compiled);
     arena_reset_to(&compiled->scratch, mark);
+    if (kept) *kept = result;
+    for (size_t i = 0; i < compiled->skin_count; i++)
+        if (compiled->skins[i].boxes) compiled->skins[i].exact_to *= result.factor;
+    compiled->all_exact_to *= result.factor;
+    compiled->voxel_error = result.voxel_error;
 }

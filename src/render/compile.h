@@ -12,6 +12,12 @@
 #include "shape/box_tree.h"
 #include "texel/texel_cache.h"
 
+/* What trial pixels have told (beam_pilot.c), for scenes that hardly differ. */
+typedef struct PilotResult {
+    bool known;
+    double factor, voxel_error; /* of the planned distances; of CompiledScene */
+} PilotResult;
+
 typedef struct CompileOptions {
     Pool *pool;
     MemoryBudget *memory;
@@ -21,6 +27,7 @@ typedef struct CompileOptions {
     int texel_resolution; /* to build texels at, as far as they allow it; 0: what the view can see */
     const atomic_bool *interrupted;
     bool exact; /* for the reference: texels and skins keep their geometry, no voxels are built */
+    PilotResult *pilot; /* is used if it is known, else becomes known; NULL: trial pixels are drawn, and forgotten */
     bool film;  /* one of several pictures in a row: skins are drawn so much better that what changes between two is right to max_error */
 } CompileOptions;
 

@@ -30,7 +30,7 @@ static float exposed(const Film *film, float seen) {
 static void expose_tile(void *context, size_t index, int worker) {
     Film *film = context;
     const RenderOptions *options = film->options;
-    if (options->interrupted && *options->interrupted) return;
+    if ((options->interrupted && *options->interrupted) || (options->tiles && !options->tiles[index])) return;
     int tx = (int)(index % (size_t)film->tiles_x), ty = (int)(index / (size_t)film->tiles_x);
     /* Tiles lie at multiples of their size, whatever the region. */
     int x0 = (options->region[0] / FILM_TILE + tx) * FILM_TILE, y0 = (options->region[1] / FILM_TILE + ty) * FILM_TILE;

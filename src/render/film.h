@@ -22,6 +22,8 @@ typedef struct RenderOptions {
     int region[4];   /* x0, y0, x1, y1 in pixels, x1 and y1 exclusive */
     int samples;     /* cones per pixel side where one is not enough; 0: by max_error. Of the reference: rays a pixel */
     uint64_t seed;   /* of what is sampled */
+    double noise;    /* so many times as noisy as else may be what random samples draw, 1 or more; 0: 1. The same for all that is not random */
+    const bool *tiles; /* those of the region that are wanted, rows from the top; the others stay black. NULL: all */
     double exposure; /* EV */
     bool alpha;      /* keep the background transparent */
     const AovPlan *aovs; /* further channels; or NULL */

@@ -39,6 +39,13 @@ static bool has_exact_skins(const CompiledScene *compiled) {
     return false;
 }
 
+static BeamPlan noisier(BeamPlan plan, double factor) {
+    plan.first = int_max(1, (int)(plan.first / (factor * factor)));
+    plan.most = int_max(plan.first, (int)(plan.most / (factor * factor)));
+    plan.max_error *= factor;
+    return plan;
+}
+
 static void make_workers(Frame *frame, int workers) {
     const CompiledScene *compiled = frame->compiled;
     const RenderOptions *options = frame->options;
@@ -46,6 +53,7 @@ static void make_workers(Frame *frame, int workers) {
     if (options->aovs) frame->aovs = arena_new_array(arena, AovSum, (size_t)workers * FILM_TILE * FILM_TILE);
     if (has_exact_skins(compiled)) {
         BeamPlan plan = {.first = compiled->samples, .most = compiled->most_samples, .max_error = compiled->max_error};
+        if (options->noise > 1) plan = noisier(plan, options->noise);
         if (options->samples > 0) plan = (BeamPlan){.first = options->samples, .most = options->samples};
         plan.interrupted = options->interrupted;
         frame->beams = arena_new_array(arena, BeamTracer *, (size_t)workers);

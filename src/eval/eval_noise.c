@@ -3,6 +3,7 @@
 
 #include "tape/noise.h"
 #include "tape/noise_interval.h"
+#include "tape/noise_nodes_forms.h"
 
 #include <string.h>
 
@@ -11,35 +12,66 @@
 /* Rounded towards zero and bounded; what is no number counts as 0. */
 static int whole(double a, int most) { return a >= most ? most : a > 0 ? (int)a : 0; }
 
+/* The distances to the nearest nodes at once, as many as the data says: what is made of several asks once. */
+static const int worley_last[] = {0, 1, 3, WORLEY_NODES - 1};
+
 static void eval_worley(const void *data, const double *in, double *out) {
+    noise_worley_nearest(vec3(in[0], in[1], in[2]), *(const int *)data, out);
+}
+
+static void bound_worley(const void *data, const Interval *in, Interval *out) {
+    for (int k = 0; k <= *(const int *)data; k++) out[k] = interval_worley(in, k);
+}
+
+static void forms_worley(const void *data, int count, const AffineForm *in, AffineForm *out) { affine_worley(count, in, *(const int *)data, out); }
+
+#define WORLEY_OF(k, last)                                                                                                               \
+    {.name = "worley", .input_count = 3, .output_count = (last) + 1, .eval = eval_worley, .bound = bound_worley, .forms = forms_worley,    \
+     .data = &worley_last[k], .hash = {0x776F726C6579, 2 + (k)}, .work = 60}
+static const TapeExternal worley_nearest[] = {WORLEY_OF(0, 0), WORLEY_OF(1, 1), WORLEY_OF(2, 3), WORLEY_OF(3, WORLEY_NODES - 1)};
+
+/* Where the number of the node is not known before. */
+static void eval_worley_any(const void *data, const double *in, double *out) {
     (void)data;
     out[0] = noise_worley(vec3(in[0], in[1], in[2]), whole(in[3], WORLEY_NODES));
 }
+
+static void bound_worley_any(const void *data, const Interval *in, Interval *out) {
+    (void)data;
+    *out = interval_is_point(in[3]) ? interval_worley(in, whole(in[3].low, WORLEY_NODES)) : interval_all(true);
+}
+
+static const TapeExternal worley_any = {
+    .name = "worley", .input_count = 4, .output_count = 1, .eval = eval_worley_any, .bound = bound_worley_any, .hash = {0x776F726C6579, 1}, .work = 60};
 
 static void eval_sparse(const void *data, const double *in, double *out) {
     (void)data;
     out[0] = noise_sparse_convolution(vec3(in[0], in[1], in[2]), whole(in[3], SPARSE_IMPULSES));
 }
 
-/* Which node, or how many impulses, must be known. */
-static void bound_worley(const void *data, const Interval *in, Interval *out) {
-    (void)data;
-    *out = interval_is_point(in[3]) ? interval_worley(in, whole(in[3].low, WORLEY_NODES)) : interval_all(true);
-}
-
+/* How many impulses must be known. */
 static void bound_sparse(const void *data, const Interval *in, Interval *out) {
     (void)data;
     *out = interval_is_point(in[3]) ? interval_sparse_convolution(in, whole(in[3].low, SPARSE_IMPULSES)) : interval_all(true);
 }
 
-static const TapeExternal worley = {
-    .name = "worley", .input_count = 4, .output_count = 1, .eval = eval_worley, .bound = bound_worley, .hash = {0x776F726C6579, 1}};
+static void forms_sparse(const void *data, int count, const AffineForm *in, AffineForm *out) {
+    const AffineForm *impulses = &in[3 * count];
+    (void)data;
+    if (impulses->slope != 0 || impulses->error != 0 || impulses->nan)
+        for (int i = 0; i < count; i++) out[i] = affine_unknown(true);
+    else
+        affine_sparse_convolution(count, in, int_clamp(whole(impulses->centre, SPARSE_IMPULSES), 1, SPARSE_IMPULSES), out);
+}
+
 static const TapeExternal sparse_convolution = {.name = "sparse_convolution",
                                                 .input_count = 4,
                                                 .output_count = 1,
                                                 .eval = eval_sparse,
                                                 .bound = bound_sparse,
-                                                .hash = {0x737061727365, 1}};
+                                                .forms = forms_sparse,
+                                                .hash = {0x737061727365, 1},
+                                                .work = 60};
 
 /* ---- one octave ---- */
 
@@ -49,21 +81,19 @@ static TapeRef perlin_octave(TapeBuilder *tape, const TapeRef place[3], Span spa
     return tape_ternary(tape, TAPE_PERLIN, place[0], place[1], place[2], span);
 }
 
-static TapeRef call_with(TapeBuilder *tape, const TapeExternal *external, const TapeRef place[3], double last,
-                         Span span) {
-    const TapeRef in[4] = {place[0], place[1], place[2], tape_constant(tape, last)};
-    TapeRef out;
-    tape_call(tape, external, in, &out, span);
-    return out;
-}
 
 /* In fbm() the distance to the nearest node, and three impulses a cell. */
 static TapeRef worley_octave(TapeBuilder *tape, const TapeRef place[3], Span span) {
-    return call_with(tape, &worley, place, 0, span);
+    TapeRef out;
+    tape_call(tape, &worley_nearest[0], place, &out, span);
+    return out;
 }
 
 static TapeRef sparse_octave(TapeBuilder *tape, const TapeRef place[3], Span span) {
-    return call_with(tape, &sparse_convolution, place, 3, span);
+    const TapeRef in[4] = {place[0], place[1], place[2], tape_constant(tape, 3)};
+    TapeRef out;
+    tape_call(tape, &sparse_convolution, in, &out, span);
+    return out;
 }
 
 static const struct {
@@ -83,9 +113,18 @@ static bool compile_perlin(Eval *ev, TapeBuilder *tape, const Node *call, const 
 
 static bool compile_worley(Eval *ev, TapeBuilder *tape, const Node *call, const TapeRef *a, size_t count,
                            TapeRef *out) {
+    double number;
     (void)ev;
     (void)count;
-    tape_call(tape, &worley, a, out, call->span);
+    if (!tape_is_constant(tape, a[3], &number)) {
+        tape_call(tape, &worley_any, a, out, call->span);
+        return true;
+    }
+    TapeRef all[WORLEY_NODES];
+    int index = int_min(whole(number, WORLEY_NODES), WORLEY_NODES - 1), set = 1;
+    while (worley_last[set] < index) set++;
+    tape_call(tape, &worley_nearest[set], a, all, call->span);
+    *out = all[index];
     return true;
 }
 

@@ -24,6 +24,8 @@ double noise_fbm(Vec3 p, int octaves, double lacunarity, double gain);
  * a unit cell on average. */
 enum { WORLEY_NODES = 8 };
 double noise_worley(Vec3 p, int index);
+/* The same of all nodes up to number `last`: out[0 … last]. */
+void noise_worley_nearest(Vec3 p, int last, double *out);
 /* Lewis's sparse convolution: `count` impulses a unit cell (1 to SPARSE_IMPULSES) of weights in [-1, 1], each a raised cosine
  * of radius 1; divided by the root of `count`, so that the deviation, about 0.35, does not depend on it. */
 enum { SPARSE_IMPULSES = 64 };

@@ -1,34 +1,12 @@
 /* Noises made of points scattered in the cells of a lattice, one fixed set of points for each noise. */
 #include "tape/noise.h"
 #include "tape/noise_interval.h"
-
-#include "base/random.h"
-
-typedef struct Cell {
-    int64_t x, y, z;
-} Cell;
+#include "tape/noise_nodes.h"
 
 /* Whole numbers beyond 2⁵³ have no neighbours of their own: places that far are taken modulo 2⁵⁰, which keeps them exact. */
 static double reduced(double a) { return fabs(a) < 0x1p50 ? a : fmod(a, 0x1p50); }
 
-static Cell cell_of(Vec3 p) { return (Cell){(int64_t)floor(p.x), (int64_t)floor(p.y), (int64_t)floor(p.z)}; }
-
-static uint64_t cell_bits(Cell c, uint64_t kind) {
-    return random_hash((uint64_t)c.x, (uint64_t)c.y, (uint64_t)c.z, kind);
-}
-
 /* ---- Worley, A cellular texture basis function, SIGGRAPH 1996 ---- */
-
-enum { WORLEY = 0x776F726C, MOST_NODES = 9 };
-
-/* 1 to 9 nodes a cell by the paper's Poisson distribution of mean 3 (no cell is empty): Σ 3ᵏ/k! e⁻³, scaled to those. */
-static int node_count(double u) {
-    static const double below[MOST_NODES - 1] = {0.15737, 0.39342, 0.62948, 0.80652,
-                                                 0.91274, 0.96586, 0.98862, 0.99715};
-    int count = 1;
-    while (count < MOST_NODES && u >= below[count - 1]) count++;
-    return count;
-}
 
 typedef struct Distances {
     double squares[WORLEY_NODES]; /* of the nearest nodes, nearest first */
@@ -41,37 +19,52 @@ static void insert(Distances *d, double square) {
     d->squares[k] = square;
 }
 
-static void add_nodes(Distances *d, Cell cell, Vec3 p) {
-    uint64_t bits = cell_bits(cell, WORLEY);
-    int count = node_count(random_unit(bits));
-    for (int k = 0; k < count; k++) {
-        uint64_t x = random_mix(bits + 3 * (uint64_t)k + 1), y = random_mix(x), z = random_mix(y);
-        Vec3 node = vec3((double)cell.x + random_unit(x), (double)cell.y + random_unit(y),
-                         (double)cell.z + random_unit(z));
-        insert(d, vec3_length_squared(vec3_sub(node, p)));
-    }
+static void add_nodes(Distances *d, NodeCell cell, Vec3 p) {
+    uint64_t bits = node_cell_bits(cell, WORLEY_KIND);
+    int count = worley_node_count(bits);
+    for (int k = 0; k < count; k++) insert(d, vec3_length_squared(vec3_sub(worley_node(cell, bits, k), p)));
 }
 
+/* From a place `in` the unit cell to one `off` cells away, along an axis. */
+static double gap(double in, int off) { return off > 0 ? off - in : off < 0 ? in - off - 1 : 0; }
+
 /* Shell after shell of cells, until no node of the next can be among those that are wanted. */
-double noise_worley(Vec3 p, int index) {
-    if (!vec3_is_finite(p)) return (double)NAN;
-    p = vec3(reduced(p.x), reduced(p.y), reduced(p.z));
-    Cell home = cell_of(p);
-    index = int_clamp(index, 0, WORLEY_NODES - 1);
+void noise_worley_nearest(Vec3 p, int last, double *out) {
     Distances d;
     for (int k = 0; k < WORLEY_NODES; k++) d.squares[k] = VTS_INFINITY;
+    last = int_clamp(last, 0, WORLEY_NODES - 1);
+    if (!vec3_is_finite(p)) {
+        for (int k = 0; k <= last; k++) out[k] = (double)NAN;
+        return;
+    }
+    p = vec3(reduced(p.x), reduced(p.y), reduced(p.z));
+    NodeCell home = node_cell_of(p);
     Vec3 in = vec3(p.x - floor(p.x), p.y - floor(p.y), p.z - floor(p.z));
+    /* Places of nodes are rounded. */
+    double slack = 0x1p-20 + 0x1p-48 * (fabs(p.x) + fabs(p.y) + fabs(p.z));
     double border = fmin(fmin(fmin(in.x, 1 - in.x), fmin(in.y, 1 - in.y)), fmin(in.z, 1 - in.z));
     for (int shell = 0;; shell++) {
         for (int x = -shell; x <= shell; x++)
             for (int y = -shell; y <= shell; y++) {
                 bool face = x == -shell || x == shell || y == -shell || y == shell;
-                for (int z = -shell; z <= shell; z += face || shell == 0 ? 1 : 2 * shell)
-                    add_nodes(&d, (Cell){home.x + x, home.y + y, home.z + z}, p);
+                double gx = gap(in.x, x), gy = gap(in.y, y);
+                for (int z = -shell; z <= shell; z += face || shell == 0 ? 1 : 2 * shell) {
+                    double gz = gap(in.z, z);
+                    if (gx * gx + gy * gy + gz * gz > d.squares[last] + slack) continue;
+                    add_nodes(&d, (NodeCell){home.x + x, home.y + y, home.z + z}, p);
+                }
             }
         double nearest_beyond = border + shell;
-        if (d.squares[index] <= nearest_beyond * nearest_beyond) return sqrt(d.squares[index]);
+        if (d.squares[last] <= nearest_beyond * nearest_beyond) break;
     }
+    for (int k = 0; k <= last; k++) out[k] = sqrt(d.squares[k]);
+}
+
+double noise_worley(Vec3 p, int index) {
+    double out[WORLEY_NODES];
+    index = int_clamp(index, 0, WORLEY_NODES - 1);
+    noise_worley_nearest(p, index, out);
+    return out[index];
 }
 
 /* ---- over boxes ---- */
@@ -114,42 +107,45 @@ Interval interval_worley(const Interval box[3], int index) {
 
 /* ---- Lewis, Algorithms for solid noise synthesis, SIGGRAPH 1989 ---- */
 
-enum { SPARSE = 0x73706172 };
+static double kernel(double square) {
+    double slope;
+    return square < 1 ? sparse_kernel(square, &slope) : 0;
+}
 
-/* The kernel: a raised cosine of radius 1. */
-static double kernel(double square) { return square < 1 ? (1 + cos(VTS_PI * sqrt(square))) / 2 : 0; }
-
-static double impulses(Cell cell, Vec3 p, int count) {
-    uint64_t bits = cell_bits(cell, SPARSE);
-    double sum = 0;
+static double impulses(NodeCell cell, Vec3 p, int count) {
+    uint64_t bits = node_cell_bits(cell, SPARSE_KIND);
+    double sum = 0, weight;
     for (int k = 0; k < count; k++) {
-        uint64_t x = random_mix(bits + 4 * (uint64_t)k + 1), y = random_mix(x), z = random_mix(y);
-        Vec3 at = vec3((double)cell.x + random_unit(x), (double)cell.y + random_unit(y),
-                       (double)cell.z + random_unit(z));
-        double weight = 2 * random_unit(random_mix(z)) - 1;
+        Vec3 at = sparse_impulse(cell, bits, k, &weight);
         sum += weight * kernel(vec3_length_squared(vec3_sub(at, p)));
     }
     return sum;
 }
 
+/* Cells beyond the impulses' radius hold nothing that counts. */
 double noise_sparse_convolution(Vec3 p, int count) {
     if (!vec3_is_finite(p)) return (double)NAN;
     p = vec3(reduced(p.x), reduced(p.y), reduced(p.z));
-    Cell home = cell_of(p);
+    NodeCell home = node_cell_of(p);
+    Vec3 in = vec3(p.x - floor(p.x), p.y - floor(p.y), p.z - floor(p.z));
     count = int_clamp(count, 1, SPARSE_IMPULSES);
     double sum = 0;
-    for (int k = 0; k < 27; k++)
-        sum += impulses((Cell){home.x + k % 3 - 1, home.y + k / 3 % 3 - 1, home.z + k / 9 - 1}, p, count);
+    for (int k = 0; k < 27; k++) {
+        int x = k % 3 - 1, y = k / 3 % 3 - 1, z = k / 9 - 1;
+        double gx = gap(in.x, x), gy = gap(in.y, y), gz = gap(in.z, z);
+        if (gx * gx + gy * gy + gz * gz > 1 + 0x1p-20) continue;
+        sum += impulses((NodeCell){home.x + x, home.y + y, home.z + z}, p, count);
+    }
     return sum / sqrt(count);
 }
 
 /* Each impulse falls with the distance, which changes by no more than the way. */
-static void add_spans(Cell cell, const Ball *b, int count, double *low, double *high) {
-    uint64_t bits = cell_bits(cell, SPARSE);
+static void add_spans(NodeCell cell, const Ball *b, int count, double *low, double *high) {
+    uint64_t bits = node_cell_bits(cell, SPARSE_KIND);
     for (int k = 0; k < count; k++) {
-        uint64_t x = random_mix(bits + 4 * (uint64_t)k + 1), y = random_mix(x), z = random_mix(y);
-        Vec3 at = vec3((double)cell.x + random_unit(x), (double)cell.y + random_unit(y), (double)cell.z + random_unit(z));
-        double weight = 2 * random_unit(random_mix(z)) - 1, way = vec3_length(vec3_sub(at, b->centre)), off = b->radius + b->rounding;
+        double weight;
+        Vec3 at = sparse_impulse(cell, bits, k, &weight);
+        double way = vec3_length(vec3_sub(at, b->centre)), off = b->radius + b->rounding;
         double near = bound_max(0, way - off), far = way + off;
         double most = kernel(near * near), least = kernel(far * far);
         *low += weight * (weight > 0 ? least : most), *high += weight * (weight > 0 ? most : least);
@@ -160,14 +156,17 @@ Interval interval_sparse_convolution(const Interval box[3], int count) {
     enum { MOST_CELLS = 125 };
     count = int_clamp(count, 1, SPARSE_IMPULSES);
     Ball b = ball_around(box);
-    double whole = 27 * sqrt(count), low = 0, high = 0;
+    double whole = SPARSE_MOST * sqrt(count), low = 0, high = 0;
     if (!b.near) return (Interval){-whole, whole, b.nan};
-    Cell first = cell_of(vec3(box[0].low - 1, box[1].low - 1, box[2].low - 1)), last = cell_of(vec3(box[0].high + 1, box[1].high + 1, box[2].high + 1));
-    double cells = (double)(last.x - first.x + 1) * (double)(last.y - first.y + 1) * (double)(last.z - first.z + 1);
+    NodeCell first = node_cell_of(vec3(box[0].low - 1, box[1].low - 1, box[2].low - 1)),
+             last = node_cell_of(vec3(box[0].high + 1, box[1].high + 1, box[2].high + 1));
+    double cells =
+        (double)(last.x - first.x + 1) * (double)(last.y - first.y + 1) * (double)(last.z - first.z + 1);
     if (!(cells <= MOST_CELLS)) return (Interval){-whole, whole, b.nan};
     for (int64_t i = first.x; i <= last.x; i++)
         for (int64_t j = first.y; j <= last.y; j++)
-            for (int64_t k = first.z; k <= last.z; k++) add_spans((Cell){i, j, k}, &b, count, &low, &high);
+            for (int64_t k = first.z; k <= last.z; k++)
+                add_spans((NodeCell){i, j, k}, &b, count, &low, &high);
     double root = sqrt(count), slack = 0x1p-40 * root;
     return (Interval){low / root - slack, high / root + slack, b.nan};
 }

@@ -20,7 +20,8 @@ typedef enum TapeOp {
 #define TAPE_CALL_MAX   16        /* inputs and outputs of an external */
 #define TAPE_LOOP_LIMIT 16777216. /* passes of one sum() or prod(); a longer loop gives NaN */
 
-struct Interval; /* tape/interval.h */
+struct Interval;   /* tape/interval.h */
+struct AffineForm; /* tape/affine.h */
 
 typedef uint32_t TapeRef; /* a value of the tape under construction */
 typedef struct Tape Tape;
@@ -37,6 +38,9 @@ typedef struct TapeExternal {
     double work;      /* an evaluation in steps of a tape; 0: as one */
     /* Intervals that hold the outputs for all inputs from theirs; NULL: nothing is known but values at points. */
     void (*bound)(const void *data, const struct Interval *in, struct Interval *out);
+    /* Forms of the outputs on `count` pieces of a line at once, at most 8: output k of piece i is out[k·count + i], and so of the inputs.
+     * NULL: those of the intervals. */
+    void (*forms)(const void *data, int count, const struct AffineForm *in, struct AffineForm *out);
 } TapeExternal;
 
 /* The printed form of an operation, and how many operands it takes (0: structure, not for tape_unary() and its like). */

@@ -3,6 +3,15 @@
 
 #include "tape/tape_program.h"
 
+static bool affine_call(const TapeCall *call_, const AffineForm *slots, AffineForm *out) {
+    const TapeExternal *external = call_->external;
+    AffineForm in[TAPE_CALL_MAX];
+    if (!external->forms) return false;
+    for (int k = 0; k < external->input_count; k++) in[k] = slots[call_->arg_slots[k]];
+    external->forms(external->data, 1, in, out);
+    return true;
+}
+
 #define BOUND             AffineForm
 #define BOUND_(name)      affine_##name
 #define BOUND_NAMED(name) affine_##name

@@ -22,8 +22,23 @@ static AffineForm lane_of(const Tape *tape, const AffineLanes *slots, uint32_t s
     return is_constant(tape, slot) ? affine_point(constant_at(tape, slot)) : affine_lane(&slots[slot], lane);
 }
 
+static void call_forms(const Tape *tape, const TapeCall *call_, AffineLanes *slots) {
+    const TapeExternal *external = call_->external;
+    AffineForm in[TAPE_CALL_MAX * AFFINE_LANES], out[TAPE_CALL_MAX * AFFINE_LANES];
+    for (int k = 0; k < external->input_count; k++)
+        AFFINE_EACH_LANE in[k * AFFINE_LANES + l] = lane_of(tape, slots, call_->arg_slots[k], l);
+    external->forms(external->data, AFFINE_LANES, in, out);
+    for (int k = 0; k < external->output_count; k++)
+        if (call_->result_slots[k] != TAPE_NO_SLOT)
+            AFFINE_EACH_LANE affine_set_lane(&slots[call_->result_slots[k]], l, out[k * AFFINE_LANES + l]);
+}
+
 static void call(const Tape *tape, const TapeCall *call_, AffineLanes *slots) {
     const TapeExternal *external = call_->external;
+    if (external->forms) {
+        call_forms(tape, call_, slots);
+        return;
+    }
     for (int l = 0; l < AFFINE_LANES; l++) {
         Interval in[TAPE_CALL_MAX], range[TAPE_CALL_MAX];
         for (int k = 0; k < external->input_count; k++) in[k] = affine_range(lane_of(tape, slots, call_->arg_slots[k], l));

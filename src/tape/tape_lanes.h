@@ -16,6 +16,7 @@ typedef struct TapeTerm {
     const Tape *tape;
     double scale;
     double low, high; /* of scale times the function, over the box; the widest come first */
+    double rounding;  /* if it is a sum itself: the size of what it adds, over the box */
 } TapeTerm;
 
 typedef struct TapeSum {

@@ -52,13 +52,85 @@ static void split(Split *s, TapeRef ref, double scale, int depth) {
     }
 }
 
-/* The tape of one node. */
-static const Tape *tape_of(const Tape *tape, TapeRef node, Arena *arena) {
-    TapeBuilder *builder = tape_builder_create(arena, tape_input_count(tape));
-    TapeRef inputs[TAPE_CALL_MAX], *map = arena_new_array(arena, TapeRef, tape->node_count);
-    for (int k = 0; k < tape_input_count(tape); k++) inputs[k] = tape_input(builder, k);
-    tape_inline_nodes(builder, tape, inputs, map);
-    return tape_finish(builder, &map[node], 1);
+/* ---- parts that ask the same external stay together: it is asked once, and what their values have in common is not lost ---- */
+
+/* Calls below a node, as bits; the number of bits is what is told apart. */
+static uint64_t *find_calls(const Tape *tape, Arena *arena) {
+    uint64_t *calls = arena_new_array(arena, uint64_t, tape->node_count);
+    for (size_t i = 0; i < tape->node_count; i++) {
+        const TapeNode *node = &tape->nodes[i];
+        int arity = tape_op_arity((TapeOp)node->op);
+        if (node->op == TAPE_CALL) {
+            const TapeCall *call = &tape->calls[node->c];
+            calls[i] = (uint64_t)1 << node->c % 64;
+            for (int k = 0; k < call->external->input_count; k++) calls[i] |= calls[call->args[k]];
+        } else if (node->op == TAPE_SUM || node->op == TAPE_PROD) {
+            const TapeLoop *loop = &tape->loops[node->c];
+            for (uint32_t k = 0; k < loop->captured_count; k++) calls[i] |= calls[loop->captured[k]];
+        } else if (node->op == TAPE_RESULT) {
+            calls[i] = calls[node->a];
+        }
+        if (arity > 0) calls[i] |= calls[node->a];
+        if (arity > 1) calls[i] |= calls[node->b];
+        if (arity > 2) calls[i] |= calls[node->c];
+    }
+    return calls;
+}
+
+/* group[k]: the first part that part k shares a call with, directly or by others. */
+static void find_groups(const Split *s, size_t *group, Arena *arena) {
+    ArenaMark mark = arena_mark(arena);
+    const uint64_t *calls = find_calls(s->tape, arena);
+    for (size_t k = 0; k < s->count; k++) {
+        group[k] = k;
+        for (size_t j = 0; j < k; j++) {
+            if (!(calls[s->parts[k].node] & calls[s->parts[j].node])) continue;
+            size_t from = size_max(group[j], group[k]), to = size_min(group[j], group[k]);
+            for (size_t i = 0; i <= k; i++)
+                if (group[i] == from) group[i] = to;
+        }
+    }
+    arena_reset_to(arena, mark);
+}
+
+/* Of a node alone, or of a group's sum, of which *scale is meant. */
+static const Tape *tape_of(const Split *s, const size_t *group, size_t which, double *scale, Arena *arena) {
+    TapeBuilder *builder = tape_builder_create(arena, tape_input_count(s->tape));
+    TapeRef inputs[TAPE_CALL_MAX], *map = arena_new_array(arena, TapeRef, s->tape->node_count), sum = 0;
+    for (int k = 0; k < tape_input_count(s->tape); k++) inputs[k] = tape_input(builder, k);
+    tape_inline_nodes(builder, s->tape, inputs, map);
+    size_t count = 0;
+    *scale = s->parts[which].scale != 0 ? s->parts[which].scale : 1;
+    for (size_t k = which; k < s->count; k++) {
+        if (group[k] != which) continue;
+        TapeRef part = map[s->parts[k].node];
+        double by = s->parts[k].scale / *scale;
+        if (by == -1 && count) {
+            sum = tape_binary(builder, TAPE_SUB, sum, part, (Span){0});
+            continue;
+        }
+        if (by != 1) part = tape_binary(builder, TAPE_MUL, part, tape_constant(builder, by), (Span){0});
+        sum = count++ ? tape_binary(builder, TAPE_ADD, sum, part, (Span){0}) : part;
+    }
+    return tape_finish(builder, &sum, 1);
+}
+
+static double most_of(const Tape *tape, const Interval *box, Arena *arena) {
+    Interval out, *scratch = arena_new_array(arena, Interval, tape_scratch_size(tape));
+    tape_eval_interval(tape, box, &out, scratch);
+    return out.nan || !(out.low <= out.high) ? HUGE_VAL : bound_max(fabs(out.low), fabs(out.high));
+}
+
+/* The terms' sum may be far smaller than they are: their roundings count. */
+static double rounding_of(const Split *s, const size_t *group, size_t which, const Interval *box, Arena *arena) {
+    ArenaMark mark = arena_mark(arena);
+    double size = 0, scale;
+    size_t count = 0, alone[MOST_TERMS];
+    for (size_t k = 0; k < s->count; k++) count += group[k] == which, alone[k] = k;
+    for (size_t k = which; k < s->count && count > 1; k++)
+        if (group[k] == which) size += fabs(s->parts[k].scale) * most_of(tape_of(s, alone, k, &scale, arena), box, arena);
+    arena_reset_to(arena, mark);
+    return size;
 }
 
 static int wider_first(const void *a, const void *b) {
@@ -83,15 +155,21 @@ TapeSum tape_sum_of(const Tape *tape, const Interval *box, Arena *arena) {
     split(&s, tape->outputs[0], 1, 0);
     TapeTerm *terms = arena_new_array(arena, TapeTerm, s.count + 1);
     double work = 0;
+    size_t group[MOST_TERMS], count = 0;
+    if (!s.failed) find_groups(&s, group, arena);
     for (size_t k = 0; k < s.count && !s.failed; k++) {
-        terms[k] = (TapeTerm){tape_of(tape, s.parts[k].node, arena), s.parts[k].scale, 0, 0};
-        work += tape_work(terms[k].tape);
+        if (group[k] != k) continue;
+        TapeTerm *term = &terms[count++];
+        *term = (TapeTerm){.rounding = rounding_of(&s, group, k, box, arena)};
+        term->tape = tape_of(&s, group, k, &term->scale, arena);
+        work += tape_work(term->tape);
     }
     /* Terms that have much in common are quicker together. */
-    if (s.failed || !isfinite(s.constant) || work > 1.5 * tape_work(tape) + 8 * (double)s.count) {
-        terms[0] = (TapeTerm){tape, 1, 0, 0};
-        s.count = 1, s.constant = 0;
+    if (s.failed || !isfinite(s.constant) || work > 1.5 * tape_work(tape) + 8 * (double)count) {
+        terms[0] = (TapeTerm){.tape = tape, .scale = 1};
+        count = 1, s.constant = 0;
     }
+    s.count = count;
     TapeSum sum = {.terms = terms, .count = s.count, .constant = s.constant, .scratch_size = (size_t)tape_input_count(tape)};
     for (size_t k = 0; k < s.count; k++) {
         find_range(&terms[k], box, arena);
@@ -132,7 +210,7 @@ size_t tape_sum_lanes(const TapeSum *sum, double level, AffineLanes *out, Affine
         affine_scale_lanes(&scaled, &term, sum->terms[k].scale);
         total = *out;
         affine_add_lanes(out, &total, &scaled);
-        AFFINE_EACH_LANE size[l] += fabs(scaled.centre[l]) + fabs(scaled.slope[l]) + scaled.error[l];
+        AFFINE_EACH_LANE size[l] += fabs(scaled.centre[l]) + fabs(scaled.slope[l]) + scaled.error[l] + sum->terms[k].rounding;
     }
     double middle = k < sum->count ? sum->rest_low[k] / 2 + sum->rest_high[k] / 2 : 0;
     double half = k < sum->count ? bound_max(sum->rest_high[k] - middle, middle - sum->rest_low[k]) : 0;

@@ -5,6 +5,7 @@
 #include "bounds_sample.h"
 #include "tape/noise.h"
 #include "tape/noise_interval.h"
+#include "tape/noise_nodes_forms.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -167,10 +168,47 @@ static void nodes_hold_their_values(void **state) {
     }
 }
 
+/* Pieces of a line as a search makes them: neighbours share the nodes and impulses about them. */
+static void nodes_along_lines_hold_their_values(void **state) {
+    (void)state;
+    double tight = 0, count = 0;
+    for (uint64_t i = 0; i < 8000; i++) {
+        enum { COUNT = AFFINE_LANES };
+        AffineForm place[3 * COUNT], worley[WORLEY_NODES * COUNT], sparse[COUNT];
+        double half = ldexp(0.7, -(int)(bits(i, 1) % 20)), far = i % 5 ? 20 : 1e8, off = i % 3 ? 0 : 0.01 * half;
+        int last = (int)(i % WORLEY_NODES), impulses = 1 + (int)(i % 12), pieces = 1 + (int)(i % COUNT);
+        for (uint32_t k = 0; k < 3; k++) {
+            double origin = far * (unit(i, 2 + k) - 0.5), along = 2 * unit(i, 5 + k) - 1;
+            for (int n = 0; n < pieces; n++)
+                place[(int)k * pieces + n] = (AffineForm){origin + 2 * n * half * along, half * along, off + far * 0x1p-50, false};
+        }
+        affine_worley(pieces, place, last, worley);
+        affine_sparse_convolution(pieces, place, impulses, sparse);
+        for (int n = 0; n < pieces; n++)
+            for (uint32_t t = 0; t < 5; t++) {
+                double s = t == 0 ? -1 : t == 1 ? 1 : 2 * unit(i, 20 + t) - 1, x[3], nearest[WORLEY_NODES];
+                for (int k = 0; k < 3; k++) {
+                    const AffineForm f = place[k * pieces + n];
+                    x[k] = f.centre + f.slope * s + off * (2 * unit(i, 30 + t) - 1);
+                }
+                noise_worley_nearest(vec3(x[0], x[1], x[2]), last, nearest);
+                for (int k = 0; k <= last; k++) {
+                    const AffineForm f = worley[k * pieces + n];
+                    assert_true(fabs(nearest[k] - (f.centre + f.slope * s)) <= f.error * (1 + 1e-12));
+                    if (half < 1e-3 && off == 0 && far < 100) tight += f.error < 0.1 * half, count++;
+                }
+                const AffineForm f = sparse[n];
+                assert_true(fabs(noise_sparse_convolution(vec3(x[0], x[1], x[2]), impulses) - (f.centre + f.slope * s)) <= f.error * (1 + 1e-12));
+            }
+    }
+    assert_true(tight > 0.97 * count); /* else two nodes are as far there, or one is close */
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_operation_holds_its_values), cmocka_unit_test(noises_hold_their_values), cmocka_unit_test(constants_hold_their_values),
         cmocka_unit_test(sums_hold_their_values),           cmocka_unit_test(nodes_hold_their_values),
+        cmocka_unit_test(nodes_along_lines_hold_their_values),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,12 +16,14 @@ struct VolumeLight {
     size_t nodes;
     float (*depths)[3];     /* [light][node] */
     uint8_t *states;        /* LightState */
-    /* Light that was scattered before it is scattered again, from all lamps, and all of the sky's: for each bin its part of the spherical harmonics, as
-     * what a unit of density there sends in all directions; the bin's mean density beside it, 0 where there is none. */
-    int bins[3];
+    /* Light that was scattered before it is scattered again, from all lamps, and all of the sky's: as what a unit of density there sends in all
+     * directions, in spherical harmonics, at nodes over the unit cube. */
+    int bins[3];            /* nodes: one more */
     int harmonics;          /* 1 or VOLUME_HARMONICS */
-    float (*kept)[3];       /* [bin][harmonic]; NULL: none */
-    float *matter;
+    float (*kept)[3];       /* [node][harmonic]; NULL: none */
+    /* While the light pass runs: of each bin its mean density, and what each length of the way through it sends. */
+    float *density;
+    float (*source)[3];     /* [bin][harmonic] */
 };
 
 /* Fills the set's lights by the scene's lamps and sky. False when interrupted. */
@@ -31,6 +33,8 @@ bool volumes_light(CompiledScene *compiled);
 void volume_harmonics(Vec3 direction, int count, double out[VOLUME_HARMONICS]);
 /* Of which degree each is. */
 static inline int volume_harmonic_degree(int i) { return i == 0 ? 0 : i < 4 ? 1 : 2; }
+
+static inline size_t volume_bins(const VolumeLight *light) { return (size_t)light->bins[0] * (size_t)light->bins[1] * (size_t)light->bins[2]; }
 
 /* The share of a lamp that comes to a place of the volume, `unit` in its unit cube. */
 Vec3f volume_lamp(const CompiledVolume *volume, SurfaceTracer *tracer, size_t light, const LightRay *way, Vec3 unit, Vec3 point);

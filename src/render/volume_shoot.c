@@ -1,12 +1,14 @@
 #include "render/volume_shoot.h"
 
+#include "render/volume_bins.h"
+
 #include <string.h>
 
 /* Paths begin where lamps' light is scattered first: at places drawn in proportion to how much that is, which is known from the lamps' depths. (Blasi, Le
  * Saec & Schlick 1993 shoot from the lamps, which loses what misses, and lamps whose light does not fall with distance are none that could shoot.) */
 
-enum { BATCHES = 8, MOST_TURNS = 20000, MATTER_ACROSS = 3 };
-static const double RAYS_AUTO = 1 << 17, LEAST_RAYS = 1 << 12, MOST_RAYS = 1 << 26;
+enum { BATCHES = 8, MOST_TURNS = 20000 };
+static const double MOST_RAYS = 1 << 26;
 
 typedef struct Shooting {
     CompiledScene *compiled;
@@ -18,7 +20,9 @@ typedef struct Shooting {
     size_t *first_bin;       /* of each volume in a batch, in harmonics */
     size_t batch_size;
     float (*batches)[3];
-    uint64_t lamp_rays, sky_rays; /* of each batch */
+    BinWalk *walks;          /* room for each batch */
+    uint64_t begin, end;     /* rays of the round, in each batch */
+    uint64_t *collisions;    /* of each batch so far */
     double lamp_total;
     Vec3 middle;
     double radius;
@@ -109,21 +113,55 @@ typedef struct Shot {
     SurfaceTracer tracer;
     RandomStream random;
     float (*bins)[3]; /* of the batch */
+    BinWalk *walks;
+    uint64_t collisions;
     double weight[3]; /* power */
     double whole;     /* at the beginning */
 } Shot;
 
-static void keep(const Shot *shot, const Collision *at, Vec3 point, Vec3 direction) {
-    const CompiledVolume *v = at->volume;
-    const VolumeLight *light = v->light;
-    Vec3 unit = volume_unit(v, point);
-    double shape[VOLUME_HARMONICS];
-    size_t bin = 0;
-    for (int k = 2; k >= 0; k--) bin = bin * (size_t)light->bins[k] + (size_t)double_to_int(vec3_get(unit, k) * light->bins[k], 0, light->bins[k] - 1);
-    float(*out)[3] = shot->bins + shot->shooting->first_bin[v - shot->shooting->set->items] + bin * (size_t)light->harmonics;
-    volume_harmonics(direction, light->harmonics, shape);
-    for (int i = 0; i < light->harmonics; i++)
-        for (int c = 0; c < 3; c++) out[i][c] += (float)(shot->weight[c] * shape[i]);
+static bool is_grey(const CompiledVolume *v) { return v->extinction[0] == v->extinction[1] && v->extinction[1] == v->extinction[2]; }
+
+/* Adds what a free path up to t brings to the bins on its way: its power times the length within each, which divided by the bin's volume is the light there, whether
+ * there is matter or not. Where colours go different ways the path was drawn as one of them, by its share: what of the others came so far is weighed by that. */
+static void keep(const Shot *shot, const Ray *ray, double t, const double power[3]) {
+    const VolumeSet *set = shot->shooting->set;
+    double shape[VOLUME_HARMONICS] = {0}, depth[3] = {0, 0, 0}, whole = power[0] + power[1] + power[2];
+    float weighted[VOLUME_HARMONICS][3];
+    bool grey = true;
+    int harmonics = 1;
+    for (size_t i = 0; i < set->count; i++) {
+        grey &= is_grey(&set->items[i]);
+        harmonics = int_max(harmonics, set->items[i].light->harmonics);
+    }
+    volume_harmonics(ray->direction, harmonics, shape);
+    for (int h = 0; h < harmonics; h++)
+        for (int c = 0; c < 3; c++) weighted[h][c] = (float)(power[c] * shape[h]);
+    BinSweep sweep;
+    bin_sweep_begin(&sweep, shot->walks, set, ray, 0, t);
+    while (bin_sweep_next(&sweep)) {
+        double length = sweep.t1 - sweep.t0;
+        float share[3] = {(float)length, (float)length, (float)length};
+        if (!grey) {
+            double passing[3], mean = 0;
+            for (int i = 0; i < sweep.count; i++)
+                for (int c = 0; c < 3 && bin_sweep_has(&sweep, &sweep.walks[i]); c++)
+                    depth[c] += 0.5 * length * (double)sweep.walks[i].volume->light->density[sweep.walks[i].bin] * sweep.walks[i].volume->extinction[c];
+            double least = double_min(depth[0], double_min(depth[1], depth[2]));
+            for (int c = 0; c < 3; c++) mean += power[c] / whole * (passing[c] = exp(least - depth[c]));
+            for (int c = 0; c < 3; c++) share[c] = (float)(length * passing[c] / mean);
+            for (int i = 0; i < sweep.count; i++)
+                for (int c = 0; c < 3 && bin_sweep_has(&sweep, &sweep.walks[i]); c++)
+                    depth[c] += 0.5 * length * (double)sweep.walks[i].volume->light->density[sweep.walks[i].bin] * sweep.walks[i].volume->extinction[c];
+        }
+        for (int i = 0; i < sweep.count; i++) {
+            const BinWalk *w = &sweep.walks[i];
+            if (!bin_sweep_has(&sweep, w)) continue;
+            int count = w->volume->light->harmonics;
+            float(*out)[3] = shot->bins + shot->shooting->first_bin[w->volume - set->items] + w->bin * (size_t)count;
+            for (int h = 0; h < count; h++)
+                for (int c = 0; c < 3; c++) out[h][c] += weighted[h][c] * share[c];
+        }
+    }
 }
 
 static Vec3 scatter(Shot *shot, const CompiledVolume *v, Vec3 direction) {
@@ -131,19 +169,21 @@ static Vec3 scatter(Shot *shot, const CompiledVolume *v, Vec3 direction) {
     return phase_turn(direction, mu, random_next_unit(&shot->random));
 }
 
+int volume_most_turns(const VolumeSet *set) { return set->orders ? int_min(set->orders - 2, MOST_TURNS) : MOST_TURNS; }
+
 /* On from a place; `order` turns are behind it. */
 static void follow(Shot *shot, Ray ray, int order) {
     const Shooting *s = shot->shooting;
-    int most = s->set->orders ? int_min(s->set->orders, MOST_TURNS) : MOST_TURNS;
-    for (; order < most; order++) {
+    for (int most = volume_most_turns(s->set); order <= most; order++) {
         Collision at;
         bool met;
+        const double power[3] = {shot->weight[0], shot->weight[1], shot->weight[2]};
         double clear = volume_clear_way(s->compiled, &ray, &met);
-        if (!volume_collide(s->set, &shot->random, shot->weight, &ray, clear, RAY_MIRRORS, &at)) return;
-        Vec3 point = vec3_madd(ray.origin, ray.direction, at.t);
-        keep(shot, &at, point, ray.direction);
-        if (!volume_survives(&shot->random, shot->weight, shot->whole)) return;
-        ray = (Ray){point, scatter(shot, at.volume, ray.direction)};
+        bool collides = volume_collide(s->set, &shot->random, shot->weight, &ray, clear, RAY_MIRRORS, &at);
+        keep(shot, &ray, at.t, power);
+        shot->collisions++;
+        if (!collides || !volume_survives(&shot->random, shot->weight, shot->whole)) return;
+        ray = (Ray){vec3_madd(ray.origin, ray.direction, at.t), scatter(shot, at.volume, ray.direction)};
     }
 }
 
@@ -153,7 +193,7 @@ static bool set_power(Shot *shot, const double power[3]) {
     return shot->whole > 0 && isfinite(shot->whole);
 }
 
-static void shoot_lamp(Shot *shot, double u, double rays) {
+static void shoot_lamp(Shot *shot, double u) {
     const Shooting *s = shot->shooting;
     size_t entry = draw_entry(s, u), i = 0;
     while (entry >= s->first_entry[i + 1]) i++;
@@ -170,7 +210,7 @@ static void shoot_lamp(Shot *shot, double u, double rays) {
     if (!(density > 0) || !(chance > 0)) return;
     LightRay way = light_ray(&s->compiled->scene->lights[l], point);
     Vec3f color = vec3f_mul(way.color, volume_lamp(v, &shot->tracer, l, &way, unit, point));
-    double scale = VOLUME_IRRADIANCE * density * volume_of(v) / (double)cells_of(light) / chance / rays;
+    double scale = VOLUME_IRRADIANCE * density * volume_of(v) / (double)cells_of(light) / chance;
     const double colors[3] = {(double)color.x, (double)color.y, (double)color.z};
     for (int k = 0; k < 3; k++) power[k] = colors[k] * v->scattering[k] * scale;
     if (!set_power(shot, power)) return;
@@ -178,13 +218,13 @@ static void shoot_lamp(Shot *shot, double u, double rays) {
 }
 
 /* From all around, through discs that the volumes lie behind. */
-static void shoot_sky(Shot *shot, double u, double rays) {
+static void shoot_sky(Shot *shot, double u) {
     const Shooting *s = shot->shooting;
     double z = 1 - 2 * u, turn = 2 * VTS_PI * random_next_unit(&shot->random), r = sqrt(double_max(0, 1 - z * z)), power[3];
     Vec3 from = vec3(r * cos(turn), z, r * sin(turn)), a, b;
     Vec3f sky = sky_radiance(s->compiled->scene, from, 0);
     double out = s->radius * sqrt(random_next_unit(&shot->random)), around = 2 * VTS_PI * random_next_unit(&shot->random);
-    double scale = 4 * VTS_PI * VTS_PI * s->radius * s->radius / rays;
+    double scale = 4 * VTS_PI * VTS_PI * s->radius * s->radius;
     power[0] = (double)sky.x * scale, power[1] = (double)sky.y * scale, power[2] = (double)sky.z * scale;
     if (!set_power(shot, power)) return;
     vec3_frame(from, &a, &b);
@@ -193,58 +233,160 @@ static void shoot_sky(Shot *shot, double u, double rays) {
     follow(shot, (Ray){start, vec3_negate(from)}, 0);
 }
 
+/* Number i of a sequence that spreads evenly over [0, 1) however far it goes: multiples of the golden ratio. More rays go on where fewer ended. */
+static double spread(uint64_t i) { return random_unit(i * 0x9E3779B97F4A7C15u); }
+
 static void shoot_batch(void *context, size_t batch, int worker) {
     Shooting *s = context;
-    Shot shot = {.shooting = s, .tracer = tracer_of_surfaces(s->tracers[worker]), .bins = s->batches + batch * s->batch_size};
+    Shot shot = {.shooting = s, .tracer = tracer_of_surfaces(s->tracers[worker]), .bins = s->batches + batch * s->batch_size, .walks = s->walks + batch * s->set->count};
     const atomic_bool *interrupted = s->compiled->options->interrupted;
-    for (uint64_t i = 0; i < s->lamp_rays && s->lamp_total > 0 && !(interrupted && *interrupted); i++) {
-        shot.random.state = random_hash(batch, i, 0x6c616d70, 0);
-        double u = ((double)(i * BATCHES + batch) + random_next_unit(&shot.random)) / (double)(s->lamp_rays * BATCHES);
-        shoot_lamp(&shot, u, (double)(s->lamp_rays * BATCHES));
+    for (uint64_t i = s->begin; i < s->end && !(interrupted && *interrupted); i++) {
+        uint64_t number = i * BATCHES + batch;
+        shot.random.state = random_hash(number, 0x6c616d70, 0, 0);
+        if (s->lamp_total > 0 && volume_most_turns(s->set) > 0) shoot_lamp(&shot, spread(number));
+        shot.random.state = random_hash(number, 0x736b79, 0, 0);
+        if (s->set->sky) shoot_sky(&shot, spread(number));
     }
-    for (uint64_t i = 0; i < s->sky_rays && !(interrupted && *interrupted); i++) {
-        shot.random.state = random_hash(batch, i, 0x736b79, 0);
-        double u = ((double)(i * BATCHES + batch) + random_next_unit(&shot.random)) / (double)(s->sky_rays * BATCHES);
-        shoot_sky(&shot, u, (double)(s->sky_rays * BATCHES));
+    s->collisions[batch] += shot.collisions;
+}
+
+/* ---- how many ---- */
+
+enum { FIRST_ROUND = 1 << 10 };
+/* Rays are doubled until the error of the bins' light is below this multiple of max_error: a node sees many bins, and a pixel many nodes. Or until so many free paths. */
+static const double BIN_ERROR = 6, MOST_FREE_PATHS = 3e7, RAYS_AT_MOST = 1 << 22;
+
+/* Of the light of all bins that hold something, on the mean, as brightness of matter that hides what is behind; found by what batches differ. */
+static double error_of_bins(const Shooting *s, double rays) {
+    double sum = 0, weights = 0;
+    for (size_t n = 0; n < s->set->count; n++) {
+        const CompiledVolume *v = &s->set->items[n];
+        const VolumeLight *light = v->light;
+        double size = volume_of(v) / (double)volume_bins(light) * rays, shine = 0.28209479177387814 * brightness(v->scattering) / brightness(v->extinction);
+        for (size_t bin = 0; bin < volume_bins(light); bin++) {
+            double mean = 0, spread_sum = 0, weight = (double)light->density[bin] * brightness(v->extinction);
+            if (!(weight > 0)) continue;
+            const float(*first)[3] = (const float(*)[3])s->batches + s->first_bin[n] + bin * (size_t)light->harmonics;
+            for (size_t b = 0; b < BATCHES; b++) mean += (double)first[b * s->batch_size][1] / BATCHES;
+            for (size_t b = 0; b < BATCHES; b++) spread_sum += ((double)first[b * s->batch_size][1] - mean) * ((double)first[b * s->batch_size][1] - mean);
+            double scale = shine / size;
+            weight = double_min(weight, 1 / cbrt(volume_of(v) / (double)volume_bins(light)));
+            sum += weight * scale * scale * spread_sum * BATCHES / (BATCHES - 1);
+            weights += weight;
+        }
+    }
+    return weights > 0 ? sqrt(sum / weights) : 0;
+}
+
+static double free_paths(const Shooting *s) {
+    double sum = 0;
+    for (size_t b = 0; b < BATCHES; b++) sum += (double)s->collisions[b];
+    return sum;
+}
+
+/* Returns how many rays were shot; 0 when interrupted. */
+static double shoot_rounds(Shooting *s) {
+    double asked = 0, rays = 0;
+    for (size_t i = 0; i < s->set->count; i++) asked = double_max(asked, s->set->items[i].volume->rays);
+    asked = double_min(asked, MOST_RAYS);
+    double next = asked > 0 ? asked : FIRST_ROUND;
+    for (;;) {
+        s->begin = s->end, s->end = (uint64_t)ceil(next / BATCHES);
+        if (!pool_run(s->compiled->options->pool, BATCHES, shoot_batch, s)) return 0;
+        rays = (double)s->end * BATCHES;
+        next = 2 * rays;
+        if (asked > 0 || next > RAYS_AT_MOST || 2 * free_paths(s) > MOST_FREE_PATHS) return rays;
+        if (rays > 4 * FIRST_ROUND && error_of_bins(s, rays) < BIN_ERROR * s->compiled->max_error) return rays;
     }
 }
 
 /* ---- what is kept ---- */
 
-static double mean_density(const CompiledVolume *v, const int at[3]) {
-    const int *n = v->light->bins;
-    double sum = 0;
-    for (int i = 0; i < MATTER_ACROSS * MATTER_ACROSS * MATTER_ACROSS; i++) {
-        Vec3 unit = vec3((at[0] + (i % 3 + 0.5) / 3) / n[0], (at[1] + (i / 3 % 3 + 0.5) / 3) / n[1], (at[2] + (i / 9 + 0.5) / 3) / n[2]);
-        sum += density_at(v, unit, volume_point(v, unit));
-    }
-    return sum / (MATTER_ACROSS * MATTER_ACROSS * MATTER_ACROSS);
+static Vec3 bin_place(const VolumeLight *light, const int at[3], const double in[3]) {
+    const int *n = light->bins;
+    return vec3((at[0] + in[0]) / n[0], (at[1] + in[1]) / n[1], (at[2] + in[2]) / n[2]);
 }
 
-static void settle_volume(const Shooting *s, size_t number) {
-    const CompiledVolume *v = &s->set->items[number];
+enum { LEAST_ACROSS = 3, MOST_ACROSS = 6 };
+
+static double mean_density(const CompiledVolume *v, const int at[3]) {
+    int across[3];
+    double sum = 0;
+    for (int k = 0; k < 3; k++) across[k] = v->body ? MOST_ACROSS : int_clamp(2 * v->lattice.size[k] / v->light->bins[k], LEAST_ACROSS, MOST_ACROSS);
+    for (int z = 0; z < across[2]; z++)
+        for (int y = 0; y < across[1]; y++)
+            for (int x = 0; x < across[0]; x++) {
+                Vec3 unit = bin_place(v->light, at, (double[3]){(x + 0.5) / across[0], (y + 0.5) / across[1], (z + 0.5) / across[2]});
+                sum += density_at(v, unit, volume_point(v, unit));
+            }
+    return sum / (across[0] * across[1] * across[2]);
+}
+
+/* Lamps' light that is scattered for the first time in the bin: of eight places. */
+static void add_lamps(const Shooting *s, const CompiledVolume *v, SurfaceTracer *tracer, const int at[3], double (*sent)[3]) {
+    const Scene *scene = s->compiled->scene;
+    for (int corner = 0; corner < 8; corner++) {
+        Vec3 unit = bin_place(v->light, at, (double[3]){corner & 1 ? 0.75 : 0.25, corner & 2 ? 0.75 : 0.25, corner & 4 ? 0.75 : 0.25}), point = volume_point(v, unit);
+        double density = density_at(v, unit, point), shape[VOLUME_HARMONICS];
+        for (size_t l = 0; l < scene->light_count && density > 0; l++) {
+            if (!light_shines_on(&scene->lights[l], NULL)) continue;
+            LightRay way = light_ray(&scene->lights[l], point);
+            if (way.color.x == 0 && way.color.y == 0 && way.color.z == 0) continue;
+            Vec3f light = vec3f_mul(way.color, volume_lamp(v, tracer, l, &way, unit, point));
+            const double color[3] = {(double)light.x, (double)light.y, (double)light.z};
+            volume_harmonics(vec3_negate(way.direction), v->light->harmonics, shape);
+            for (int h = 0; h < v->light->harmonics; h++)
+                for (int c = 0; c < 3; c++) sent[h][c] += density / 8 * VOLUME_IRRADIANCE * color[c] * shape[h];
+        }
+    }
+}
+
+typedef struct Settling {
+    const Shooting *shooting;
+    size_t number;
+    double rays;
+} Settling;
+
+static void measure_row(void *context, size_t row, int worker) {
+    const Settling *g = context;
+    const CompiledVolume *v = &g->shooting->set->items[g->number];
+    const int *n = v->light->bins;
+    (void)worker;
+    int at[3] = {0, (int)(row % (size_t)n[1]), (int)(row / (size_t)n[1])};
+    for (; at[0] < n[0]; at[0]++) v->light->density[row * (size_t)n[0] + (size_t)at[0]] = (float)mean_density(v, at);
+}
+
+static void settle_row(void *context, size_t row, int worker) {
+    const Settling *g = context;
+    const Shooting *s = g->shooting;
+    const CompiledVolume *v = &s->set->items[g->number];
     VolumeLight *light = v->light;
     const int *n = light->bins;
-    double size = volume_of(v) / ((double)n[0] * n[1] * n[2]);
-    size_t bin = 0;
-    for (int z = 0; z < n[2]; z++)
-        for (int y = 0; y < n[1]; y++)
-            for (int x = 0; x < n[0]; x++, bin++) {
-                light->matter[bin] = (float)mean_density(v, (int[3]){x, y, z});
-                for (int i = 0; i < light->harmonics; i++)
-                    for (int c = 0; c < 3; c++) {
-                        double sum = 0;
-                        size_t place = bin * (size_t)light->harmonics + (size_t)i;
-                        for (size_t b = 0; b < BATCHES; b++) sum += (double)s->batches[b * s->batch_size + s->first_bin[number] + place][c];
-                        light->kept[place][c] = (float)(sum / size * v->moments[volume_harmonic_degree(i)]);
-                    }
+    double size = volume_of(v) / (double)volume_bins(light) * g->rays;
+    SurfaceTracer tracer = tracer_of_surfaces(s->tracers[worker]);
+    int at[3] = {0, (int)(row % (size_t)n[1]), (int)(row / (size_t)n[1])};
+    for (; at[0] < n[0]; at[0]++) {
+        size_t bin = row * (size_t)n[0] + (size_t)at[0], place = bin * (size_t)light->harmonics;
+        double sent[VOLUME_HARMONICS][3] = {{0}};
+        if (!(light->density[bin] > 0)) continue;
+        if (volume_most_turns(s->set) >= 0) add_lamps(s, v, &tracer, at, sent);
+        for (int h = 0; h < light->harmonics; h++)
+            for (int c = 0; c < 3; c++) {
+                double sum = 0;
+                for (size_t b = 0; b < BATCHES; b++) sum += (double)s->batches[b * s->batch_size + s->first_bin[g->number] + place + (size_t)h][c];
+                if (g->rays > 0) sent[h][c] += (double)light->density[bin] * sum / size;
+                light->source[place + (size_t)h][c] = (float)(sent[h][c] * v->scattering[c] * v->moments[volume_harmonic_degree(h)]);
             }
+    }
 }
 
-static double rays_wanted(const CompiledScene *compiled, const VolumeSet *set) {
-    double rays = 0, e = compiled->max_error * 255;
-    for (size_t i = 0; i < set->count; i++) rays = double_max(rays, set->items[i].volume->rays);
-    return rays > 0 ? double_clamp(rays, 1, MOST_RAYS) : double_clamp(RAYS_AUTO / (e * e), LEAST_RAYS, 16 * RAYS_AUTO);
+static bool for_rows(const Shooting *s, double rays, void (*job)(void *, size_t, int)) {
+    for (size_t i = 0; i < s->set->count; i++) {
+        Settling g = {s, i, rays};
+        const int *n = s->set->items[i].light->bins;
+        if (!pool_run(s->compiled->options->pool, (size_t)n[1] * (size_t)n[2], job, &g)) return false;
+    }
+    return true;
 }
 
 bool volumes_shoot(CompiledScene *compiled, Tracer **tracers) {
@@ -254,22 +396,23 @@ bool volumes_shoot(CompiledScene *compiled, Tracer **tracers) {
     Shooting s = {.compiled = compiled, .set = set, .tracers = tracers};
     s.first_entry = arena_new_array(scratch, size_t, set->count + 1);
     s.first_bin = arena_new_array(scratch, size_t, set->count);
+    s.collisions = arena_new_array(scratch, uint64_t, BATCHES);
+    s.walks = arena_new_array(scratch, BinWalk, set->count * BATCHES);
     for (size_t i = 0; i < set->count; i++) {
         const VolumeLight *light = set->items[i].light;
         s.entries += compiled->scene->light_count * cells_of(light);
         s.first_bin[i] = s.batch_size;
-        s.batch_size += (size_t)light->bins[0] * (size_t)light->bins[1] * (size_t)light->bins[2] * (size_t)light->harmonics;
+        s.batch_size += volume_bins(light) * (size_t)light->harmonics;
     }
     s.chances = arena_new_array(scratch, double, s.entries + 1);
     s.batches = arena_push_array_(scratch, s.batch_size * BATCHES, sizeof *s.batches);
     s.middle = vec3_lerp(set->bounds.min, set->bounds.max, 0.5);
     s.radius = vec3_length(vec3_sub(set->bounds.max, set->bounds.min)) / 2;
     tabulate(&s);
-    double rays = rays_wanted(compiled, set);
-    s.lamp_rays = set->orders == 1 ? 0 : (uint64_t)ceil(rays / BATCHES);
-    s.sky_rays = set->sky ? (uint64_t)ceil(rays / BATCHES) : 0;
-    bool done = pool_run(compiled->options->pool, BATCHES, shoot_batch, &s);
-    for (size_t i = 0; i < set->count; i++) settle_volume(&s, i);
+    double rays = 0;
+    bool done = for_rows(&s, 0, measure_row);
+    if (done && volume_most_turns(set) >= (set->sky ? 0 : 1)) done = (rays = shoot_rounds(&s)) > 0;
+    done = done && for_rows(&s, rays, settle_row);
     arena_reset_to(scratch, mark);
     return done && !(compiled->options->interrupted && *compiled->options->interrupted);
 }

@@ -5,8 +5,13 @@
 #include "render/integrate.h"
 #include "render/volume_light.h"
 
-/* Fills `kept` and `matter` of all volumes. `tracers`: one for each worker. The same for any number of workers. False when interrupted. */
+/* Fills `density` and `source` of all volumes by paths. `tracers`: one for each worker. The same for any number of workers. False when interrupted. */
 bool volumes_shoot(CompiledScene *compiled, Tracer **tracers);
+/* Fills `kept` of all volumes: at each node the light is asked for that comes there from the bins all around, and from the sky. volume_around.c */
+bool volumes_look_around(CompiledScene *compiled, Tracer **tracers);
+
+/* How many turns the paths may have behind them when they come to where they are kept; the look around adds one, and the view another. */
+int volume_most_turns(const VolumeSet *set);
 
 /* The place in the scene of one in the volume's unit cube. */
 Vec3 volume_point(const CompiledVolume *volume, Vec3 unit);

@@ -1,0 +1,137 @@
+/* What comes to the nodes from all around. Bins know how much light paths have brought them on the mean, which is uncertain where few came; a node sees many bins, in
+ * proportion to what they send there, and so knows more: also where there is hardly any matter that paths could have met, or the sky is nearly all that is seen. */
+#include "render/volume_bins.h"
+#include "render/volume_shoot.h"
+
+enum { RINGS = 4, DIRECTIONS = 2 * RINGS * RINGS };
+/* The rest is as bright as where the ray is now. */
+static const float SEEN_THROUGH = 2e-3f;
+
+typedef struct Around {
+    CompiledScene *compiled;
+    CompiledVolume *volume;
+    Tracer **tracers;
+    BinWalk *walks; /* room for each worker */
+    Vec3 directions[DIRECTIONS];
+    double weights[DIRECTIONS];
+} Around;
+
+/* Gauss' and Legendre's rule over the height by equal steps around: exact for spherical harmonics up to degree 7. */
+static void lay_directions(Around *a) {
+    static const double heights[2] = {0.33998104358485626, 0.86113631159405258}, weights[2] = {0.65214515486254614, 0.34785484513745386};
+    for (int i = 0; i < DIRECTIONS; i++) {
+        int ring = i / (2 * RINGS), side = ring / 2;
+        double z = ring & 1 ? -heights[side] : heights[side], r = sqrt(1 - z * z), turn = 2 * VTS_PI * (i % (2 * RINGS) + 0.5 * (ring & 1)) / (2 * RINGS);
+        a->directions[i] = vec3(r * cos(turn), r * sin(turn), z);
+        a->weights[i] = weights[side] * 2 * VTS_PI / (2 * RINGS);
+    }
+}
+
+/* A rotation of its own for each node, so that what the rule misses is no pattern. */
+static Mat3 turn_of(size_t node) {
+    RandomStream random = {random_hash(node, 0x61726f75, 0, 0)};
+    double z = 1 - 2 * random_next_unit(&random), around = 2 * VTS_PI * random_next_unit(&random), spin = 2 * VTS_PI * random_next_unit(&random);
+    double r = sqrt(double_max(0, 1 - z * z));
+    Mat3 out;
+    Vec3 s, t;
+    out.c[2] = vec3(r * cos(around), r * sin(around), z);
+    vec3_frame(out.c[2], &s, &t);
+    out.c[0] = vec3_madd(vec3_scale(s, cos(spin)), t, sin(spin));
+    out.c[1] = vec3_cross(out.c[2], out.c[0]);
+    return out;
+}
+
+/* What is sent by a length of the piece, and how much is turned aside or swallowed. */
+static void mix(const BinSweep *sweep, const float shape[VOLUME_HARMONICS], float sent[3], float extinction[3]) {
+    for (int c = 0; c < 3; c++) sent[c] = extinction[c] = 0;
+    for (int i = 0; i < sweep->count; i++) {
+        const BinWalk *w = &sweep->walks[i];
+        const CompiledVolume *v = w->volume;
+        float density = v->light->density[w->bin];
+        if (!bin_sweep_has(sweep, w) || !(density > 0)) continue;
+        const float(*source)[3] = (const float(*)[3])v->light->source + w->bin * (size_t)v->light->harmonics;
+        for (int h = 0; h < v->light->harmonics; h++)
+            for (int c = 0; c < 3; c++) sent[c] += shape[h] * source[h][c];
+        for (int c = 0; c < 3; c++) extinction[c] += density * (float)v->extinction[c];
+    }
+}
+
+static Vec3f seen_along(const Around *a, BinWalk *walks, const Ray *ray, const float shape[VOLUME_HARMONICS]) {
+    const VolumeSet *set = a->compiled->volumes;
+    bool met;
+    double clear = volume_clear_way(a->compiled, ray, &met);
+    float sum[3] = {0, 0, 0}, passing[3] = {1, 1, 1}, sent[3], extinction[3];
+    BinSweep sweep;
+    bin_sweep_begin(&sweep, walks, set, ray, 0, clear);
+    while (bin_sweep_next(&sweep)) {
+        float length = (float)(sweep.t1 - sweep.t0), most = 0;
+        mix(&sweep, shape, sent, extinction);
+        float first = expf(-extinction[0] * length);
+        for (int c = 0; c < 3; c++) {
+            float depth = extinction[c] * length, rest = passing[c] * (extinction[c] == extinction[0] ? first : expf(-depth));
+            sum[c] += depth > 1e-3f ? sent[c] / extinction[c] * (passing[c] - rest) : passing[c] * sent[c] * length * (1 - depth / 2);
+            passing[c] = rest;
+            most = float_max(most, rest);
+        }
+        if (most > SEEN_THROUGH) continue;
+        for (int c = 0; c < 3; c++) sum[c] += extinction[c] > 0 ? passing[c] * sent[c] / extinction[c] : 0;
+        return vec3f(sum[0], sum[1], sum[2]);
+    }
+    Vec3f out = vec3f(sum[0], sum[1], sum[2]);
+    return set->sky && !met ? vec3f_add(out, vec3f_mul(sky_radiance(a->compiled->scene, ray->direction, 0), vec3f(passing[0], passing[1], passing[2]))) : out;
+}
+
+/* Whether any bin near the node holds something. */
+static bool is_needed(const VolumeLight *light, const int at[3]) {
+    for (int z = int_max(at[2] - 2, 0); z < int_min(at[2] + 2, light->bins[2]); z++)
+        for (int y = int_max(at[1] - 2, 0); y < int_min(at[1] + 2, light->bins[1]); y++)
+            for (int x = int_max(at[0] - 2, 0); x < int_min(at[0] + 2, light->bins[0]); x++)
+                if (light->density[((size_t)z * (size_t)light->bins[1] + (size_t)y) * (size_t)light->bins[0] + (size_t)x] > 0) return true;
+    return false;
+}
+
+static void look_from(const Around *a, BinWalk *walks, size_t node, Vec3 unit) {
+    const CompiledVolume *v = a->volume;
+    const VolumeLight *light = v->light;
+    const Vec3 point = volume_point(v, unit);
+    const Mat3 turn = turn_of(node);
+    double sum[VOLUME_HARMONICS][3] = {{0}};
+    for (int i = 0; i < DIRECTIONS; i++) {
+        const Ray ray = {point, mat3_apply(&turn, a->directions[i])};
+        double shape[VOLUME_HARMONICS] = {0};
+        float shapef[VOLUME_HARMONICS];
+        volume_harmonics(vec3_negate(ray.direction), VOLUME_HARMONICS, shape);
+        for (int h = 0; h < VOLUME_HARMONICS; h++) shapef[h] = (float)shape[h];
+        Vec3f seen = seen_along(a, walks, &ray, shapef);
+        const double color[3] = {(double)seen.x, (double)seen.y, (double)seen.z};
+        for (int h = 0; h < light->harmonics; h++)
+            for (int c = 0; c < 3; c++) sum[h][c] += a->weights[i] * shape[h] * color[c];
+    }
+    for (int h = 0; h < light->harmonics; h++)
+        for (int c = 0; c < 3; c++)
+            light->kept[node * (size_t)light->harmonics + (size_t)h][c] = (float)(sum[h][c] * v->moments[volume_harmonic_degree(h)] * v->scattering[c]);
+}
+
+static void look_row(void *context, size_t row, int worker) {
+    const Around *a = context;
+    const int *n = a->volume->light->bins;
+    int at[3] = {0, (int)(row % (size_t)(n[1] + 1)), (int)(row / (size_t)(n[1] + 1))};
+    const atomic_bool *interrupted = a->compiled->options->interrupted;
+    for (; at[0] <= n[0] && !(interrupted && *interrupted); at[0]++)
+        if (is_needed(a->volume->light, at))
+            look_from(a, a->walks + (size_t)worker * a->compiled->volumes->count, row * (size_t)(n[0] + 1) + (size_t)at[0],
+                      vec3((double)at[0] / n[0], (double)at[1] / n[1], (double)at[2] / n[2]));
+}
+
+bool volumes_look_around(CompiledScene *compiled, Tracer **tracers) {
+    const VolumeSet *set = compiled->volumes;
+    Around a = {.compiled = compiled, .tracers = tracers};
+    a.walks = arena_new_array(&compiled->scratch, BinWalk, (size_t)pool_threads(compiled->options->pool) * set->count);
+    lay_directions(&a);
+    for (size_t i = 0; i < set->count; i++) {
+        a.volume = &set->items[i];
+        const int *n = a.volume->light->bins;
+        if (!pool_run(compiled->options->pool, (size_t)(n[1] + 1) * (size_t)(n[2] + 1), look_row, &a)) return false;
+    }
+    return !(compiled->options->interrupted && *compiled->options->interrupted);
+}

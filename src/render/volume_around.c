@@ -1,4 +1,4 @@
-/* What comes to the nodes from all around. Bins know how much light paths have brought them on the mean, which is uncertain where few came; a node sees many bins, in
+/* What comes to each bin from all around. Bins know how much light paths have brought them on the mean, which is uncertain where few came. Looking around, a bin sees many, in
  * proportion to what they send there, and so knows more: also where there is hardly any matter that paths could have met, or the sky is nearly all that is seen. */
 #include "render/volume_bins.h"
 #include "render/volume_shoot.h"
@@ -27,7 +27,7 @@ static void lay_directions(Around *a) {
     }
 }
 
-/* A rotation of its own for each node, so that what the rule misses is no pattern. */
+/* A rotation of its own for each bin, so that what the rule misses is no pattern. */
 static Mat3 turn_of(size_t node) {
     RandomStream random = {random_hash(node, 0x61726f75, 0, 0)};
     double z = 1 - 2 * random_next_unit(&random), around = 2 * VTS_PI * random_next_unit(&random), spin = 2 * VTS_PI * random_next_unit(&random);
@@ -81,23 +81,42 @@ static Vec3f seen_along(const Around *a, BinWalk *walks, const Ray *ray, const f
     return set->sky && !met ? vec3f_add(out, vec3f_mul(sky_radiance(a->compiled->scene, ray->direction, 0), vec3f(passing[0], passing[1], passing[2]))) : out;
 }
 
-/* Whether any bin near the node holds something. */
-static bool is_needed(const VolumeLight *light, const int at[3]) {
-    for (int z = int_max(at[2] - 2, 0); z < int_min(at[2] + 2, light->bins[2]); z++)
-        for (int y = int_max(at[1] - 2, 0); y < int_min(at[1] + 2, light->bins[1]); y++)
-            for (int x = int_max(at[0] - 2, 0); x < int_min(at[0] + 2, light->bins[0]); x++)
-                if (light->density[((size_t)z * (size_t)light->bins[1] + (size_t)y) * (size_t)light->bins[0] + (size_t)x] > 0) return true;
-    return false;
+enum { ACROSS = 3, PLACES = ACROSS * ACROSS * ACROSS };
+
+/* Places within the bin, in its unit cube, as often as there is matter. */
+typedef struct Matter {
+    double sums[PLACES];
+    int at[3];
+} Matter;
+
+static bool find_matter(const CompiledVolume *v, Matter *out) {
+    double sum = 0;
+    for (int i = 0; i < PLACES; i++) {
+        const double in[3] = {(i % ACROSS + 0.5) / ACROSS, (i / ACROSS % ACROSS + 0.5) / ACROSS, (i / ACROSS / ACROSS + 0.5) / ACROSS};
+        out->sums[i] = sum += volume_density(v, volume_bin_place(v->light, out->at, in));
+    }
+    return sum > 0;
 }
 
-static void look_from(const Around *a, BinWalk *walks, size_t node, Vec3 unit) {
+static Vec3 draw_place(const CompiledVolume *v, const Matter *matter, double u, RandomStream *random) {
+    int i = 0;
+    while (i < PLACES - 1 && !(matter->sums[i] > u * matter->sums[PLACES - 1])) i++;
+    double x = random_next_unit(random), y = random_next_unit(random), z = random_next_unit(random);
+    const double in[3] = {(i % ACROSS + x) / ACROSS, (i / ACROSS % ACROSS + y) / ACROSS, (i / ACROSS / ACROSS + z) / ACROSS};
+    return volume_point(v, volume_bin_place(v->light, matter->at, in));
+}
+
+static void look_from(const Around *a, BinWalk *walks, size_t bin, const int at[3]) {
     const CompiledVolume *v = a->volume;
     const VolumeLight *light = v->light;
-    const Vec3 point = volume_point(v, unit);
-    const Mat3 turn = turn_of(node);
+    const Mat3 turn = turn_of(bin);
+    RandomStream random = {random_hash(bin, 0x706c6163, 0, 0)};
+    Matter matter = {.at = {at[0], at[1], at[2]}};
     double sum[VOLUME_HARMONICS][3] = {{0}};
+    if (!find_matter(v, &matter)) return;
     for (int i = 0; i < DIRECTIONS; i++) {
-        const Ray ray = {point, mat3_apply(&turn, a->directions[i])};
+        double u = (i * 7 % DIRECTIONS + random_next_unit(&random)) / DIRECTIONS; /* 7: neighbours in place are none in direction */
+        const Ray ray = {draw_place(v, &matter, u, &random), mat3_apply(&turn, a->directions[i])};
         double shape[VOLUME_HARMONICS] = {0};
         float shapef[VOLUME_HARMONICS];
         volume_harmonics(vec3_negate(ray.direction), VOLUME_HARMONICS, shape);
@@ -109,18 +128,19 @@ static void look_from(const Around *a, BinWalk *walks, size_t node, Vec3 unit) {
     }
     for (int h = 0; h < light->harmonics; h++)
         for (int c = 0; c < 3; c++)
-            light->kept[node * (size_t)light->harmonics + (size_t)h][c] = (float)(sum[h][c] * v->moments[volume_harmonic_degree(h)] * v->scattering[c]);
+            light->kept[bin * (size_t)light->harmonics + (size_t)h][c] = (float)(sum[h][c] * v->moments[volume_harmonic_degree(h)] * v->scattering[c]);
 }
 
 static void look_row(void *context, size_t row, int worker) {
     const Around *a = context;
-    const int *n = a->volume->light->bins;
-    int at[3] = {0, (int)(row % (size_t)(n[1] + 1)), (int)(row / (size_t)(n[1] + 1))};
+    const VolumeLight *light = a->volume->light;
+    const int *n = light->bins;
+    int at[3] = {0, (int)(row % (size_t)n[1]), (int)(row / (size_t)n[1])};
     const atomic_bool *interrupted = a->compiled->options->interrupted;
-    for (; at[0] <= n[0] && !(interrupted && *interrupted); at[0]++)
-        if (is_needed(a->volume->light, at))
-            look_from(a, a->walks + (size_t)worker * a->compiled->volumes->count, row * (size_t)(n[0] + 1) + (size_t)at[0],
-                      vec3((double)at[0] / n[0], (double)at[1] / n[1], (double)at[2] / n[2]));
+    for (; at[0] < n[0] && !(interrupted && *interrupted); at[0]++) {
+        size_t bin = row * (size_t)n[0] + (size_t)at[0];
+        if (light->density[bin] > 0) look_from(a, a->walks + (size_t)worker * a->compiled->volumes->count, bin, at);
+    }
 }
 
 bool volumes_look_around(CompiledScene *compiled, Tracer **tracers) {
@@ -131,7 +151,7 @@ bool volumes_look_around(CompiledScene *compiled, Tracer **tracers) {
     for (size_t i = 0; i < set->count; i++) {
         a.volume = &set->items[i];
         const int *n = a.volume->light->bins;
-        if (!pool_run(compiled->options->pool, (size_t)(n[1] + 1) * (size_t)(n[2] + 1), look_row, &a)) return false;
+        if (!pool_run(compiled->options->pool, (size_t)n[1] * (size_t)n[2], look_row, &a)) return false;
     }
     return !(compiled->options->interrupted && *compiled->options->interrupted);
 }

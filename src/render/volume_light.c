@@ -161,11 +161,12 @@ static void make_bins(CompiledScene *compiled, CompiledVolume *v) {
     VolumeLight *light = v->light;
     bool even = fabs(v->moments[1]) < 1e-3 && fabs(v->moments[2]) < 1e-3;
     divide(v, int_clamp(longest_of(&v->lattice), LEAST_BINS, MOST_BINS), light->bins);
-    size_t nodes = (size_t)(light->bins[0] + 1) * (size_t)(light->bins[1] + 1) * (size_t)(light->bins[2] + 1);
+    size_t bins = volume_bins(light);
     light->harmonics = even || v->volume->storage == VOLUME_STORAGE_ISOTROPIC ? 1 : VOLUME_HARMONICS;
-    light->kept = arena_push_array_(compiled->arena, nodes * (size_t)light->harmonics, sizeof *light->kept);
-    light->source = arena_push_array_(&compiled->scratch, volume_bins(light) * (size_t)light->harmonics, sizeof *light->source);
-    light->density = arena_new_array(&compiled->scratch, float, volume_bins(light));
+    light->kept = arena_push_array_(compiled->arena, bins * (size_t)light->harmonics, sizeof *light->kept);
+    light->source = arena_push_array_(&compiled->scratch, bins * (size_t)light->harmonics, sizeof *light->source);
+    if (compiled->volumes->orders == 0) light->reached = arena_push_array_(&compiled->scratch, bins, sizeof *light->reached);
+    light->density = arena_new_array(compiled->arena, float, bins);
 }
 
 bool volumes_light(CompiledScene *compiled) {
@@ -185,21 +186,55 @@ bool volumes_light(CompiledScene *compiled) {
     ArenaMark mark = arena_mark(&compiled->scratch);
     for (size_t i = 0; i < set->count; i++) make_bins(compiled, &set->items[i]);
     bool done = volumes_shoot(compiled, tracers) && volumes_look_around(compiled, tracers);
+    if (done) volumes_balance(compiled);
     arena_reset_to(&compiled->scratch, mark);
     return done;
 }
 
 /* ---- asking ---- */
 
+/* The eight bins around a place. Bins have their light in their middles; beyond the outermost it goes on as it went, where the density there is even
+ * enough for that. */
+static Corners bins_around(const VolumeLight *light, Vec3 unit) {
+    Corners out;
+    int first[3];
+    double t[3];
+    for (int k = 0; k < 3; k++) {
+        double x = double_clamp(vec3_get(unit, k), 0, 1) * light->bins[k] - 0.5;
+        first[k] = double_to_int(x, 0, light->bins[k] - 2);
+        t[k] = x - first[k];
+    }
+    float least = INFINITY, most = 0;
+    for (int corner = 0; corner < 8; corner++) {
+        size_t index = 0;
+        for (int k = 2; k >= 0; k--) index = index * (size_t)light->bins[k] + (size_t)(first[k] + (corner >> k & 1));
+        out.at[corner] = index;
+        least = float_min(least, light->density[index]), most = float_max(most, light->density[index]);
+    }
+    bool even = least > 0.5f * most;
+    for (int corner = 0; corner < 8; corner++) {
+        out.weight[corner] = 1;
+        for (int k = 0; k < 3; k++) {
+            double far = even ? t[k] : double_clamp(t[k], 0, 1);
+            out.weight[corner] *= corner >> k & 1 ? far : 1 - far;
+        }
+    }
+    return out;
+}
+
 Vec3f volume_kept(const CompiledVolume *v, Vec3 unit, const double shape[VOLUME_HARMONICS]) {
     const VolumeLight *light = v->light;
-    double sum[3] = {0, 0, 0};
+    double sum[3] = {0, 0, 0}, matter = 0;
     if (!light->kept) return vec3f(0, 0, 0);
-    const Corners around = corners_of(light->bins, unit);
+    const Corners around = bins_around(light, unit);
     for (int corner = 0; corner < 8; corner++) {
-        const float(*kept)[3] = (const float(*)[3])light->kept + around.at[corner] * (size_t)light->harmonics;
+        size_t index = around.at[corner];
+        const float(*kept)[3] = (const float(*)[3])light->kept + index * (size_t)light->harmonics;
+        double weight = around.weight[corner] * (double)light->density[index];
+        matter += weight;
         for (int i = 0; i < light->harmonics; i++)
-            for (int c = 0; c < 3; c++) sum[c] += around.weight[corner] * shape[i] * (double)kept[i][c];
+            for (int c = 0; c < 3; c++) sum[c] += weight * shape[i] * (double)kept[i][c];
     }
-    return vec3f((float)double_max(0, sum[0]), (float)double_max(0, sum[1]), (float)double_max(0, sum[2]));
+    if (!(matter > 0)) return vec3f(0, 0, 0);
+    return vec3f((float)double_max(0, sum[0] / matter), (float)double_max(0, sum[1] / matter), (float)double_max(0, sum[2] / matter));
 }

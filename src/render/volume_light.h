@@ -16,14 +16,15 @@ struct VolumeLight {
     size_t nodes;
     float (*depths)[3];     /* [light][node] */
     uint8_t *states;        /* LightState */
-    /* Light that was scattered before it is scattered again, from all lamps, and all of the sky's: as what a unit of density there sends in all
-     * directions, in spherical harmonics, at nodes over the unit cube. */
-    int bins[3];            /* nodes: one more */
+    /* Light that was scattered before it is scattered again, from all lamps, and all of the sky's: for each bin its part of the spherical harmonics, as
+     * what a unit of density there sends in all directions; the bin's mean density beside it, 0 where there is none. */
+    int bins[3];
     int harmonics;          /* 1 or VOLUME_HARMONICS */
-    float (*kept)[3];       /* [node][harmonic]; NULL: none */
-    /* While the light pass runs: of each bin its mean density, and what each length of the way through it sends. */
+    float (*kept)[3];       /* [bin][harmonic]; NULL: none */
     float *density;
+    /* While the light pass runs: what each length of the way through a bin sends; and its `kept` without directions, as paths found it (NULL: they did not) */
     float (*source)[3];     /* [bin][harmonic] */
+    float (*reached)[3];
 };
 
 /* Fills the set's lights by the scene's lamps and sky. False when interrupted. */

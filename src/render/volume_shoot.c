@@ -1,7 +1,5 @@
 #include "render/volume_shoot.h"
 
-#include "render/volume_bins.h"
-
 #include <string.h>
 
 /* Paths begin where lamps' light is scattered first: at places drawn in proportion to how much that is, which is known from the lamps' depths. (Blasi, Le
@@ -20,7 +18,6 @@ typedef struct Shooting {
     size_t *first_bin;       /* of each volume in a batch, in harmonics */
     size_t batch_size;
     float (*batches)[3];
-    BinWalk *walks;          /* room for each batch */
     uint64_t begin, end;     /* rays of the round, in each batch */
     uint64_t *collisions;    /* of each batch so far */
     double lamp_total;
@@ -34,8 +31,8 @@ Vec3 volume_unit(const CompiledVolume *v, Vec3 point) {
     return vec3((cells.x - 0.5) / n[0], (cells.y - 0.5) / n[1], (cells.z - 0.5) / n[2]);
 }
 
-static double density_at(const CompiledVolume *v, Vec3 unit, Vec3 point) {
-    if (v->body && !body_inside(v->body, transform_point_back(&v->body_place, point))) return 0;
+double volume_density(const CompiledVolume *v, Vec3 unit) {
+    if (v->body && !body_inside(v->body, transform_point_back(&v->body_place, volume_point(v, unit)))) return 0;
     const int *n = v->lattice.size;
     return lattice_value(&v->lattice, vec3(unit.x * n[0] + 0.5, unit.y * n[1] + 0.5, unit.z * n[2] + 0.5));
 }
@@ -113,55 +110,22 @@ typedef struct Shot {
     SurfaceTracer tracer;
     RandomStream random;
     float (*bins)[3]; /* of the batch */
-    BinWalk *walks;
     uint64_t collisions;
     double weight[3]; /* power */
     double whole;     /* at the beginning */
 } Shot;
 
-static bool is_grey(const CompiledVolume *v) { return v->extinction[0] == v->extinction[1] && v->extinction[1] == v->extinction[2]; }
-
-/* Adds what a free path up to t brings to the bins on its way: its power times the length within each, which divided by the bin's volume is the light there, whether
- * there is matter or not. Where colours go different ways the path was drawn as one of them, by its share: what of the others came so far is weighed by that. */
-static void keep(const Shot *shot, const Ray *ray, double t, const double power[3]) {
-    const VolumeSet *set = shot->shooting->set;
-    double shape[VOLUME_HARMONICS] = {0}, depth[3] = {0, 0, 0}, whole = power[0] + power[1] + power[2];
-    float weighted[VOLUME_HARMONICS][3];
-    bool grey = true;
-    int harmonics = 1;
-    for (size_t i = 0; i < set->count; i++) {
-        grey &= is_grey(&set->items[i]);
-        harmonics = int_max(harmonics, set->items[i].light->harmonics);
-    }
-    volume_harmonics(ray->direction, harmonics, shape);
-    for (int h = 0; h < harmonics; h++)
-        for (int c = 0; c < 3; c++) weighted[h][c] = (float)(power[c] * shape[h]);
-    BinSweep sweep;
-    bin_sweep_begin(&sweep, shot->walks, set, ray, 0, t);
-    while (bin_sweep_next(&sweep)) {
-        double length = sweep.t1 - sweep.t0;
-        float share[3] = {(float)length, (float)length, (float)length};
-        if (!grey) {
-            double passing[3], mean = 0;
-            for (int i = 0; i < sweep.count; i++)
-                for (int c = 0; c < 3 && bin_sweep_has(&sweep, &sweep.walks[i]); c++)
-                    depth[c] += 0.5 * length * (double)sweep.walks[i].volume->light->density[sweep.walks[i].bin] * sweep.walks[i].volume->extinction[c];
-            double least = double_min(depth[0], double_min(depth[1], depth[2]));
-            for (int c = 0; c < 3; c++) mean += power[c] / whole * (passing[c] = exp(least - depth[c]));
-            for (int c = 0; c < 3; c++) share[c] = (float)(length * passing[c] / mean);
-            for (int i = 0; i < sweep.count; i++)
-                for (int c = 0; c < 3 && bin_sweep_has(&sweep, &sweep.walks[i]); c++)
-                    depth[c] += 0.5 * length * (double)sweep.walks[i].volume->light->density[sweep.walks[i].bin] * sweep.walks[i].volume->extinction[c];
-        }
-        for (int i = 0; i < sweep.count; i++) {
-            const BinWalk *w = &sweep.walks[i];
-            if (!bin_sweep_has(&sweep, w)) continue;
-            int count = w->volume->light->harmonics;
-            float(*out)[3] = shot->bins + shot->shooting->first_bin[w->volume - set->items] + w->bin * (size_t)count;
-            for (int h = 0; h < count; h++)
-                for (int c = 0; c < 3; c++) out[h][c] += weighted[h][c] * share[c];
-        }
-    }
+static void keep(const Shot *shot, const Collision *at, Vec3 point, Vec3 direction) {
+    const CompiledVolume *v = at->volume;
+    const VolumeLight *light = v->light;
+    Vec3 unit = volume_unit(v, point);
+    double shape[VOLUME_HARMONICS];
+    size_t bin = 0;
+    for (int k = 2; k >= 0; k--) bin = bin * (size_t)light->bins[k] + (size_t)double_to_int(vec3_get(unit, k) * light->bins[k], 0, light->bins[k] - 1);
+    float(*out)[3] = shot->bins + shot->shooting->first_bin[v - shot->shooting->set->items] + bin * (size_t)light->harmonics;
+    volume_harmonics(direction, light->harmonics, shape);
+    for (int i = 0; i < light->harmonics; i++)
+        for (int c = 0; c < 3; c++) out[i][c] += (float)(shot->weight[c] * shape[i]);
 }
 
 static Vec3 scatter(Shot *shot, const CompiledVolume *v, Vec3 direction) {
@@ -177,13 +141,13 @@ static void follow(Shot *shot, Ray ray, int order) {
     for (int most = volume_most_turns(s->set); order <= most; order++) {
         Collision at;
         bool met;
-        const double power[3] = {shot->weight[0], shot->weight[1], shot->weight[2]};
         double clear = volume_clear_way(s->compiled, &ray, &met);
-        bool collides = volume_collide(s->set, &shot->random, shot->weight, &ray, clear, RAY_MIRRORS, &at);
-        keep(shot, &ray, at.t, power);
         shot->collisions++;
-        if (!collides || !volume_survives(&shot->random, shot->weight, shot->whole)) return;
-        ray = (Ray){vec3_madd(ray.origin, ray.direction, at.t), scatter(shot, at.volume, ray.direction)};
+        if (!volume_collide(s->set, &shot->random, shot->weight, &ray, clear, RAY_MIRRORS, &at)) return;
+        Vec3 point = vec3_madd(ray.origin, ray.direction, at.t);
+        keep(shot, &at, point, ray.direction);
+        if (!volume_survives(&shot->random, shot->weight, shot->whole)) return;
+        ray = (Ray){point, scatter(shot, at.volume, ray.direction)};
     }
 }
 
@@ -206,7 +170,7 @@ static void shoot_lamp(Shot *shot, double u) {
     Vec3 unit = vec3(((double)(cell % (size_t)n[0]) + a) / n[0], ((double)(cell / (size_t)n[0] % (size_t)n[1]) + b) / n[1],
                      ((double)(cell / (size_t)n[0] / (size_t)n[1]) + c) / n[2]);
     Vec3 point = volume_point(v, unit);
-    double density = density_at(v, unit, point);
+    double density = volume_density(v, unit);
     if (!(density > 0) || !(chance > 0)) return;
     LightRay way = light_ray(&s->compiled->scene->lights[l], point);
     Vec3f color = vec3f_mul(way.color, volume_lamp(v, &shot->tracer, l, &way, unit, point));
@@ -238,7 +202,7 @@ static double spread(uint64_t i) { return random_unit(i * 0x9E3779B97F4A7C15u); 
 
 static void shoot_batch(void *context, size_t batch, int worker) {
     Shooting *s = context;
-    Shot shot = {.shooting = s, .tracer = tracer_of_surfaces(s->tracers[worker]), .bins = s->batches + batch * s->batch_size, .walks = s->walks + batch * s->set->count};
+    Shot shot = {.shooting = s, .tracer = tracer_of_surfaces(s->tracers[worker]), .bins = s->batches + batch * s->batch_size};
     const atomic_bool *interrupted = s->compiled->options->interrupted;
     for (uint64_t i = s->begin; i < s->end && !(interrupted && *interrupted); i++) {
         uint64_t number = i * BATCHES + batch;
@@ -262,14 +226,14 @@ static double error_of_bins(const Shooting *s, double rays) {
     for (size_t n = 0; n < s->set->count; n++) {
         const CompiledVolume *v = &s->set->items[n];
         const VolumeLight *light = v->light;
-        double size = volume_of(v) / (double)volume_bins(light) * rays, shine = 0.28209479177387814 * brightness(v->scattering) / brightness(v->extinction);
+        double size = volume_of(v) / (double)volume_bins(light) * rays, shine = 0.28209479177387814 / brightness(v->extinction);
         for (size_t bin = 0; bin < volume_bins(light); bin++) {
             double mean = 0, spread_sum = 0, weight = (double)light->density[bin] * brightness(v->extinction);
             if (!(weight > 0)) continue;
             const float(*first)[3] = (const float(*)[3])s->batches + s->first_bin[n] + bin * (size_t)light->harmonics;
             for (size_t b = 0; b < BATCHES; b++) mean += (double)first[b * s->batch_size][1] / BATCHES;
             for (size_t b = 0; b < BATCHES; b++) spread_sum += ((double)first[b * s->batch_size][1] - mean) * ((double)first[b * s->batch_size][1] - mean);
-            double scale = shine / size;
+            double scale = shine / size / (double)light->density[bin];
             weight = double_min(weight, 1 / cbrt(volume_of(v) / (double)volume_bins(light)));
             sum += weight * scale * scale * spread_sum * BATCHES / (BATCHES - 1);
             weights += weight;
@@ -302,7 +266,7 @@ static double shoot_rounds(Shooting *s) {
 
 /* ---- what is kept ---- */
 
-static Vec3 bin_place(const VolumeLight *light, const int at[3], const double in[3]) {
+Vec3 volume_bin_place(const VolumeLight *light, const int at[3], const double in[3]) {
     const int *n = light->bins;
     return vec3((at[0] + in[0]) / n[0], (at[1] + in[1]) / n[1], (at[2] + in[2]) / n[2]);
 }
@@ -316,8 +280,8 @@ static double mean_density(const CompiledVolume *v, const int at[3]) {
     for (int z = 0; z < across[2]; z++)
         for (int y = 0; y < across[1]; y++)
             for (int x = 0; x < across[0]; x++) {
-                Vec3 unit = bin_place(v->light, at, (double[3]){(x + 0.5) / across[0], (y + 0.5) / across[1], (z + 0.5) / across[2]});
-                sum += density_at(v, unit, volume_point(v, unit));
+                Vec3 unit = volume_bin_place(v->light, at, (double[3]){(x + 0.5) / across[0], (y + 0.5) / across[1], (z + 0.5) / across[2]});
+                sum += volume_density(v, unit);
             }
     return sum / (across[0] * across[1] * across[2]);
 }
@@ -326,8 +290,8 @@ static double mean_density(const CompiledVolume *v, const int at[3]) {
 static void add_lamps(const Shooting *s, const CompiledVolume *v, SurfaceTracer *tracer, const int at[3], double (*sent)[3]) {
     const Scene *scene = s->compiled->scene;
     for (int corner = 0; corner < 8; corner++) {
-        Vec3 unit = bin_place(v->light, at, (double[3]){corner & 1 ? 0.75 : 0.25, corner & 2 ? 0.75 : 0.25, corner & 4 ? 0.75 : 0.25}), point = volume_point(v, unit);
-        double density = density_at(v, unit, point), shape[VOLUME_HARMONICS];
+        Vec3 unit = volume_bin_place(v->light, at, (double[3]){corner & 1 ? 0.75 : 0.25, corner & 2 ? 0.75 : 0.25, corner & 4 ? 0.75 : 0.25}), point = volume_point(v, unit);
+        double density = volume_density(v, unit), shape[VOLUME_HARMONICS];
         for (size_t l = 0; l < scene->light_count && density > 0; l++) {
             if (!light_shines_on(&scene->lights[l], NULL)) continue;
             LightRay way = light_ray(&scene->lights[l], point);
@@ -374,8 +338,9 @@ static void settle_row(void *context, size_t row, int worker) {
             for (int c = 0; c < 3; c++) {
                 double sum = 0;
                 for (size_t b = 0; b < BATCHES; b++) sum += (double)s->batches[b * s->batch_size + s->first_bin[g->number] + place + (size_t)h][c];
-                if (g->rays > 0) sent[h][c] += (double)light->density[bin] * sum / size;
-                light->source[place + (size_t)h][c] = (float)(sent[h][c] * v->scattering[c] * v->moments[volume_harmonic_degree(h)]);
+                double kept = g->rays > 0 ? sum / size : 0;
+                if (h == 0 && light->reached) light->reached[bin][c] = (float)kept;
+                light->source[place + (size_t)h][c] = (float)((sent[h][c] * v->scattering[c] + kept) * v->moments[volume_harmonic_degree(h)]);
             }
     }
 }
@@ -397,7 +362,6 @@ bool volumes_shoot(CompiledScene *compiled, Tracer **tracers) {
     s.first_entry = arena_new_array(scratch, size_t, set->count + 1);
     s.first_bin = arena_new_array(scratch, size_t, set->count);
     s.collisions = arena_new_array(scratch, uint64_t, BATCHES);
-    s.walks = arena_new_array(scratch, BinWalk, set->count * BATCHES);
     for (size_t i = 0; i < set->count; i++) {
         const VolumeLight *light = set->items[i].light;
         s.entries += compiled->scene->light_count * cells_of(light);

@@ -9,12 +9,18 @@
 bool volumes_shoot(CompiledScene *compiled, Tracer **tracers);
 /* Fills `kept` of all volumes: at each node the light is asked for that comes there from the bins all around, and from the sky. volume_around.c */
 bool volumes_look_around(CompiledScene *compiled, Tracer **tracers);
+/* Makes `kept` as bright on the mean as `reached`. volume_balance.c */
+void volumes_balance(CompiledScene *compiled);
 
 /* How many turns the paths may have behind them when they come to where they are kept; the look around adds one, and the view another. */
 int volume_most_turns(const VolumeSet *set);
 
 /* The place in the scene of one in the volume's unit cube. */
 Vec3 volume_point(const CompiledVolume *volume, Vec3 unit);
+/* How much matter is there. */
+double volume_density(const CompiledVolume *volume, Vec3 unit);
+/* A place in the unit cube, from one in the unit cube of a bin. */
+Vec3 volume_bin_place(const VolumeLight *light, const int bin[3], const double in[3]);
 /* The other way. */
 Vec3 volume_unit(const CompiledVolume *volume, Vec3 point);
 

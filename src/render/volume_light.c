@@ -165,7 +165,6 @@ static void make_bins(CompiledScene *compiled, CompiledVolume *v) {
     light->harmonics = even || v->volume->storage == VOLUME_STORAGE_ISOTROPIC ? 1 : VOLUME_HARMONICS;
     light->kept = arena_push_array_(compiled->arena, bins * (size_t)light->harmonics, sizeof *light->kept);
     light->source = arena_push_array_(&compiled->scratch, bins * (size_t)light->harmonics, sizeof *light->source);
-    if (compiled->volumes->orders == 0) light->reached = arena_push_array_(&compiled->scratch, bins, sizeof *light->reached);
     light->density = arena_new_array(compiled->arena, float, bins);
 }
 
@@ -186,7 +185,6 @@ bool volumes_light(CompiledScene *compiled) {
     ArenaMark mark = arena_mark(&compiled->scratch);
     for (size_t i = 0; i < set->count; i++) make_bins(compiled, &set->items[i]);
     bool done = volumes_shoot(compiled, tracers) && volumes_look_around(compiled, tracers);
-    if (done) volumes_balance(compiled);
     arena_reset_to(&compiled->scratch, mark);
     return done;
 }

@@ -22,9 +22,8 @@ struct VolumeLight {
     int harmonics;          /* 1 or VOLUME_HARMONICS */
     float (*kept)[3];       /* [bin][harmonic]; NULL: none */
     float *density;
-    /* While the light pass runs: what each length of the way through a bin sends; and its `kept` without directions, as paths found it (NULL: they did not) */
+    /* While the light pass runs: what each length of the way through a bin sends. */
     float (*source)[3];     /* [bin][harmonic] */
-    float (*reached)[3];
 };
 
 /* Fills the set's lights by the scene's lamps and sky. False when interrupted. */

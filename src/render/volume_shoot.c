@@ -339,7 +339,6 @@ static void settle_row(void *context, size_t row, int worker) {
                 double sum = 0;
                 for (size_t b = 0; b < BATCHES; b++) sum += (double)s->batches[b * s->batch_size + s->first_bin[g->number] + place + (size_t)h][c];
                 double kept = g->rays > 0 ? sum / size : 0;
-                if (h == 0 && light->reached) light->reached[bin][c] = (float)kept;
                 light->source[place + (size_t)h][c] = (float)((sent[h][c] * v->scattering[c] + kept) * v->moments[volume_harmonic_degree(h)]);
             }
     }

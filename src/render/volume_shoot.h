@@ -7,11 +7,8 @@
 
 /* Fills `density` and `source` of all volumes by paths. `tracers`: one for each worker. The same for any number of workers. False when interrupted. */
 bool volumes_shoot(CompiledScene *compiled, Tracer **tracers);
-/* Fills `kept` of all volumes: at each node the light is asked for that comes there from the bins all around, and from the sky. volume_around.c */
+/* Fills `kept` of all volumes: for each bin the light is asked for that comes there from the others all around, and from the sky. volume_around.c */
 bool volumes_look_around(CompiledScene *compiled, Tracer **tracers);
-/* Makes `kept` as bright on the mean as `reached`. volume_balance.c */
-void volumes_balance(CompiledScene *compiled);
-
 /* How many turns the paths may have behind them when they come to where they are kept; the look around adds one, and the view another. */
 int volume_most_turns(const VolumeSet *set);
 

@@ -3,7 +3,7 @@
 #include "render/volume_bins.h"
 #include "render/volume_shoot.h"
 
-enum { RINGS = 4, DIRECTIONS = 2 * RINGS * RINGS };
+enum { RINGS = 3, DIRECTIONS = 2 * RINGS * RINGS };
 /* The rest is as bright as where the ray is now. */
 static const float SEEN_THROUGH = 2e-3f;
 
@@ -16,21 +16,24 @@ typedef struct Around {
     double weights[DIRECTIONS];
 } Around;
 
-/* Gauss' and Legendre's rule over the height by equal steps around: exact for spherical harmonics up to degree 7. */
+/* Gauss' and Legendre's rule over the height by equal steps around: exact for spherical harmonics up to degree 5. */
 static void lay_directions(Around *a) {
-    static const double heights[2] = {0.33998104358485626, 0.86113631159405258}, weights[2] = {0.65214515486254614, 0.34785484513745386};
+    static const double heights[RINGS] = {-0.77459666924148338, 0, 0.77459666924148338},
+                        weights[RINGS] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
     for (int i = 0; i < DIRECTIONS; i++) {
-        int ring = i / (2 * RINGS), side = ring / 2;
-        double z = ring & 1 ? -heights[side] : heights[side], r = sqrt(1 - z * z), turn = 2 * VTS_PI * (i % (2 * RINGS) + 0.5 * (ring & 1)) / (2 * RINGS);
+        int ring = i / (2 * RINGS);
+        double z = heights[ring], r = sqrt(1 - z * z),
+               turn = 2 * VTS_PI * (i % (2 * RINGS) + 0.5 * (ring & 1)) / (2 * RINGS);
         a->directions[i] = vec3(r * cos(turn), r * sin(turn), z);
-        a->weights[i] = weights[side] * 2 * VTS_PI / (2 * RINGS);
+        a->weights[i] = weights[ring] * 2 * VTS_PI / (2 * RINGS);
     }
 }
 
 /* A rotation of its own for each bin, so that what the rule misses is no pattern. */
 static Mat3 turn_of(size_t node) {
     RandomStream random = {random_hash(node, 0x61726f75, 0, 0)};
-    double z = 1 - 2 * random_next_unit(&random), around = 2 * VTS_PI * random_next_unit(&random), spin = 2 * VTS_PI * random_next_unit(&random);
+    double z = 1 - 2 * random_next_unit(&random), around = 2 * VTS_PI * random_next_unit(&random),
+           spin = 2 * VTS_PI * random_next_unit(&random);
     double r = sqrt(double_max(0, 1 - z * z));
     Mat3 out;
     Vec3 s, t;
@@ -42,7 +45,8 @@ static Mat3 turn_of(size_t node) {
 }
 
 /* What is sent by a length of the piece, and how much is turned aside or swallowed. */
-static void mix(const BinSweep *sweep, const float shape[VOLUME_HARMONICS], float sent[3], float extinction[3]) {
+static void mix(const BinSweep *sweep, const float shape[VOLUME_HARMONICS], float sent[3],
+                float extinction[3]) {
     for (int c = 0; c < 3; c++) sent[c] = extinction[c] = 0;
     for (int i = 0; i < sweep->count; i++) {
         const BinWalk *w = &sweep->walks[i];
@@ -56,7 +60,8 @@ static void mix(const BinSweep *sweep, const float shape[VOLUME_HARMONICS], floa
     }
 }
 
-static Vec3f seen_along(const Around *a, BinWalk *walks, const Ray *ray, const float shape[VOLUME_HARMONICS]) {
+static Vec3f seen_along(const Around *a, BinWalk *walks, const Ray *ray,
+                        const float shape[VOLUME_HARMONICS]) {
     const VolumeSet *set = a->compiled->volumes;
     bool met;
     double clear = volume_clear_way(a->compiled, ray, &met);
@@ -68,8 +73,10 @@ static Vec3f seen_along(const Around *a, BinWalk *walks, const Ray *ray, const f
         mix(&sweep, shape, sent, extinction);
         float first = expf(-extinction[0] * length);
         for (int c = 0; c < 3; c++) {
-            float depth = extinction[c] * length, rest = passing[c] * (extinction[c] == extinction[0] ? first : expf(-depth));
-            sum[c] += depth > 1e-3f ? sent[c] / extinction[c] * (passing[c] - rest) : passing[c] * sent[c] * length * (1 - depth / 2);
+            float depth = extinction[c] * length,
+                  rest = passing[c] * (extinction[c] == extinction[0] ? first : expf(-depth));
+            sum[c] += depth > 1e-3f ? sent[c] / extinction[c] * (passing[c] - rest)
+                                    : passing[c] * sent[c] * length * (1 - depth / 2);
             passing[c] = rest;
             most = float_max(most, rest);
         }
@@ -78,7 +85,9 @@ static Vec3f seen_along(const Around *a, BinWalk *walks, const Ray *ray, const f
         return vec3f(sum[0], sum[1], sum[2]);
     }
     Vec3f out = vec3f(sum[0], sum[1], sum[2]);
-    return set->sky && !met ? vec3f_add(out, vec3f_mul(sky_radiance(a->compiled->scene, ray->direction, 0), vec3f(passing[0], passing[1], passing[2]))) : out;
+    return set->sky && !met ? vec3f_add(out, vec3f_mul(sky_radiance(a->compiled->scene, ray->direction, 0),
+                                                       vec3f(passing[0], passing[1], passing[2])))
+                            : out;
 }
 
 enum { ACROSS = 3, PLACES = ACROSS * ACROSS * ACROSS };
@@ -92,7 +101,8 @@ typedef struct Matter {
 static bool find_matter(const CompiledVolume *v, Matter *out) {
     double sum = 0;
     for (int i = 0; i < PLACES; i++) {
-        const double in[3] = {(i % ACROSS + 0.5) / ACROSS, (i / ACROSS % ACROSS + 0.5) / ACROSS, (i / ACROSS / ACROSS + 0.5) / ACROSS};
+        const double in[3] = {(i % ACROSS + 0.5) / ACROSS, (i / ACROSS % ACROSS + 0.5) / ACROSS,
+                              (i / ACROSS / ACROSS + 0.5) / ACROSS};
         out->sums[i] = sum += volume_density(v, volume_bin_place(v->light, out->at, in));
     }
     return sum > 0;
@@ -102,7 +112,8 @@ static Vec3 draw_place(const CompiledVolume *v, const Matter *matter, double u, 
     int i = 0;
     while (i < PLACES - 1 && !(matter->sums[i] > u * matter->sums[PLACES - 1])) i++;
     double x = random_next_unit(random), y = random_next_unit(random), z = random_next_unit(random);
-    const double in[3] = {(i % ACROSS + x) / ACROSS, (i / ACROSS % ACROSS + y) / ACROSS, (i / ACROSS / ACROSS + z) / ACROSS};
+    const double in[3] = {(i % ACROSS + x) / ACROSS, (i / ACROSS % ACROSS + y) / ACROSS,
+                          (i / ACROSS / ACROSS + z) / ACROSS};
     return volume_point(v, volume_bin_place(v->light, matter->at, in));
 }
 
@@ -115,7 +126,8 @@ static void look_from(const Around *a, BinWalk *walks, size_t bin, const int at[
     double sum[VOLUME_HARMONICS][3] = {{0}};
     if (!find_matter(v, &matter)) return;
     for (int i = 0; i < DIRECTIONS; i++) {
-        double u = (i * 7 % DIRECTIONS + random_next_unit(&random)) / DIRECTIONS; /* 7: neighbours in place are none in direction */
+        double u = (i * 7 % DIRECTIONS + random_next_unit(&random)) /
+                   DIRECTIONS; /* 7: neighbours in place are none in direction */
         const Ray ray = {draw_place(v, &matter, u, &random), mat3_apply(&turn, a->directions[i])};
         double shape[VOLUME_HARMONICS] = {0};
         float shapef[VOLUME_HARMONICS];
@@ -128,7 +140,8 @@ static void look_from(const Around *a, BinWalk *walks, size_t bin, const int at[
     }
     for (int h = 0; h < light->harmonics; h++)
         for (int c = 0; c < 3; c++)
-            light->kept[bin * (size_t)light->harmonics + (size_t)h][c] = (float)(sum[h][c] * v->moments[volume_harmonic_degree(h)] * v->scattering[c]);
+            light->kept[bin * (size_t)light->harmonics + (size_t)h][c] =
+                (float)(sum[h][c] * v->moments[volume_harmonic_degree(h)] * v->scattering[c]);
 }
 
 static void look_row(void *context, size_t row, int worker) {
@@ -139,14 +152,16 @@ static void look_row(void *context, size_t row, int worker) {
     const atomic_bool *interrupted = a->compiled->options->interrupted;
     for (; at[0] < n[0] && !(interrupted && *interrupted); at[0]++) {
         size_t bin = row * (size_t)n[0] + (size_t)at[0];
-        if (light->density[bin] > 0) look_from(a, a->walks + (size_t)worker * a->compiled->volumes->count, bin, at);
+        if (light->density[bin] > 0)
+            look_from(a, a->walks + (size_t)worker * a->compiled->volumes->count, bin, at);
     }
 }
 
 bool volumes_look_around(CompiledScene *compiled, Tracer **tracers) {
     const VolumeSet *set = compiled->volumes;
     Around a = {.compiled = compiled, .tracers = tracers};
-    a.walks = arena_new_array(&compiled->scratch, BinWalk, (size_t)pool_threads(compiled->options->pool) * set->count);
+    a.walks = arena_new_array(&compiled->scratch, BinWalk,
+                              (size_t)pool_threads(compiled->options->pool) * set->count);
     lay_directions(&a);
     for (size_t i = 0; i < set->count; i++) {
         a.volume = &set->items[i];

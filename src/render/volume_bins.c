@@ -7,7 +7,8 @@ bool bin_walk_begin(BinWalk *w, const CompiledVolume *v, const Ray *ray, double 
     const Vec3 scale = vec3((double)n[0] / cells[0], (double)n[1] / cells[1], (double)n[2] / cells[2]);
     Ray own = volume_ray_in_cells(v, ray);
     own = (Ray){vec3_mul(vec3_sub(own.origin, vec3_splat(0.5)), scale), vec3_mul(own.direction, scale)};
-    if (!box3_clip_ray((Box3){vec3_splat(0), vec3(n[0], n[1], n[2])}, &own, &t0, &t1) || !(t0 < t1)) return false;
+    if (!box3_clip_ray((Box3){vec3_splat(0), vec3(n[0], n[1], n[2])}, &own, &t0, &t1) || !(t0 < t1))
+        return false;
     w->volume = v, w->t = t0, w->t_end = t1, w->bin = 0;
     for (int k = 2; k >= 0; k--) {
         double o = vec3_get(own.origin, k), d = vec3_get(own.direction, k);
@@ -20,7 +21,9 @@ bool bin_walk_begin(BinWalk *w, const CompiledVolume *v, const Ray *ray, double 
     return true;
 }
 
-static int nearest_axis(const double next[3]) { return next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2); }
+static int nearest_axis(const double next[3]) {
+    return next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
+}
 
 double bin_walk_wall(const BinWalk *w) { return double_min(w->next[nearest_axis(w->next)], w->t_end); }
 
@@ -35,9 +38,11 @@ bool bin_walk_step(BinWalk *w) {
     return true;
 }
 
-void bin_sweep_begin(BinSweep *s, BinWalk *walks, const VolumeSet *set, const Ray *ray, double t0, double t1) {
+void bin_sweep_begin(BinSweep *s, BinWalk *walks, const VolumeSet *set, const Ray *ray, double t0,
+                     double t1) {
     *s = (BinSweep){.walks = walks, .t0 = t0, .t1 = t0};
-    for (size_t i = 0; i < set->count; i++) s->count += bin_walk_begin(&walks[s->count], &set->items[i], ray, t0, t1);
+    for (size_t i = 0; i < set->count; i++)
+        s->count += bin_walk_begin(&walks[s->count], &set->items[i], ray, t0, t1);
 }
 
 bool bin_sweep_next(BinSweep *s) {

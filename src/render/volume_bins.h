@@ -7,7 +7,7 @@
 /* A ray through the bins of one volume. */
 typedef struct BinWalk {
     const CompiledVolume *volume;
-    double t, t_end;          /* it is within the bin from t to bin_walk_wall() */
+    double t, t_end; /* it is within the bin from t to bin_walk_wall() */
     size_t bin;
     int at[3], step[3];
     double next[3], width[3]; /* t of the next wall of each axis; between walls */
@@ -23,11 +23,12 @@ bool bin_walk_step(BinWalk *walk);
 typedef struct BinSweep {
     BinWalk *walks; /* those still to come, or under way */
     int count;
-    double t0, t1;  /* the piece */
+    double t0, t1; /* the piece */
 } BinSweep;
 
 /* `walks` has room for all of the set's volumes. */
-void bin_sweep_begin(BinSweep *sweep, BinWalk *walks, const VolumeSet *set, const Ray *ray, double t0, double t1);
+void bin_sweep_begin(BinSweep *sweep, BinWalk *walks, const VolumeSet *set, const Ray *ray, double t0,
+                     double t1);
 /* The next piece of the ray that is within one bin of each volume that it is in; false at the end. */
 bool bin_sweep_next(BinSweep *sweep);
 /* Whether the piece is within this walk's volume. */

@@ -50,7 +50,8 @@ static Corners corners_of(const int cells[3], Vec3 unit) {
     return out;
 }
 
-Vec3f volume_lamp(const CompiledVolume *v, SurfaceTracer *tracer, size_t l, const LightRay *way, Vec3 unit, Vec3 point) {
+Vec3f volume_lamp(const CompiledVolume *v, SurfaceTracer *tracer, size_t l, const LightRay *way, Vec3 unit,
+                  Vec3 point) {
     const VolumeLight *light = v->light;
     const Corners c = corners_of(light->cells, unit);
     const uint8_t *states = light->states + l * light->nodes;
@@ -87,13 +88,17 @@ static void fill_node(const LampFill *f, SurfaceTracer *tracer, Vec3 point, floa
     SurfaceTracer past = *tracer;
     past.no_volumes = true;
     for (int i = 0; i < across * across; i++) {
-        LightRay way = across > 1 ? light_ray_from(lamp, point, light_place(lamp, point, (i % across + 0.5) / across, (i / across + 0.5) / across))
+        LightRay way = across > 1 ? light_ray_from(lamp, point,
+                                                   light_place(lamp, point, (i % across + 0.5) / across,
+                                                               (i / across + 0.5) / across))
                                   : light_ray(lamp, point);
         const Ray ray = {point, way.direction};
         Leg leg;
         surface_leg(&(Cone){point, way.direction, 0, 0}, &leg);
         Vec3f share = surface_shadow_way(&past, lamp, &way, &leg, point);
-        Vec3f passed = lamp->shadowless ? vec3f(1, 1, 1) : volumes_passing(compiled->volumes, &ray, 0, way.distance, RAY_MIRRORS);
+        Vec3f passed = lamp->shadowless
+                           ? vec3f(1, 1, 1)
+                           : volumes_passing(compiled->volumes, &ray, 0, way.distance, RAY_MIRRORS);
         hidden += share.x <= 0 && share.y <= 0 && share.z <= 0;
         whole += share.x == 1 && share.y == 1 && share.z == 1;
         through[0] += (double)passed.x, through[1] += (double)passed.y, through[2] += (double)passed.z;
@@ -124,11 +129,14 @@ static void fill_lamp_row(void *context, size_t row, int worker) {
 
 /* ---- making ready ---- */
 
-enum { LEAST_ACROSS = 4, MOST_ACROSS = 24 };
+enum { LEAST_ACROSS = 6, MOST_ACROSS = 64 };
 
 /* Cells as cubic as may be, `longest` of them along the longest side; but across what is flat as many as its optical depth asks for. */
 static void divide(const CompiledVolume *v, int longest, int out[3]) {
-    double sides[3], most = 0, extinction = double_max(v->extinction[0], double_max(v->extinction[1], v->extinction[2])) * lattice_mean(&v->lattice);
+    double sides[3],
+        most = 0,
+        extinction = double_max(v->extinction[0], double_max(v->extinction[1], v->extinction[2])) *
+                     lattice_mean(&v->lattice);
     for (int k = 0; k < 3; k++) {
         sides[k] = vec3_length(v->from_cells.c[k]) * v->lattice.size[k];
         most = double_max(most, sides[k]);
@@ -139,18 +147,23 @@ static void divide(const CompiledVolume *v, int longest, int out[3]) {
     }
 }
 
-static int longest_of(const Lattice *lattice) { return int_max(lattice->size[0], int_max(lattice->size[1], lattice->size[2])); }
+static int longest_of(const Lattice *lattice) {
+    return int_max(lattice->size[0], int_max(lattice->size[1], lattice->size[2]));
+}
 
 static bool light_lamps(CompiledScene *compiled, CompiledVolume *v, Tracer **tracers) {
     VolumeLight *light = v->light;
     size_t lamps = compiled->scene->light_count;
     divide(v, int_clamp(longest_of(&v->lattice), LEAST_LAMP_CELLS, MOST_LAMP_CELLS), light->cells);
-    light->nodes = (size_t)(light->cells[0] + 1) * (size_t)(light->cells[1] + 1) * (size_t)(light->cells[2] + 1);
+    light->nodes =
+        (size_t)(light->cells[0] + 1) * (size_t)(light->cells[1] + 1) * (size_t)(light->cells[2] + 1);
     light->depths = arena_push_array_(compiled->arena, lamps * light->nodes + 1, sizeof *light->depths);
     light->states = arena_new_array(compiled->arena, uint8_t, lamps * light->nodes + 1);
     for (size_t l = 0; l < lamps; l++) {
         LampFill fill = {compiled, v, tracers, l};
-        if (!pool_run(compiled->options->pool, (size_t)(light->cells[1] + 1) * (size_t)(light->cells[2] + 1), fill_lamp_row, &fill)) return false;
+        if (!pool_run(compiled->options->pool, (size_t)(light->cells[1] + 1) * (size_t)(light->cells[2] + 1),
+                      fill_lamp_row, &fill))
+            return false;
     }
     return true;
 }
@@ -164,7 +177,8 @@ static void make_bins(CompiledScene *compiled, CompiledVolume *v) {
     size_t bins = volume_bins(light);
     light->harmonics = even || v->volume->storage == VOLUME_STORAGE_ISOTROPIC ? 1 : VOLUME_HARMONICS;
     light->kept = arena_push_array_(compiled->arena, bins * (size_t)light->harmonics, sizeof *light->kept);
-    light->source = arena_push_array_(&compiled->scratch, bins * (size_t)light->harmonics, sizeof *light->source);
+    light->source =
+        arena_push_array_(&compiled->scratch, bins * (size_t)light->harmonics, sizeof *light->source);
     light->density = arena_new_array(compiled->arena, float, bins);
 }
 
@@ -205,7 +219,8 @@ static Corners bins_around(const VolumeLight *light, Vec3 unit) {
     float least = INFINITY, most = 0;
     for (int corner = 0; corner < 8; corner++) {
         size_t index = 0;
-        for (int k = 2; k >= 0; k--) index = index * (size_t)light->bins[k] + (size_t)(first[k] + (corner >> k & 1));
+        for (int k = 2; k >= 0; k--)
+            index = index * (size_t)light->bins[k] + (size_t)(first[k] + (corner >> k & 1));
         out.at[corner] = index;
         least = float_min(least, light->density[index]), most = float_max(most, light->density[index]);
     }
@@ -234,5 +249,6 @@ Vec3f volume_kept(const CompiledVolume *v, Vec3 unit, const double shape[VOLUME_
             for (int c = 0; c < 3; c++) sum[c] += weight * shape[i] * (double)kept[i][c];
     }
     if (!(matter > 0)) return vec3f(0, 0, 0);
-    return vec3f((float)double_max(0, sum[0] / matter), (float)double_max(0, sum[1] / matter), (float)double_max(0, sum[2] / matter));
+    return vec3f((float)double_max(0, sum[0] / matter), (float)double_max(0, sum[1] / matter),
+                 (float)double_max(0, sum[2] / matter));
 }

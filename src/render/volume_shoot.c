@@ -12,14 +12,14 @@ typedef struct Shooting {
     CompiledScene *compiled;
     const VolumeSet *set;
     Tracer **tracers;
-    double *chances;         /* sums so far of what each (volume, lamp, cell) scatters first */
+    double *chances; /* sums so far of what each (volume, lamp, cell) scatters first */
     size_t entries;
-    size_t *first_entry;     /* of each volume */
-    size_t *first_bin;       /* of each volume in a batch, in harmonics */
+    size_t *first_entry; /* of each volume */
+    size_t *first_bin;   /* of each volume in a batch, in harmonics */
     size_t batch_size;
     float (*batches)[3];
-    uint64_t begin, end;     /* rays of the round, in each batch */
-    uint64_t *collisions;    /* of each batch so far */
+    uint64_t begin, end;  /* rays of the round, in each batch */
+    uint64_t *collisions; /* of each batch so far */
     double lamp_total;
     Vec3 middle;
     double radius;
@@ -32,7 +32,8 @@ Vec3 volume_unit(const CompiledVolume *v, Vec3 point) {
 }
 
 double volume_density(const CompiledVolume *v, Vec3 unit) {
-    if (v->body && !body_inside(v->body, transform_point_back(&v->body_place, volume_point(v, unit)))) return 0;
+    if (v->body && !body_inside(v->body, transform_point_back(&v->body_place, volume_point(v, unit))))
+        return 0;
     const int *n = v->lattice.size;
     return lattice_value(&v->lattice, vec3(unit.x * n[0] + 0.5, unit.y * n[1] + 0.5, unit.z * n[2] + 0.5));
 }
@@ -46,7 +47,9 @@ static double brightness(const double c[3]) { return (c[0] + c[1] + c[2]) / 3; }
 
 /* ---- where light is scattered first ---- */
 
-static size_t cells_of(const VolumeLight *light) { return (size_t)light->cells[0] * (size_t)light->cells[1] * (size_t)light->cells[2]; }
+static size_t cells_of(const VolumeLight *light) {
+    return (size_t)light->cells[0] * (size_t)light->cells[1] * (size_t)light->cells[2];
+}
 
 /* About how much of a lamp's light a cell scatters: never 0 where it is any. */
 static double cell_share(const CompiledScene *compiled, const CompiledVolume *v, size_t l, const int at[3]) {
@@ -59,8 +62,12 @@ static double cell_share(const CompiledScene *compiled, const CompiledVolume *v,
         const float *depth = light->depths[l * light->nodes + node];
         double through = (exp(-(double)depth[0]) + exp(-(double)depth[1]) + exp(-(double)depth[2])) / 3;
         light_sum += light->states[l * light->nodes + node] == LIGHT_HIDDEN ? 0.02 * through : through;
-        Vec3 unit = vec3((at[0] + 0.25 + 0.5 * (corner & 1)) / n[0], (at[1] + 0.25 + 0.5 * (corner >> 1 & 1)) / n[1], (at[2] + 0.25 + 0.5 * (corner >> 2)) / n[2]);
-        double here = lattice_value(&v->lattice, vec3(unit.x * v->lattice.size[0] + 0.5, unit.y * v->lattice.size[1] + 0.5, unit.z * v->lattice.size[2] + 0.5));
+        Vec3 unit =
+            vec3((at[0] + 0.25 + 0.5 * (corner & 1)) / n[0], (at[1] + 0.25 + 0.5 * (corner >> 1 & 1)) / n[1],
+                 (at[2] + 0.25 + 0.5 * (corner >> 2)) / n[2]);
+        double here = lattice_value(&v->lattice,
+                                    vec3(unit.x * v->lattice.size[0] + 0.5, unit.y * v->lattice.size[1] + 0.5,
+                                         unit.z * v->lattice.size[2] + 0.5));
         density += here;
         density_most = double_max(density_most, here);
     }
@@ -68,7 +75,8 @@ static double cell_share(const CompiledScene *compiled, const CompiledVolume *v,
     LightRay way = light_ray(&compiled->scene->lights[l], point);
     double color = (double)(way.color.x + way.color.y + way.color.z) / 3;
     double floor = 1e-3 * (double)v->lattice.most; /* between the samples there may be a little more */
-    return brightness(v->scattering) * double_max(color, 0) * light_sum / 8 * double_max((density / 8 + density_most) / 2, floor);
+    return brightness(v->scattering) * double_max(color, 0) * light_sum / 8 *
+           double_max((density / 8 + density_most) / 2, floor);
 }
 
 static void tabulate(Shooting *s) {
@@ -84,7 +92,9 @@ static void tabulate(Shooting *s) {
             for (int z = 0; z < n[2]; z++)
                 for (int y = 0; y < n[1]; y++)
                     for (int x = 0; x < n[0]; x++) {
-                        double share = light_shines_on(&scene->lights[l], NULL) ? cell_share(s->compiled, v, l, (int[3]){x, y, z}) * cell : 0;
+                        double share = light_shines_on(&scene->lights[l], NULL)
+                                           ? cell_share(s->compiled, v, l, (int[3]){x, y, z}) * cell
+                                           : 0;
                         s->chances[e++] = sum += share > 0 && isfinite(share) ? share : 0;
                     }
     }
@@ -97,8 +107,10 @@ static size_t draw_entry(const Shooting *s, double u) {
     double target = u * s->lamp_total;
     while (lo < hi) {
         size_t middle = (lo + hi) / 2;
-        if (s->chances[middle] > target) hi = middle;
-        else lo = middle + 1;
+        if (s->chances[middle] > target)
+            hi = middle;
+        else
+            lo = middle + 1;
     }
     return lo;
 }
@@ -121,19 +133,25 @@ static void keep(const Shot *shot, const Collision *at, Vec3 point, Vec3 directi
     Vec3 unit = volume_unit(v, point);
     double shape[VOLUME_HARMONICS];
     size_t bin = 0;
-    for (int k = 2; k >= 0; k--) bin = bin * (size_t)light->bins[k] + (size_t)double_to_int(vec3_get(unit, k) * light->bins[k], 0, light->bins[k] - 1);
-    float(*out)[3] = shot->bins + shot->shooting->first_bin[v - shot->shooting->set->items] + bin * (size_t)light->harmonics;
+    for (int k = 2; k >= 0; k--)
+        bin = bin * (size_t)light->bins[k] +
+              (size_t)double_to_int(vec3_get(unit, k) * light->bins[k], 0, light->bins[k] - 1);
+    float(*out)[3] = shot->bins + shot->shooting->first_bin[v - shot->shooting->set->items] +
+                     bin * (size_t)light->harmonics;
     volume_harmonics(direction, light->harmonics, shape);
     for (int i = 0; i < light->harmonics; i++)
         for (int c = 0; c < 3; c++) out[i][c] += (float)(shot->weight[c] * shape[i]);
 }
 
 static Vec3 scatter(Shot *shot, const CompiledVolume *v, Vec3 direction) {
-    double mu = phase_draw(&v->volume->phase, random_next_unit(&shot->random), random_next_unit(&shot->random));
+    double mu =
+        phase_draw(&v->volume->phase, random_next_unit(&shot->random), random_next_unit(&shot->random));
     return phase_turn(direction, mu, random_next_unit(&shot->random));
 }
 
-int volume_most_turns(const VolumeSet *set) { return set->orders ? int_min(set->orders - 2, MOST_TURNS) : MOST_TURNS; }
+int volume_most_turns(const VolumeSet *set) {
+    return set->orders ? int_min(set->orders - 2, MOST_TURNS) : MOST_TURNS;
+}
 
 /* On from a place; `order` turns are behind it. */
 static void follow(Shot *shot, Ray ray, int order) {
@@ -164,10 +182,13 @@ static void shoot_lamp(Shot *shot, double u) {
     const CompiledVolume *v = &s->set->items[i];
     const VolumeLight *light = v->light;
     const int *n = light->cells;
-    size_t cell = (entry - s->first_entry[i]) % cells_of(light), l = (entry - s->first_entry[i]) / cells_of(light);
+    size_t cell = (entry - s->first_entry[i]) % cells_of(light),
+           l = (entry - s->first_entry[i]) / cells_of(light);
     double chance = (s->chances[entry] - (entry ? s->chances[entry - 1] : 0)) / s->lamp_total, power[3];
-    double a = random_next_unit(&shot->random), b = random_next_unit(&shot->random), c = random_next_unit(&shot->random);
-    Vec3 unit = vec3(((double)(cell % (size_t)n[0]) + a) / n[0], ((double)(cell / (size_t)n[0] % (size_t)n[1]) + b) / n[1],
+    double a = random_next_unit(&shot->random), b = random_next_unit(&shot->random),
+           c = random_next_unit(&shot->random);
+    Vec3 unit = vec3(((double)(cell % (size_t)n[0]) + a) / n[0],
+                     ((double)(cell / (size_t)n[0] % (size_t)n[1]) + b) / n[1],
                      ((double)(cell / (size_t)n[0] / (size_t)n[1]) + c) / n[2]);
     Vec3 point = volume_point(v, unit);
     double density = volume_density(v, unit);
@@ -184,16 +205,21 @@ static void shoot_lamp(Shot *shot, double u) {
 /* From all around, through discs that the volumes lie behind. */
 static void shoot_sky(Shot *shot, double u) {
     const Shooting *s = shot->shooting;
-    double z = 1 - 2 * u, turn = 2 * VTS_PI * random_next_unit(&shot->random), r = sqrt(double_max(0, 1 - z * z)), power[3];
+    double z = 1 - 2 * u, turn = 2 * VTS_PI * random_next_unit(&shot->random),
+           r = sqrt(double_max(0, 1 - z * z)), power[3];
     Vec3 from = vec3(r * cos(turn), z, r * sin(turn)), a, b;
     Vec3f sky = sky_radiance(s->compiled->scene, from, 0);
-    double out = s->radius * sqrt(random_next_unit(&shot->random)), around = 2 * VTS_PI * random_next_unit(&shot->random);
+    double out = s->radius * sqrt(random_next_unit(&shot->random)),
+           around = 2 * VTS_PI * random_next_unit(&shot->random);
     double scale = 4 * VTS_PI * VTS_PI * s->radius * s->radius;
     power[0] = (double)sky.x * scale, power[1] = (double)sky.y * scale, power[2] = (double)sky.z * scale;
     if (!set_power(shot, power)) return;
     vec3_frame(from, &a, &b);
-    Vec3 start = vec3_madd(vec3_madd(vec3_madd(s->middle, a, out * cos(around)), b, out * sin(around)), from, s->radius);
-    if (hierarchy_object_count(s->compiled->hierarchy) && hierarchy_occluded(s->compiled->hierarchy, &(Ray){start, from}, 0, VTS_INFINITY)) return;
+    Vec3 start = vec3_madd(vec3_madd(vec3_madd(s->middle, a, out * cos(around)), b, out * sin(around)), from,
+                           s->radius);
+    if (hierarchy_object_count(s->compiled->hierarchy) &&
+        hierarchy_occluded(s->compiled->hierarchy, &(Ray){start, from}, 0, VTS_INFINITY))
+        return;
     follow(shot, (Ray){start, vec3_negate(from)}, 0);
 }
 
@@ -202,7 +228,9 @@ static double spread(uint64_t i) { return random_unit(i * 0x9E3779B97F4A7C15u); 
 
 static void shoot_batch(void *context, size_t batch, int worker) {
     Shooting *s = context;
-    Shot shot = {.shooting = s, .tracer = tracer_of_surfaces(s->tracers[worker]), .bins = s->batches + batch * s->batch_size};
+    Shot shot = {.shooting = s,
+                 .tracer = tracer_of_surfaces(s->tracers[worker]),
+                 .bins = s->batches + batch * s->batch_size};
     const atomic_bool *interrupted = s->compiled->options->interrupted;
     for (uint64_t i = s->begin; i < s->end && !(interrupted && *interrupted); i++) {
         uint64_t number = i * BATCHES + batch;
@@ -217,8 +245,8 @@ static void shoot_batch(void *context, size_t batch, int worker) {
 /* ---- how many ---- */
 
 enum { FIRST_ROUND = 1 << 10 };
-/* Rays are doubled until the error of the bins' light is below this multiple of max_error: a node sees many bins, and a pixel many nodes. Or until so many free paths. */
-static const double BIN_ERROR = 6, MOST_FREE_PATHS = 3e7, RAYS_AT_MOST = 1 << 22;
+/* Rays are doubled until the error of the bins' light is below this multiple of max_error: a bin sees many, and a pixel several. Or until so many free paths. */
+static const double BIN_ERROR = 16, MOST_FREE_PATHS = 1.2e7, RAYS_AT_MOST = 1 << 22;
 
 /* Of the light of all bins that hold something, on the mean, as brightness of matter that hides what is behind; found by what batches differ. */
 static double error_of_bins(const Shooting *s, double rays) {
@@ -226,13 +254,17 @@ static double error_of_bins(const Shooting *s, double rays) {
     for (size_t n = 0; n < s->set->count; n++) {
         const CompiledVolume *v = &s->set->items[n];
         const VolumeLight *light = v->light;
-        double size = volume_of(v) / (double)volume_bins(light) * rays, shine = 0.28209479177387814 / brightness(v->extinction);
+        double size = volume_of(v) / (double)volume_bins(light) * rays,
+               shine = 0.28209479177387814 / brightness(v->extinction);
         for (size_t bin = 0; bin < volume_bins(light); bin++) {
             double mean = 0, spread_sum = 0, weight = (double)light->density[bin] * brightness(v->extinction);
             if (!(weight > 0)) continue;
-            const float(*first)[3] = (const float(*)[3])s->batches + s->first_bin[n] + bin * (size_t)light->harmonics;
+            const float(*first)[3] =
+                (const float(*)[3])s->batches + s->first_bin[n] + bin * (size_t)light->harmonics;
             for (size_t b = 0; b < BATCHES; b++) mean += (double)first[b * s->batch_size][1] / BATCHES;
-            for (size_t b = 0; b < BATCHES; b++) spread_sum += ((double)first[b * s->batch_size][1] - mean) * ((double)first[b * s->batch_size][1] - mean);
+            for (size_t b = 0; b < BATCHES; b++)
+                spread_sum += ((double)first[b * s->batch_size][1] - mean) *
+                              ((double)first[b * s->batch_size][1] - mean);
             double scale = shine / size / (double)light->density[bin];
             weight = double_min(weight, 1 / cbrt(volume_of(v) / (double)volume_bins(light)));
             sum += weight * scale * scale * spread_sum * BATCHES / (BATCHES - 1);
@@ -260,7 +292,8 @@ static double shoot_rounds(Shooting *s) {
         rays = (double)s->end * BATCHES;
         next = 2 * rays;
         if (asked > 0 || next > RAYS_AT_MOST || 2 * free_paths(s) > MOST_FREE_PATHS) return rays;
-        if (rays > 4 * FIRST_ROUND && error_of_bins(s, rays) < BIN_ERROR * s->compiled->max_error) return rays;
+        if (rays > 4 * FIRST_ROUND && error_of_bins(s, rays) < BIN_ERROR * s->compiled->max_error)
+            return rays;
     }
 }
 
@@ -276,21 +309,30 @@ enum { LEAST_ACROSS = 3, MOST_ACROSS = 6 };
 static double mean_density(const CompiledVolume *v, const int at[3]) {
     int across[3];
     double sum = 0;
-    for (int k = 0; k < 3; k++) across[k] = v->body ? MOST_ACROSS : int_clamp(2 * v->lattice.size[k] / v->light->bins[k], LEAST_ACROSS, MOST_ACROSS);
+    for (int k = 0; k < 3; k++)
+        across[k] = v->body
+                        ? MOST_ACROSS
+                        : int_clamp(2 * v->lattice.size[k] / v->light->bins[k], LEAST_ACROSS, MOST_ACROSS);
     for (int z = 0; z < across[2]; z++)
         for (int y = 0; y < across[1]; y++)
             for (int x = 0; x < across[0]; x++) {
-                Vec3 unit = volume_bin_place(v->light, at, (double[3]){(x + 0.5) / across[0], (y + 0.5) / across[1], (z + 0.5) / across[2]});
+                Vec3 unit = volume_bin_place(
+                    v->light, at,
+                    (double[3]){(x + 0.5) / across[0], (y + 0.5) / across[1], (z + 0.5) / across[2]});
                 sum += volume_density(v, unit);
             }
     return sum / (across[0] * across[1] * across[2]);
 }
 
 /* Lamps' light that is scattered for the first time in the bin: of eight places. */
-static void add_lamps(const Shooting *s, const CompiledVolume *v, SurfaceTracer *tracer, const int at[3], double (*sent)[3]) {
+static void add_lamps(const Shooting *s, const CompiledVolume *v, SurfaceTracer *tracer, const int at[3],
+                      double (*sent)[3]) {
     const Scene *scene = s->compiled->scene;
     for (int corner = 0; corner < 8; corner++) {
-        Vec3 unit = volume_bin_place(v->light, at, (double[3]){corner & 1 ? 0.75 : 0.25, corner & 2 ? 0.75 : 0.25, corner & 4 ? 0.75 : 0.25}), point = volume_point(v, unit);
+        Vec3 unit = volume_bin_place(
+                 v->light, at,
+                 (double[3]){corner & 1 ? 0.75 : 0.25, corner & 2 ? 0.75 : 0.25, corner & 4 ? 0.75 : 0.25}),
+             point = volume_point(v, unit);
         double density = volume_density(v, unit), shape[VOLUME_HARMONICS];
         for (size_t l = 0; l < scene->light_count && density > 0; l++) {
             if (!light_shines_on(&scene->lights[l], NULL)) continue;
@@ -300,7 +342,8 @@ static void add_lamps(const Shooting *s, const CompiledVolume *v, SurfaceTracer 
             const double color[3] = {(double)light.x, (double)light.y, (double)light.z};
             volume_harmonics(vec3_negate(way.direction), v->light->harmonics, shape);
             for (int h = 0; h < v->light->harmonics; h++)
-                for (int c = 0; c < 3; c++) sent[h][c] += density / 8 * VOLUME_IRRADIANCE * color[c] * shape[h];
+                for (int c = 0; c < 3; c++)
+                    sent[h][c] += density / 8 * VOLUME_IRRADIANCE * color[c] * shape[h];
         }
     }
 }
@@ -317,7 +360,8 @@ static void measure_row(void *context, size_t row, int worker) {
     const int *n = v->light->bins;
     (void)worker;
     int at[3] = {0, (int)(row % (size_t)n[1]), (int)(row / (size_t)n[1])};
-    for (; at[0] < n[0]; at[0]++) v->light->density[row * (size_t)n[0] + (size_t)at[0]] = (float)mean_density(v, at);
+    for (; at[0] < n[0]; at[0]++)
+        v->light->density[row * (size_t)n[0] + (size_t)at[0]] = (float)mean_density(v, at);
 }
 
 static void settle_row(void *context, size_t row, int worker) {
@@ -337,9 +381,12 @@ static void settle_row(void *context, size_t row, int worker) {
         for (int h = 0; h < light->harmonics; h++)
             for (int c = 0; c < 3; c++) {
                 double sum = 0;
-                for (size_t b = 0; b < BATCHES; b++) sum += (double)s->batches[b * s->batch_size + s->first_bin[g->number] + place + (size_t)h][c];
+                for (size_t b = 0; b < BATCHES; b++)
+                    sum += (double)
+                               s->batches[b * s->batch_size + s->first_bin[g->number] + place + (size_t)h][c];
                 double kept = g->rays > 0 ? sum / size : 0;
-                light->source[place + (size_t)h][c] = (float)((sent[h][c] * v->scattering[c] + kept) * v->moments[volume_harmonic_degree(h)]);
+                light->source[place + (size_t)h][c] =
+                    (float)((sent[h][c] * v->scattering[c] + kept) * v->moments[volume_harmonic_degree(h)]);
             }
     }
 }

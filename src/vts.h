@@ -161,6 +161,10 @@ VTS_API VtsStatus vts_compare(const char *reference_path, const char *test_path,
  * a file cannot be read or written. When it fails, `error` (if not NULL) holds one line of text. */
 VTS_API VtsStatus vts_stitch(const char *const *part_paths, size_t count, const char *output_path, char *error, size_t error_size);
 
+/* Makes an animated GIF of pictures of equal size and 8 bits, each shown for 1/fps seconds, as near as hundredths come to it. VTS_ERROR_USAGE
+ * without pictures or for fps that is not above 0. When it fails, no file is left, and `error` (if not NULL) holds one line of text. */
+VTS_API VtsStatus vts_make_gif(const char *const *picture_paths, size_t count, double fps, const char *output_path, char *error, size_t error_size);
+
 /* What renderings are measured by: a picture in memory, and how noisy it is. */
 typedef struct VtsReference VtsReference;
 

@@ -1,6 +1,8 @@
 /* A scene's film: what its `animation` says, and going on to another frame. */
 #include "vts_session.h"
 
+#include "image/film_file.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -49,6 +51,16 @@ VtsStatus session_film(VtsSession *session, const char *scene_path, VtsFilm *out
         *out = (VtsFilm){.exists = true, .frames = film->frames, .fps = film->fps, .first_clock = film->first_clock,
                          .last_clock = film->last_clock, .cyclic = film->cyclic, .shutter = film->shutter};
     return VTS_OK;
+}
+
+VtsStatus vts_make_gif(const char *const *picture_paths, size_t count, double fps, const char *output_path, char *error, size_t error_size) {
+    StrBuf why = {0};
+    VtsStatus status = count > 0 && fps > 0 ? VTS_OK : VTS_ERROR_USAGE;
+    if (status != VTS_OK) strbuf_adds(&why, count == 0 ? "no pictures given" : "the number of frames a second must be above 0");
+    else if (!film_file_save_gif(picture_paths, count, fps, output_path, &why)) status = VTS_ERROR_FILE;
+    if (error && error_size) snprintf(error, error_size, "%s", status == VTS_OK || !why.data ? "" : why.data);
+    strbuf_free(&why);
+    return status;
 }
 
 void vts_set_frame(VtsSession *session, const VtsOptions *frame) {

@@ -56,8 +56,11 @@ static VtsStatus draw_moment(Exposure *e, double moment, int count) {
     RenderStats stats = {.error_estimate = -1};
     MomentPlan plan = {.unseen = e->moments > 0, .tiles = e->open};
     if (e->exact || e->moments >= MOMENTS_ALIKE) plan.seed = 0x9e3779b97f4a7c15u * (uint64_t)e->moments;
-    if (e->exact) plan.samples = int_max(1, session->options.reference_samples / intervals_of_reference(session->options.reference_samples));
-    else if (e->moments >= MOMENTS_ALIKE) plan.noise = sqrt(count);
+    if (e->exact)
+        plan.samples = int_max(1, session->options.reference_samples /
+                                      intervals_of_reference(session->options.reference_samples));
+    else if (e->moments >= MOMENTS_ALIKE)
+        plan.noise = sqrt(count);
     VtsStatus status = go_to(e, moment);
     if (status == VTS_OK) status = session_draw(session, e->exact, &plan, &stats);
     if (status != VTS_OK) return status;
@@ -111,7 +114,8 @@ typedef struct Rectangle {
 static Rectangle tile_at(const Exposure *e, int tx, int ty) {
     const int *r = e->region;
     int x = (r[0] / FILM_TILE + tx) * FILM_TILE - r[0], y = (r[1] / FILM_TILE + ty) * FILM_TILE - r[1];
-    return (Rectangle){int_max(x, 0), int_max(y, 0), int_min(x + FILM_TILE, r[2] - r[0]), int_min(y + FILM_TILE, r[3] - r[1])};
+    return (Rectangle){int_max(x, 0), int_max(y, 0), int_min(x + FILM_TILE, r[2] - r[0]),
+                       int_min(y + FILM_TILE, r[3] - r[1])};
 }
 
 /* Sum of the squares of what the two means differ by. */
@@ -119,7 +123,8 @@ static double squared_difference(const Exposure *e, Rectangle r) {
     double sum = 0;
     for (int y = r.y0; y < r.y1; y++)
         for (int x = r.x0; x < r.x1; x++) {
-            const float *a = image_pixel(&e->session->blurred, x, y), *b = image_pixel(&e->session->between, x, y);
+            const float *a = image_pixel(&e->session->blurred, x, y),
+                        *b = image_pixel(&e->session->between, x, y);
             for (int c = 0; c < e->channels; c++) {
                 double d = (double)float_clamp(a[c], 0, 1) - (double)float_clamp(b[c], 0, 1);
                 sum += d * d;
@@ -135,7 +140,8 @@ static bool tile_moves(const Exposure *e, Rectangle r) {
         for (int x = r.x0; x < r.x1; x += BLOCK) {
             Rectangle block = {x, y, int_min(x + BLOCK, r.x1), int_min(y + BLOCK, r.y1)};
             double square = squared_difference(e, block) / 4;
-            if (square > MOST_IN_BLOCK * MOST_IN_BLOCK * accepted * accepted * BLOCK * BLOCK * e->channels) return true;
+            if (square > MOST_IN_BLOCK * MOST_IN_BLOCK * accepted * accepted * BLOCK * BLOCK * e->channels)
+                return true;
             sum += square;
         }
     return sum > accepted * accepted * (r.x1 - r.x0) * (r.y1 - r.y0) * e->channels;
@@ -146,7 +152,8 @@ static int reach_of(const Exposure *e, int intervals) {
     Rectangle r = {e->tiles_x, e->tiles_y, -1, -1};
     for (int y = 0; y < e->tiles_y; y++)
         for (int x = 0; x < e->tiles_x; x++)
-            if (e->moving[y * e->tiles_x + x]) r = (Rectangle){int_min(r.x0, x), int_min(r.y0, y), int_max(r.x1, x), int_max(r.y1, y)};
+            if (e->moving[y * e->tiles_x + x])
+                r = (Rectangle){int_min(r.x0, x), int_min(r.y0, y), int_max(r.x1, x), int_max(r.y1, y)};
     return r.x1 < 0 ? 0 : 1 + (int)ceil(hypot(r.x1 - r.x0, r.y1 - r.y0) / intervals);
 }
 
@@ -217,7 +224,8 @@ static void show(Exposure *e) {
     const Image *picture = &session->picture;
     Preview *preview = session->options.preview ? session_connect_preview(session) : NULL;
     if (!preview) return;
-    preview_begin(preview, session->scene_name ? session->scene_name : "vts", picture, e->tiles_x * e->tiles_y);
+    preview_begin(preview, session->scene_name ? session->scene_name : "vts", picture,
+                  e->tiles_x * e->tiles_y);
     for (int i = 0; i < e->tiles_x * e->tiles_y; i++) {
         Rectangle r = tile_at(e, i % e->tiles_x, i / e->tiles_x);
         preview_tile(preview, r.x0, r.y0, r.x1, r.y1);
@@ -240,8 +248,13 @@ static void lay_tiles(Exposure *e) {
 
 VtsStatus session_expose(VtsSession *session, const char *scene_path, bool exact, RenderStats *stats) {
     const VtsOptions *o = &session->options;
-    if (o->shutter_clock == 0 && o->shutter_time == 0) return session_draw(session, exact, &(MomentPlan){0}, stats);
-    Exposure exposure = {.session = session, .scene_path = scene_path, .exact = exact, .stats = stats, .channels = o->alpha ? 4 : 3};
+    if (o->shutter_clock == 0 && o->shutter_time == 0)
+        return session_draw(session, exact, &(MomentPlan){0}, stats);
+    Exposure exposure = {.session = session,
+                         .scene_path = scene_path,
+                         .exact = exact,
+                         .stats = stats,
+                         .channels = o->alpha ? 4 : 3};
     *stats = (RenderStats){.error_estimate = -1};
     lay_tiles(&exposure);
     VtsStatus status = expose_blurred(&exposure);

@@ -32,7 +32,7 @@ static uint64_t key_of(const VtsSession *session, bool exact) {
         hash_add(&hash, file->text, file->size);
     }
     const double numbers[] = {o->width, o->height, o->clock, o->frame, o->first_frame, o->last_frame, o->first_clock, o->last_clock, o->clock_delta,
-                              o->time_set ? o->time : o->clock, o->cycle, o->max_error, o->samples, exact ? o->reference_samples : 0, o->exposure,
+                              o->time_set ? o->time : o->clock, o->cycle, o->shutter_clock, o->shutter_time, o->max_error, o->samples, exact ? o->reference_samples : 0, o->exposure,
                               o->alpha};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(numbers); i++) hash_add_double(&hash, numbers[i]);
     hash_add_u64(&hash, o->seed);

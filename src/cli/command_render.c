@@ -1,6 +1,7 @@
 #include "cli/command.h"
 #include "cli/complaint.h"
 #include "cli/frames.h"
+#include "cli/movie.h"
 #include "cli/report_file.h"
 
 #include <stdio.h>
@@ -41,14 +42,33 @@ static VtsStatus write_report(VtsSession *session, const Rendering *r, VtsStatus
     return status != VTS_OK || written ? status : VTS_ERROR_FILE;
 }
 
-static VtsStatus render(VtsSession *session, const void *context) {
-    const Rendering *r = context;
+static VtsStatus render_frames(VtsSession *session, const Rendering *r) {
     FrameCursor cursor = {0};
-    VtsStatus status = film_join(session, r->settings, r->scene, FILM_ALL);
-    if (status != VTS_OK) return status;
+    VtsStatus status = VTS_OK;
     if (r->settings->animation.on) console_expect_works(r->console, film_count(r->settings));
     while (status == VTS_OK && film_next(r->settings, &cursor)) status = render_frame(session, r, cursor.frame);
     return write_report(session, r, status);
+}
+
+static VtsStatus render_movie(VtsSession *session, const Rendering *r, const char *path) {
+    Movie movie;
+    if (r->settings->resume && film_is_drawn(path)) {
+        console_note(r->console, "%s: is there", path);
+        return VTS_OK;
+    }
+    VtsStatus status = movie_begin(&movie, r->settings, path);
+    if (status != VTS_OK) return r->console->diagnostics_shown = true, status;
+    r->settings->output = movie.frames;
+    if ((status = render_frames(session, r)) == VTS_OK && (status = movie_end(&movie, r->settings)) == VTS_ERROR_FILE) r->console->diagnostics_shown = true;
+    return status;
+}
+
+static VtsStatus render(VtsSession *session, const void *context) {
+    const Rendering *r = context;
+    VtsStatus status = film_join(session, r->settings, r->scene, FILM_ALL);
+    if (status != VTS_OK) return status;
+    const char *output = r->settings->output;
+    return output && movie_is(output) ? render_movie(session, r, output) : render_frames(session, r);
 }
 
 int command_render(Settings *settings) {

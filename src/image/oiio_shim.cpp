@@ -26,6 +26,13 @@ struct OiioReader {
     std::vector<ImageAttribute> attributes;
 };
 
+struct OiioFilm {
+    std::unique_ptr<ImageOutput> output;
+    ImageSpec spec;
+    std::string path;
+    bool begun = false;
+};
+
 namespace {
 
 /* One line: what OpenImageIO says may be several. */
@@ -294,7 +301,40 @@ bool shim_encode(const OiioPicture *picture, void **bytes, size_t *size, char er
     return fail(error, "");
 }
 
-const OiioShim shim = {OIIO_SHIM_VERSION, shim_open, shim_read, shim_read_rows, shim_close, shim_encode};
+bool shim_film_open(const char *path, const char *format, int width, int height, double fps, OiioFilm **out, char error[OIIO_ERROR_SIZE]) try {
+    stay_single_threaded();
+    auto film = std::make_unique<OiioFilm>();
+    film->output = ImageOutput::create(format);
+    if (!film->output) return fail(error, OIIO::geterror());
+    if (!film->output->supports("multiimage")) return fail(error, "this OpenImageIO cannot write several pictures into one file");
+    film->spec = ImageSpec(width, height, 3, TypeDesc::UINT8);
+    film->spec.attribute("FramesPerSecond", static_cast<float>(fps));
+    film->spec.attribute("oiio:Movie", 1);
+    film->path = path;
+    *out = film.release();
+    return true;
+} catch (const std::exception &exception) { return fail(error, exception.what()); } catch (...) {
+    return fail(error, "");
+}
+
+bool shim_film_add(OiioFilm *film, const unsigned char *pixels, char error[OIIO_ERROR_SIZE]) try {
+    ImageOutput::OpenMode mode = film->begun ? ImageOutput::AppendSubimage : ImageOutput::Create;
+    film->begun = true;
+    if (film->output->open(film->path, film->spec, mode) && film->output->write_image(TypeDesc::UINT8, pixels)) return true;
+    return fail(error, film->output->geterror());
+} catch (const std::exception &exception) { return fail(error, exception.what()); } catch (...) {
+    return fail(error, "");
+}
+
+bool shim_film_close(OiioFilm *film, char error[OIIO_ERROR_SIZE]) try {
+    std::unique_ptr<OiioFilm> owned(film);
+    return film->output->close() || fail(error, film->output->geterror());
+} catch (const std::exception &exception) { return fail(error, exception.what()); } catch (...) {
+    return fail(error, "");
+}
+
+const OiioShim shim = {OIIO_SHIM_VERSION, shim_open, shim_read, shim_read_rows, shim_close, shim_encode,
+                       shim_film_open, shim_film_add, shim_film_close};
 
 } // namespace
 

@@ -10,9 +10,10 @@ extern "C" {
 #endif
 
 /* Changes with every change of this file; a module with another number is not used. */
-enum { OIIO_SHIM_VERSION = 3, OIIO_ERROR_SIZE = 512 };
+enum { OIIO_SHIM_VERSION = 4, OIIO_ERROR_SIZE = 512 };
 
 typedef struct OiioReader OiioReader;
+typedef struct OiioFilm OiioFilm;
 
 /* The first part of an opened file. Texts belong to the reader. */
 typedef struct OiioHeader {
@@ -54,6 +55,11 @@ typedef struct OiioShim {
     void (*close)(OiioReader *reader);
     /* The bytes of a file, allocated with malloc(). */
     bool (*encode)(const OiioPicture *picture, void **bytes, size_t *size, char error[OIIO_ERROR_SIZE]);
+    /* A file of several pictures shown one after the other ("gif"): opened with the first, which is not added yet; a picture is three bytes a
+     * pixel. film_close() of an opened one always, also to break off; false when the file is not whole. */
+    bool (*film_open)(const char *path, const char *format, int width, int height, double fps, OiioFilm **film, char error[OIIO_ERROR_SIZE]);
+    bool (*film_add)(OiioFilm *film, const unsigned char *pixels, char error[OIIO_ERROR_SIZE]);
+    bool (*film_close)(OiioFilm *film, char error[OIIO_ERROR_SIZE]);
 } OiioShim;
 
 /* The one symbol of the module. */

@@ -158,4 +158,56 @@ case_warned_once() {
   [ "$(grep -c "'media' is not modelled" err)" = 1 ] || fail "a warning of each frame: $(cat err)"
 }
 
+# A stand-in for ffmpeg: keeps what it is called with, and makes of its input the file that its last argument names.
+encoder() {
+  mkdir -p bin
+  printf '#!/bin/bash\nprintf "%%s " "$@" >"%s/arguments"\nout=${!#}; cat >"${out#file:}"\n%s\n' "$PWD" "${1:-}" >bin/ffmpeg
+  chmod +x bin/ffmpeg
+}
+
+case_movie() {
+  film; encoder
+  local PATH=$PWD/bin:$PATH
+  run film.vts -s 15x12 -o a.ppm; rm a?.ppm
+  run film.vts -s 15x12 -o 'b#.png'; want_status 0
+  run film.vts -s 15x12 -o a.mp4 --fps 12; want_status 0
+  cat b1.png b2.png b3.png b4.png | cmp -s - a.mp4 || fail "the film is not its frames"
+  grep -q -- '-framerate 12 ' arguments || fail "frames a second: $(cat arguments)"
+  grep -q 'pad=16:12' arguments || fail "an odd width: $(cat arguments)"
+  want_only film.vts bin arguments b1.png b2.png b3.png b4.png a.mp4
+  run film.vts -s 15x12 -o 'c:d.webm' -f 3,1; want_status 0
+  cat b3.png b1.png | cmp -s - c:d.webm || fail "not the frames that were asked for"
+  run film.vts -s 15x12 -o a.mp4 --resume; want_status 0; want_said ''
+  sed -i 1d film.vts; refused render film.vts -s 15x12 -o x.mp4; want_in err 'no animation'
+  want_only film.vts bin arguments b1.png b2.png b3.png b4.png a.mp4 c:d.webm
+}
+
+# Nothing is lost, and nothing is half.
+case_movie_fails() {
+  film
+  local empty=$PWD/none sleeps
+  mkdir none; PATH=$empty run film.vts -s 8x6 -o a.mkv; want_status 3; want_in err 'ffmpeg'; want_said ''; rmdir none; want_only film.vts
+  encoder 'exit 1'
+  PATH=$PWD/bin:$PATH run film.vts -s 8x6 -o a.mkv; want_status 3; want_in err 'a.mkv.frames'
+  [ ! -e a.mkv ] || fail "half a film"
+  want_file a.mkv.frames/00000004.png
+  encoder
+  PATH=$PWD/bin:$PATH run film.vts -s 8x6 -o a.mkv --resume; want_status 0; want_said ''; want_file a.mkv
+  printf '#!/bin/sh\nexit 0 # reads nothing, makes nothing\n' >bin/ffmpeg
+  PATH=$PWD/bin:$PATH run film.vts -s 300x200 -o d.mp4; want_status 3
+  : >e.mp4.frames; PATH=$PWD/bin:$PATH run film.vts -s 8x6 -o e.mp4; want_status 3; want_said ''
+  run film.vts -s 8x6 -o none/e.gif; want_status 3; want_said ''
+}
+
+case_gif() {
+  film
+  run film.vts -s 15x12 -o a.gif; want_status 0; want_only film.vts a.gif
+  [ "$(head -c 6 a.gif)" = GIF89a ] || fail "no GIF"
+  [ "$(od -An -v -tx1 a.gif | tr -d ' \n' | grep -o '21f904' | wc -l)" = 4 ] || fail "not four pictures"
+  cp a.gif kept.gif
+  ( ulimit -f 1; trap '' XFSZ; "$vts" film.vts -s 64x48 -o a.gif >out 2>err </dev/null; echo $? >status )
+  status=$(cat status); rm status; call='vts film.vts to a GIF on a full disk'
+  want_status 3; cmp -s a.gif kept.gif || fail "half a film"
+}
+
 run_case

@@ -25,8 +25,14 @@ static void bound_worley(const void *data, const Interval *in, Interval *out) {
 
 static void forms_worley(const void *data, int count, const AffineForm *in, AffineForm *out) { affine_worley(count, in, *(const int *)data, out); }
 
+static void gradient_worley(const void *data, const double *in, double *slopes) {
+    Vec3 by[WORLEY_NODES];
+    noise_worley_gradients(vec3(in[0], in[1], in[2]), *(const int *)data, by);
+    for (int k = 0; k <= *(const int *)data; k++) slopes[3 * k] = by[k].x, slopes[3 * k + 1] = by[k].y, slopes[3 * k + 2] = by[k].z;
+}
+
 #define WORLEY_OF(k, last)                                                                                                               \
-    {.name = "worley", .input_count = 3, .output_count = (last) + 1, .eval = eval_worley, .bound = bound_worley, .forms = forms_worley,    \
+    {.name = "worley", .input_count = 3, .output_count = (last) + 1, .eval = eval_worley, .bound = bound_worley, .forms = forms_worley, .gradient = gradient_worley, \
      .data = &worley_last[k], .hash = {0x776F726C6579, 2 + (k)}, .work = 60}
 static const TapeExternal worley_nearest[] = {WORLEY_OF(0, 0), WORLEY_OF(1, 1), WORLEY_OF(2, 3), WORLEY_OF(3, WORLEY_NODES - 1)};
 
@@ -64,12 +70,19 @@ static void forms_sparse(const void *data, int count, const AffineForm *in, Affi
         affine_sparse_convolution(count, in, int_clamp(whole(impulses->centre, SPARSE_IMPULSES), 1, SPARSE_IMPULSES), out);
 }
 
+static void gradient_sparse(const void *data, const double *in, double *slopes) {
+    (void)data;
+    Vec3 by = noise_sparse_gradient(vec3(in[0], in[1], in[2]), whole(in[3], SPARSE_IMPULSES));
+    slopes[0] = by.x, slopes[1] = by.y, slopes[2] = by.z;
+}
+
 static const TapeExternal sparse_convolution = {.name = "sparse_convolution",
                                                 .input_count = 4,
                                                 .output_count = 1,
                                                 .eval = eval_sparse,
                                                 .bound = bound_sparse,
                                                 .forms = forms_sparse,
+                                                .gradient = gradient_sparse,
                                                 .hash = {0x737061727365, 1},
                                                 .work = 60};
 

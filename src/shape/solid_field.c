@@ -5,9 +5,12 @@
 #include "shape/roots.h"
 #include "shape/solid.h"
 #include "shape/solid_field.h"
+#include "tape/tape_gradient.h"
 #include "tape/tape_interval.h"
 
-enum { PART_SURFACE, PART_CONTAINER, MOST_STEPS = 200000, LEAST_STEPS = 32, MOST_ENDS = 64, MOST_CHANGES = 100000 };
+#include <stdlib.h>
+
+enum { PART_SURFACE, PART_CONTAINER, MOST_STEPS = 200000, LEAST_STEPS = 32, MOST_ENDS = 64, MOST_CHANGES = 100000, FEW_SLOTS = 256 };
 
 typedef struct Field {
     const Solid *solid;
@@ -177,6 +180,7 @@ static void cross(const void *data, const Ray *ray, SolidSink *sink) {
     }
 }
 
+/* Where the function has no gradient at the very place, neighbouring places may tell one. */
 static double difference(const Solid *s, Vec3 p, Vec3 step, double h) {
     return (solid_isosurface_value(s, vec3_madd(p, step, h)) - solid_isosurface_value(s, vec3_madd(p, step, -h))) / (2 * h);
 }
@@ -201,9 +205,22 @@ static Vec3 container_normal(const Field *f, Vec3 p, const SolidTag *tag) {
     return vec3_normalize(transform_normal(&f->place, out));
 }
 
+static Vec3 gradient(const Solid *s, Vec3 p) {
+    const Tape *tape = s->as.isosurface.function;
+    Dual few[FEW_SLOTS];
+    size_t slots = tape_scratch_size(tape);
+    if (tape_input_count(tape) != 3 || tape_output_count(tape) != 1) return vec3(0, 0, 0);
+    Dual *scratch = slots > FEW_SLOTS ? malloc(slots * sizeof *scratch) : few, out = {0};
+    if (scratch) out = tape_eval_gradient(tape, p, scratch);
+    if (scratch != few) free(scratch);
+    return vec3(out.by[0], out.by[1], out.by[2]);
+}
+
 static Vec3 normal(const void *data, Vec3 p, const SolidTag *tag) {
     const Field *f = data;
     if (tag->part != PART_SURFACE) return container_normal(f, p, tag);
+    Vec3 exact = gradient(f->solid, p);
+    if (vec3_is_finite(exact) && vec3_length_squared(exact) > 0) return vec3_normalize(exact);
     double h = 1e-6 * double_max(1, double_max(fabs(p.x), double_max(fabs(p.y), fabs(p.z))));
     Vec3 g = {difference(f->solid, p, vec3(1, 0, 0), h), difference(f->solid, p, vec3(0, 1, 0), h),
               difference(f->solid, p, vec3(0, 0, 1), h)};

@@ -30,6 +30,9 @@ void noise_worley_nearest(Vec3 p, int last, double *out);
  * of radius 1; divided by the root of `count`, so that the deviation, about 0.35, does not depend on it. */
 enum { SPARSE_IMPULSES = 64 };
 double noise_sparse_convolution(Vec3 p, int count);
+/* The gradient of either: of noise_worley_nearest() for numbers 0 … last. NaN where the place is no number; 0 at a node. */
+void noise_worley_gradients(Vec3 p, int last, Vec3 *out);
+Vec3 noise_sparse_gradient(Vec3 p, int count);
 
 /* POV-Ray's own noises, number for number (its noise_generator 2, the default of 3.7, and 1). In [0, 1], period 4096. */
 double noise_pov(Vec3 p);

@@ -10,33 +10,30 @@ static double reduced(double a) { return fabs(a) < 0x1p50 ? a : fmod(a, 0x1p50);
 
 typedef struct Distances {
     double squares[WORLEY_NODES]; /* of the nearest nodes, nearest first */
+    Vec3 ways[WORLEY_NODES];      /* from them */
 } Distances;
 
-static void insert(Distances *d, double square) {
+static void insert(Distances *d, Vec3 way) {
     int k = WORLEY_NODES - 1;
+    double square = vec3_length_squared(way);
     if (!(square < d->squares[k])) return;
-    for (; k > 0 && square < d->squares[k - 1]; k--) d->squares[k] = d->squares[k - 1];
-    d->squares[k] = square;
+    for (; k > 0 && square < d->squares[k - 1]; k--) d->squares[k] = d->squares[k - 1], d->ways[k] = d->ways[k - 1];
+    d->squares[k] = square, d->ways[k] = way;
 }
 
 static void add_nodes(Distances *d, NodeCell cell, Vec3 p) {
     uint64_t bits = node_cell_bits(cell, WORLEY_KIND);
     int count = worley_node_count(bits);
-    for (int k = 0; k < count; k++) insert(d, vec3_length_squared(vec3_sub(worley_node(cell, bits, k), p)));
+    for (int k = 0; k < count; k++) insert(d, vec3_sub(p, worley_node(cell, bits, k)));
 }
 
 /* From a place `in` the unit cell to one `off` cells away, along an axis. */
 static double gap(double in, int off) { return off > 0 ? off - in : off < 0 ? in - off - 1 : 0; }
 
 /* Shell after shell of cells, until no node of the next can be among those that are wanted. */
-void noise_worley_nearest(Vec3 p, int last, double *out) {
+static void find_nearest(Vec3 p, int last, Distances *out) {
     Distances d;
-    for (int k = 0; k < WORLEY_NODES; k++) d.squares[k] = VTS_INFINITY;
-    last = int_clamp(last, 0, WORLEY_NODES - 1);
-    if (!vec3_is_finite(p)) {
-        for (int k = 0; k <= last; k++) out[k] = (double)NAN;
-        return;
-    }
+    for (int k = 0; k < WORLEY_NODES; k++) d.squares[k] = VTS_INFINITY, d.ways[k] = vec3(0, 0, 0);
     p = vec3(reduced(p.x), reduced(p.y), reduced(p.z));
     NodeCell home = node_cell_of(p);
     Vec3 in = vec3(p.x - floor(p.x), p.y - floor(p.y), p.z - floor(p.z));
@@ -57,7 +54,26 @@ void noise_worley_nearest(Vec3 p, int last, double *out) {
         double nearest_beyond = border + shell;
         if (d.squares[last] <= nearest_beyond * nearest_beyond) break;
     }
-    for (int k = 0; k <= last; k++) out[k] = sqrt(d.squares[k]);
+    *out = d;
+}
+
+void noise_worley_nearest(Vec3 p, int last, double *out) {
+    Distances d;
+    bool finite = vec3_is_finite(p);
+    last = int_clamp(last, 0, WORLEY_NODES - 1);
+    if (finite) find_nearest(p, last, &d);
+    for (int k = 0; k <= last; k++) out[k] = finite ? sqrt(d.squares[k]) : (double)NAN;
+}
+
+void noise_worley_gradients(Vec3 p, int last, Vec3 *out) {
+    Distances d;
+    bool finite = vec3_is_finite(p);
+    last = int_clamp(last, 0, WORLEY_NODES - 1);
+    if (finite) find_nearest(p, last, &d);
+    for (int k = 0; k <= last; k++) {
+        out[k] = vec3_splat(finite ? 0 : (double)NAN);
+        if (finite && d.squares[k] > 0) out[k] = vec3_scale(d.ways[k], 1 / sqrt(d.squares[k]));
+    }
 }
 
 double noise_worley(Vec3 p, int index) {
@@ -112,31 +128,46 @@ static double kernel(double square) {
     return square < 1 ? sparse_kernel(square, &slope) : 0;
 }
 
-static double impulses(NodeCell cell, Vec3 p, int count) {
+typedef struct Sum {
+    double value;
+    Vec3 gradient;
+} Sum;
+
+static void add_impulses(NodeCell cell, Vec3 p, int count, Sum *sum) {
     uint64_t bits = node_cell_bits(cell, SPARSE_KIND);
-    double sum = 0, weight;
+    double weight, slope;
     for (int k = 0; k < count; k++) {
-        Vec3 at = sparse_impulse(cell, bits, k, &weight);
-        sum += weight * kernel(vec3_length_squared(vec3_sub(at, p)));
+        Vec3 way = vec3_sub(p, sparse_impulse(cell, bits, k, &weight));
+        double square = vec3_length_squared(way);
+        if (!(square < 1)) continue;
+        sum->value += weight * sparse_kernel(square, &slope);
+        sum->gradient = vec3_madd(sum->gradient, way, 2 * weight * slope);
     }
-    return sum;
 }
 
 /* Cells beyond the impulses' radius hold nothing that counts. */
-double noise_sparse_convolution(Vec3 p, int count) {
-    if (!vec3_is_finite(p)) return (double)NAN;
+static Sum sum_impulses(Vec3 p, int count) {
     p = vec3(reduced(p.x), reduced(p.y), reduced(p.z));
     NodeCell home = node_cell_of(p);
     Vec3 in = vec3(p.x - floor(p.x), p.y - floor(p.y), p.z - floor(p.z));
-    count = int_clamp(count, 1, SPARSE_IMPULSES);
-    double sum = 0;
+    Sum sum = {0, {0, 0, 0}};
     for (int k = 0; k < 27; k++) {
         int x = k % 3 - 1, y = k / 3 % 3 - 1, z = k / 9 - 1;
         double gx = gap(in.x, x), gy = gap(in.y, y), gz = gap(in.z, z);
         if (gx * gx + gy * gy + gz * gz > 1 + 0x1p-20) continue;
-        sum += impulses((NodeCell){home.x + x, home.y + y, home.z + z}, p, count);
+        add_impulses((NodeCell){home.x + x, home.y + y, home.z + z}, p, count, &sum);
     }
-    return sum / sqrt(count);
+    return sum;
+}
+
+double noise_sparse_convolution(Vec3 p, int count) {
+    count = int_clamp(count, 1, SPARSE_IMPULSES);
+    return vec3_is_finite(p) ? sum_impulses(p, count).value / sqrt(count) : (double)NAN;
+}
+
+Vec3 noise_sparse_gradient(Vec3 p, int count) {
+    count = int_clamp(count, 1, SPARSE_IMPULSES);
+    return vec3_is_finite(p) ? vec3_scale(sum_impulses(p, count).gradient, 1 / sqrt(count)) : vec3_splat((double)NAN);
 }
 
 /* Each impulse falls with the distance, which changes by no more than the way. */

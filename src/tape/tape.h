@@ -41,6 +41,8 @@ typedef struct TapeExternal {
     /* Forms of the outputs on `count` pieces of a line at once, at most 8: output k of piece i is out[k·count + i], and so of the inputs.
      * NULL: those of the intervals. */
     void (*forms)(const void *data, int count, const struct AffineForm *in, struct AffineForm *out);
+    /* slopes[k·input_count + j], 0 before: the derivative of output k by input j. NULL: neighbouring places are compared. */
+    void (*gradient)(const void *data, const double *in, double *slopes);
 } TapeExternal;
 
 /* The printed form of an operation, and how many operands it takes (0: structure, not for tape_unary() and its like). */

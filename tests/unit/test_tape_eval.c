@@ -252,7 +252,7 @@ static void sum_and_product(const void *data, const double *in, double *out) {
     out[1] = in[0] * in[1];
 }
 
-static const TapeExternal external = {"sum_and_product", 2, 2, sum_and_product, NULL, {7, 7}, 0, 0, NULL, NULL};
+static const TapeExternal external = {"sum_and_product", 2, 2, sum_and_product, NULL, {7, 7}, 0, 0, NULL, NULL, NULL};
 
 /* x, y → Σ_{i=x..y} i·x·y, through an external */
 static const Tape *tape_with_everything(Arena *arena) {

@@ -7,7 +7,7 @@
 enum { AHEAD = 2 /* pieces divided together */, FEW_LANES = 24 };
 
 /* Pieces up to this many line_shortest() are left to halving, whose bounds' roundings are smaller. */
-static const double ALONE = 0x1p28;
+static const double ALONE = 0x1p6;
 
 typedef struct Lanes {
     LineSearch *search;
@@ -17,23 +17,40 @@ typedef struct Lanes {
 } Lanes;
 
 static void place_lanes(const Line *line, const LinePiece *pieces, AffineLanes in[3]) {
-    const double origin[3] = {line->origin.x, line->origin.y, line->origin.z}, along[3] = {line->direction.x, line->direction.y, line->direction.z};
-    for (int k = 0; k < 3; k++)
-        AFFINE_EACH_LANE {
-            double middle = pieces[l].a / 2 + pieces[l].b / 2, half = (pieces[l].b - pieces[l].a) / 2 * (1 + 0x1p-50);
+    const double origin[3] = {line->origin.x, line->origin.y, line->origin.z},
+                 along[3] = {line->direction.x, line->direction.y, line->direction.z};
+    for (int k = 0; k < 3; k++) AFFINE_EACH_LANE {
+            double middle = pieces[l].a / 2 + pieces[l].b / 2,
+                   half = (pieces[l].b - pieces[l].a) / 2 * (1 + 0x1p-50);
             double size = fabs(origin[k]) + (fabs(middle) + half) * fabs(along[k]);
-            in[k].centre[l] = origin[k] + middle * along[k], in[k].slope[l] = half * along[k], in[k].error[l] = affine_lane_error(0, size);
+            in[k].centre[l] = origin[k] + middle * along[k], in[k].slope[l] = half * along[k],
+            in[k].error[l] = affine_lane_error(0, size);
         }
+}
+
+/* A bit for each lane that may be 0 or is unknown. */
+static uint64_t open_lanes(const AffineLanes *bounds) {
+    uint64_t open = 0;
+    AFFINE_EACH_LANE {
+        /* Infinite, or no number, where nothing is known. */
+        double radius = (fabs(bounds->slope[l]) + bounds->error[l]) * (1 + 0x1p-50);
+        open |= fabs(bounds->centre[l]) > radius ? 0 : (uint64_t)1 << l;
+    }
+    return open;
 }
 
 /* What may hold a zero of the pieces, cut, goes onto the stack, the first on top. */
 static void push_rest(Lanes *lanes, const LinePiece *pieces, const AffineLanes *bounds, int used) {
+    uint64_t open = open_lanes(bounds);
     for (int l = used; l-- > 0;) {
+        if (!(open >> l & 1)) continue;
         LinePiece piece = pieces[l];
         AffineForm f = affine_lane(bounds, l);
-        if (!(f.error < HUGE_VAL)) f = line_bounds(lanes->search, piece.a, piece.b);
-        Interval range = affine_range(f);
-        if (range.low > 0 || (range.high <= 0 && !f.nan)) continue;
+        if (!(f.error < HUGE_VAL)) {
+            f = line_bounds(lanes->search, piece.a, piece.b);
+            Interval range = affine_range(f);
+            if (range.low > 0 || (range.high <= 0 && !f.nan)) continue;
+        }
         if (!f.nan) line_cut(f, &piece.a, &piece.b);
         if (!(piece.b >= piece.a) || lanes->count >= LINE_MOST_PIECES) continue;
         lanes->stack[lanes->count++] = piece;
@@ -47,7 +64,8 @@ static void divide(Lanes *lanes, const LinePiece *wholes, int count) {
     int shares = AFFINE_LANES / count, used = 0;
     for (int k = 0; k < count; k++) {
         double a = wholes[k].a, b = wholes[k].b, step = (b - a) / shares;
-        for (int l = 0; l < shares; l++) pieces[used++] = (LinePiece){l ? a + step * l : a, l < shares - 1 ? a + step * (l + 1) : b};
+        for (int l = 0; l < shares; l++)
+            pieces[used++] = (LinePiece){l ? a + step * l : a, l < shares - 1 ? a + step * (l + 1) : b};
     }
     for (int l = used; l < AFFINE_LANES; l++) pieces[l] = pieces[used - 1];
     place_lanes(lanes->search->line, pieces, lanes->scratch);

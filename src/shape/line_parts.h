@@ -30,7 +30,7 @@ AffineForm line_bounds(LineSearch *s, double a, double b);
 AffineForm line_place(double origin, double direction, double middle, double half);
 /* Cuts [a, b], where the form holds, to where centre + slope·s may be within the error of 0: equation 16. */
 void line_cut(AffineForm f, double *a, double *b);
-/* Below this a piece that ends at t is a place: what a double of that size, or the way to it, tells apart. */
+/* Below this a piece that ends at t is a place, and has at most one change of sign: 2⁻⁴⁰ of the way or of the coordinates there. */
 double line_shortest(const Line *line, double t);
 /* Where the sign changes between a and b; false: it is the same at both. */
 bool line_place_between(LineSearch *s, double a, double b, double *t, bool *falling);

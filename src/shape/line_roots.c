@@ -30,7 +30,8 @@ AffineForm line_place(double origin, double direction, double middle, double hal
 AffineForm line_bounds(LineSearch *s, double a, double b) {
     const Line *line = s->line;
     double middle = a / 2 + b / 2, half = round_up(fmax(b - middle, middle - a));
-    AffineForm in[3] = {line_place(line->origin.x, line->direction.x, middle, half), line_place(line->origin.y, line->direction.y, middle, half),
+    AffineForm in[3] = {line_place(line->origin.x, line->direction.x, middle, half),
+                        line_place(line->origin.y, line->direction.y, middle, half),
                         line_place(line->origin.z, line->direction.z, middle, half)};
     AffineForm out = affine_unknown(true);
     s->work.bounds++;
@@ -46,6 +47,12 @@ AffineForm line_bounds(LineSearch *s, double a, double b) {
     return affine_SUB(out, affine_point(line->level));
 }
 
+static double size_at(const Line *line, double t) {
+    Vec3 p = vec3_madd(line->origin, line->direction, t);
+    double most = fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z)));
+    return fmax(fabs(t), most / vec3_length(line->direction));
+}
+
 void line_cut(AffineForm f, double *a, double *b) {
     if (f.slope == 0 || !(f.error < HUGE_VAL)) return;
     double middle = *a / 2 + *b / 2, half = *b - middle;
@@ -57,25 +64,25 @@ void line_cut(AffineForm f, double *a, double *b) {
     if (high < 1) *b = fmin(*b, middle + half * high + slack);
 }
 
-double line_shortest(const Line *line, double t) {
-    Vec3 p = vec3_madd(line->origin, line->direction, t);
-    double size = fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))) / vec3_length(line->direction);
-    return 0x1p-48 * fmax(fabs(t), size);
-}
+double line_shortest(const Line *line, double t) { return 0x1p-40 * size_at(line, t); }
 
-static double value_on(const void *context, double t) { return line_value((LineSearch *)(uintptr_t)context, t); }
+static double value_on(const void *context, double t) {
+    return line_value((LineSearch *)(uintptr_t)context, t);
+}
 
 /* Once bounds leave a piece this short, one change is all that can be told. */
 bool line_place_between(LineSearch *s, double a, double b, double *t, bool *falling) {
     double at_a = line_value(s, a), at_b = line_value(s, b);
     if ((at_a <= 0) == (at_b <= 0)) return false;
     *falling = at_b <= 0;
-    *t = isfinite(at_a) && isfinite(at_b) ? roots_between(value_on, s, a, at_a, b, at_b, 0x1p-52 * (fabs(a) + fabs(b))) : b;
+    *t = isfinite(at_a) && isfinite(at_b)
+             ? roots_between(value_on, s, a, at_a, b, at_b, 0x1p-52 * (fabs(a) + fabs(b)))
+             : b;
     return true;
 }
 
 /* Where a function only touches its level, or runs along it, no halving ends. */
-static const double ROUNDING_MATTERS = 0x1p28;
+static const double ROUNDING_MATTERS = 0x1p20;
 
 static bool all_is_rounding(LineSearch *s, const AffineForm *f, double a, double b) {
     double middle = a / 2 + b / 2;
@@ -128,7 +135,8 @@ bool line_first_root(const Line *line, double from, double to, double *t, bool *
         s.values = malloc(slots * sizeof *s.values);
     }
     to = fmin(to, FARTHEST);
-    if (s.forms && s.intervals && s.values) found = from < to && (line->sum ? line_search_lanes : line_search_halves)(&s, from, to, t, falling);
+    if (s.forms && s.intervals && s.values)
+        found = from < to && (line->sum ? line_search_lanes : line_search_halves)(&s, from, to, t, falling);
     if (work) work->bounds += s.work.bounds, work->values += s.work.values;
     if (more) {
         free(s.forms);
@@ -138,4 +146,4 @@ bool line_first_root(const Line *line, double from, double to, double *t, bool *
     return found;
 }
 
-double line_behind(const Line *line, double t) { return t + 16 * line_shortest(line, t); }
+double line_behind(const Line *line, double t) { return t + 0x1p-44 * size_at(line, t); }

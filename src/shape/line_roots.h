@@ -25,7 +25,7 @@ typedef struct LineWork {
 } LineWork;
 
 /* The first place in (from, to) where the function passes from above `level` to not above it, or back; false: there is none. What
- * is no number counts as above. Places closer than what doubles tell apart there are one; where function and level only touch
+ * is no number counts as above. Places closer together than 2⁻⁴⁰ of the way there, or of its coordinates, count as one; where function and level only touch
  * there is none. *falling: it is not above behind the place. `work` may be NULL. */
 bool line_first_root(const Line *line, double from, double to, double *t, bool *falling, LineWork *work);
 

@@ -14,10 +14,13 @@ typedef struct AffineLanes {
     double centre[AFFINE_LANES], slope[AFFINE_LANES], error[AFFINE_LANES];
 } AffineLanes;
 
-#define AFFINE_EACH_LANE for (int l = 0; l < AFFINE_LANES; l++)
+/* Not unrolled: compilers make vectors of loops more surely than of what is left of them. */
+#define AFFINE_EACH_LANE _Pragma("GCC unroll 1") for (int l = 0; l < AFFINE_LANES; l++)
 
 /* `error`, rounded up, and the roundings of an operation whose results and operands add up to at most `size`. */
-static inline double affine_lane_error(double error, double size) { return (error + size * 0x1p-49) * (1 + 0x1p-50) + 0x1p-1000; }
+static inline double affine_lane_error(double error, double size) {
+    return (error + size * 0x1p-49) * (1 + 0x1p-50) + 0x1p-1000;
+}
 
 static inline AffineForm affine_lane(const AffineLanes *a, int l) {
     if (!(a->error[l] < HUGE_VAL)) return affine_unknown(true);
@@ -58,20 +61,24 @@ static inline void affine_scale_lanes(AffineLanes *restrict out, const AffineLan
 static inline void affine_shift_lanes(AffineLanes *restrict out, const AffineLanes *a, double k) {
     AFFINE_EACH_LANE {
         double c = a->centre[l] + k, s = a->slope[l], e = a->error[l];
-        out->centre[l] = c, out->slope[l] = s, out->error[l] = affine_lane_error(e, fabs(a->centre[l]) + fabs(k) + fabs(s) + e);
+        out->centre[l] = c, out->slope[l] = s,
+        out->error[l] = affine_lane_error(e, fabs(a->centre[l]) + fabs(k) + fabs(s) + e);
     }
 }
 
 static inline void affine_neg_lanes(AffineLanes *restrict out, const AffineLanes *a) {
-    AFFINE_EACH_LANE out->centre[l] = -a->centre[l], out->slope[l] = -a->slope[l], out->error[l] = a->error[l];
+    AFFINE_EACH_LANE out->centre[l] = -a->centre[l], out->slope[l] = -a->slope[l],
+                     out->error[l] = a->error[l];
 }
 
 static inline void affine_mul_lanes(AffineLanes *restrict out, const AffineLanes *a, const AffineLanes *b) {
     AFFINE_EACH_LANE {
-        double ac = a->centre[l], as = a->slope[l], ae = a->error[l], bc = b->centre[l], bs = b->slope[l], be = b->error[l];
+        double ac = a->centre[l], as = a->slope[l], ae = a->error[l], bc = b->centre[l], bs = b->slope[l],
+               be = b->error[l];
         double both = as * bs / 2, size = (fabs(ac) + fabs(as) + ae) * (fabs(bc) + fabs(bs) + be) * 4;
         double error = fabs(both) + (fabs(ac) + fabs(as)) * be + (fabs(bc) + fabs(bs)) * ae + ae * be;
-        out->centre[l] = ac * bc + both, out->slope[l] = ac * bs + bc * as, out->error[l] = affine_lane_error(error, size);
+        out->centre[l] = ac * bc + both, out->slope[l] = ac * bs + bc * as,
+        out->error[l] = affine_lane_error(error, size);
     }
 }
 
@@ -79,7 +86,8 @@ static inline void affine_sqr_lanes(AffineLanes *restrict out, const AffineLanes
     AFFINE_EACH_LANE {
         double c = a->centre[l], s = a->slope[l], e = a->error[l], half = s * s / 2, own = e * e / 2;
         double size = fabs(c) + fabs(s) + e, error = half + own + 2 * (fabs(c) + fabs(s)) * e;
-        out->centre[l] = c * c + half + own, out->slope[l] = 2 * c * s, out->error[l] = affine_lane_error(error, size * size * 4);
+        out->centre[l] = c * c + half + own, out->slope[l] = 2 * c * s,
+        out->error[l] = affine_lane_error(error, size * size * 4);
     }
 }
 
@@ -97,19 +105,19 @@ static inline void affine_sqrt_lanes(AffineLanes *restrict out, const AffineLane
 /* ---- noises: Taylor's theorem to the second or third order, whichever tells more ---- */
 
 typedef struct NoiseBounds {
-    double low, high;                /* of the noise */
-    double steepest, curved, third;  /* of its derivatives along unit directions */
-    bool smooth;                     /* `third` holds across cells, too */
+    double low, high;               /* of the noise */
+    double steepest, curved, third; /* of its derivatives along unit directions */
+    bool smooth;                    /* `third` holds across cells, too */
 } NoiseBounds;
 
 typedef void NoiseTaylor(const TaylorWay *way, TaylorTerms *out);
 
-static inline void affine_noise_lanes(AffineLanes *restrict out, const AffineLanes *const p[3], NoiseTaylor *noise, const NoiseBounds *known) {
+static inline void affine_noise_lanes(AffineLanes *restrict out, const AffineLanes *const p[3],
+                                      NoiseTaylor *noise, const NoiseBounds *known) {
     TaylorWay way;
     TaylorTerms terms;
     double length[AFFINE_LANES], off[AFFINE_LANES];
     double middle = (known->low + known->high) / 2, half = (known->high - known->low) / 2;
-    bool all_long = true;
     AFFINE_EACH_LANE {
         double square = 0, sum = 0;
         for (int k = 0; k < 3; k++) {
@@ -121,24 +129,36 @@ static inline void affine_noise_lanes(AffineLanes *restrict out, const AffineLan
     }
     /* Beyond, even a noise without a slope would not be known better than as a whole. */
     double longest = sqrt(2 * half / known->curved);
-    AFFINE_EACH_LANE all_long &= !(length[l] < longest);
-    if (!all_long) noise(&way, &terms);
-    AFFINE_EACH_LANE {
-        double square = length[l] * length[l], bend = known->curved / 2 * square, first = 0, value = middle, error = HUGE_VAL;
-        if (!all_long) {
-            double third = fabs(terms.second[l]) / 2 + known->third / 6 * square * length[l];
-            bool better = (known->smooth | (terms.room[l] > 0x1p-40)) & (third < bend);
-            value = terms.value[l] + (better ? terms.second[l] / 2 : 0), first = terms.first[l];
-            error = affine_lane_error((better ? third : bend) + off[l] * known->steepest, 256);
+    uint64_t some_short = 0;
+    AFFINE_EACH_LANE some_short |= length[l] < longest ? 1 : 0;
+    if (!some_short) {
+        AFFINE_EACH_LANE {
+            out->centre[l] = middle, out->slope[l] = 0;
+            out->error[l] = half + 0 * (off[l] + length[l] + (way.at[0][l] + way.at[1][l] + way.at[2][l]));
         }
-        bool use = (error < half) & (value == value); /* places too far away for cells have no value */
-        double above = (value + fabs(first) + error) - known->high, below = known->low - (value - fabs(first) - error);
+        return;
+    }
+    noise(&way, &terms);
+    double anywhere = known->smooth ? 1 : 0;
+    AFFINE_EACH_LANE {
+        double square = length[l] * length[l], bend = known->curved / 2 * square;
+        double third = fabs(terms.second[l]) / 2 + known->third / 6 * square * length[l];
+        third = terms.room[l] + anywhere > 0x1p-40 ? third : HUGE_VAL;
+        double shift = third < bend ? terms.second[l] / 2 : 0, least = third < bend ? third : bend;
+        double first = terms.first[l], value = terms.value[l] + shift;
+        double error = affine_lane_error(least + off[l] * known->steepest, 256);
         /* What lies beyond the noise's range is cut off: the form moves by half of that, which it then may be off. */
-        above = above > 0 && use ? above / 2 : 0, below = below > 0 && use ? below / 2 : 0;
-        out->centre[l] = use ? value - above + below : middle;
-        out->slope[l] = use ? first : 0;
+        double reach = fabs(first) + error, above = (value + reach) - known->high,
+               below = known->low - (value - reach);
+        above = above > 0 ? above / 2 : 0, below = below > 0 ? below / 2 : 0;
+        double centre = (value - above) + below, total = error + above + below;
+        /* Places too far away for cells have no value. */
+        error = value == value ? error : HUGE_VAL;
+        out->centre[l] = error < half ? centre : middle;
+        out->slope[l] = error < half ? first : 0;
         /* Places that are no numbers have no noise: `off` says so. */
-        out->error[l] = (use ? error + above + below : half) + 0 * (off[l] + length[l] + way.at[0][l] + way.at[1][l] + way.at[2][l]);
+        out->error[l] = (error < half ? total : half) +
+                        0 * (off[l] + length[l] + (way.at[0][l] + way.at[1][l] + way.at[2][l]));
     }
 }
 

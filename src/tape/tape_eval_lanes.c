@@ -9,10 +9,15 @@
 static void walk(const Tape *tape, AffineLanes *slots);
 
 /* Constants have no lanes: they are read from the tape. */
-static inline bool is_constant(const Tape *tape, uint32_t slot) { return slot - tape->input_count < tape->constant_count; }
-static inline double constant_at(const Tape *tape, uint32_t slot) { return tape->constants[slot - tape->input_count]; }
+static inline bool is_constant(const Tape *tape, uint32_t slot) {
+    return slot - tape->input_count < tape->constant_count;
+}
+static inline double constant_at(const Tape *tape, uint32_t slot) {
+    return tape->constants[slot - tape->input_count];
+}
 
-static inline const AffineLanes *operand(const Tape *tape, const AffineLanes *slots, uint32_t slot, AffineLanes *filled) {
+static inline const AffineLanes *operand(const Tape *tape, const AffineLanes *slots, uint32_t slot,
+                                         AffineLanes *filled) {
     if (!is_constant(tape, slot)) return &slots[slot];
     affine_fill_lanes(filled, constant_at(tape, slot));
     return filled;
@@ -41,26 +46,29 @@ static void call(const Tape *tape, const TapeCall *call_, AffineLanes *slots) {
     }
     for (int l = 0; l < AFFINE_LANES; l++) {
         Interval in[TAPE_CALL_MAX], range[TAPE_CALL_MAX];
-        for (int k = 0; k < external->input_count; k++) in[k] = affine_range(lane_of(tape, slots, call_->arg_slots[k], l));
-        if (external->bound)
-            external->bound(external->data, in, range);
+        for (int k = 0; k < external->input_count; k++)
+            in[k] = affine_range(lane_of(tape, slots, call_->arg_slots[k], l));
+        if (external->bound) external->bound(external->data, in, range);
         for (int k = 0; k < external->output_count; k++)
             if (call_->result_slots[k] != TAPE_NO_SLOT)
-                affine_set_lane(&slots[call_->result_slots[k]], l, external->bound ? affine_of_interval(range[k]) : affine_unknown(true));
+                affine_set_lane(&slots[call_->result_slots[k]], l,
+                                external->bound ? affine_of_interval(range[k]) : affine_unknown(true));
     }
 }
 
 /* As in tape_bounds.inc, between constants alone. */
 enum { MOST_PASSES = 4096 };
 
-static void loop(const Tape *tape, const TapeLoop *loop_, const TapeStep *step, bool product, AffineLanes *slots, AffineLanes *scratch) {
+static void loop(const Tape *tape, const TapeLoop *loop_, const TapeStep *step, bool product,
+                 AffineLanes *slots, AffineLanes *scratch) {
     const Tape *body = loop_->body;
     AffineLanes *out = &slots[step->dst], before, filled;
     AFFINE_EACH_LANE out->centre[l] = out->slope[l] = 0, out->error[l] = HUGE_VAL;
     if (!is_constant(tape, step->a) || !is_constant(tape, step->b)) return;
     double from = constant_at(tape, step->a), to = constant_at(tape, step->b), i = from;
     if (!(to - from < MOST_PASSES)) return;
-    for (uint32_t k = 0; k < loop_->captured_count; k++) scratch[k] = *operand(tape, slots, loop_->captured_slots[k], &filled);
+    for (uint32_t k = 0; k < loop_->captured_count; k++)
+        scratch[k] = *operand(tape, slots, loop_->captured_slots[k], &filled);
     affine_fill_lanes(out, product ? 1 : 0);
     for (double pass = 0; i <= to && pass <= to - from; pass++, i += 1) {
         affine_fill_lanes(&scratch[body->input_count - 1], i);
@@ -71,7 +79,8 @@ static void loop(const Tape *tape, const TapeLoop *loop_, const TapeStep *step, 
     }
 }
 
-static const NoiseBounds perlin = {-NOISE_PERLIN_MOST, NOISE_PERLIN_MOST, NOISE_PERLIN_STEEPEST, NOISE_PERLIN_CURVATURE, NOISE_PERLIN_THIRD, true};
+static const NoiseBounds perlin = {-NOISE_PERLIN_MOST,     NOISE_PERLIN_MOST,  NOISE_PERLIN_STEEPEST,
+                                   NOISE_PERLIN_CURVATURE, NOISE_PERLIN_THIRD, true};
 static const NoiseBounds pov = {0, 1, NOISE_POV_STEEPEST, NOISE_POV_CURVATURE, NOISE_POV_THIRD, false};
 
 static void general(const Tape *tape, const TapeStep *step, AffineLanes *slots) {
@@ -119,9 +128,11 @@ static void divide(const Tape *tape, const TapeStep *step, AffineLanes *slots) {
         general(tape, step, slots);
 }
 
-static void noise(const Tape *tape, const TapeStep *step, AffineLanes *slots, NoiseTaylor *along, const NoiseBounds *known) {
+static void noise(const Tape *tape, const TapeStep *step, AffineLanes *slots, NoiseTaylor *along,
+                  const NoiseBounds *known) {
     AffineLanes filled[3];
-    const AffineLanes *p[3] = {operand(tape, slots, step->a, &filled[0]), operand(tape, slots, step->b, &filled[1]),
+    const AffineLanes *p[3] = {operand(tape, slots, step->a, &filled[0]),
+                               operand(tape, slots, step->b, &filled[1]),
                                operand(tape, slots, step->c, &filled[2])};
     affine_noise_lanes(&slots[step->dst], p, along, known);
 }
@@ -140,19 +151,21 @@ static void walk(const Tape *tape, AffineLanes *slots) {
         case TAPE_POV_NOISE: noise(tape, step, slots, noise_pov_taylor, &pov); break;
         case TAPE_CALL: call(tape, &tape->calls[step->c], slots); break;
         case TAPE_SUM:
-        case TAPE_PROD: loop(tape, &tape->loops[step->c], step, step->op == TAPE_PROD, slots, slots + tape->slot_count); break;
+        case TAPE_PROD:
+            loop(tape, &tape->loops[step->c], step, step->op == TAPE_PROD, slots, slots + tape->slot_count);
+            break;
         default: general(tape, step, slots); break;
         }
     }
 }
 
 void tape_eval_lanes(const Tape *tape, const AffineLanes *in, AffineLanes *out, AffineLanes *scratch) {
+    AffineLanes filled;
     for (uint32_t k = 0; k < tape->input_count; k++) scratch[k] = in[k];
-    tape_eval_lanes_again(tape, out, scratch);
+    *out = *tape_eval_lanes_again(tape, scratch, &filled);
 }
 
-void tape_eval_lanes_again(const Tape *tape, AffineLanes *out, AffineLanes *scratch) {
-    AffineLanes filled;
+const AffineLanes *tape_eval_lanes_again(const Tape *tape, AffineLanes *scratch, AffineLanes *filled) {
     walk(tape, scratch);
-    *out = *operand(tape, scratch, tape->output_slots[0], &filled);
+    return operand(tape, scratch, tape->output_slots[0], filled);
 }

@@ -8,8 +8,9 @@
 /* As tape_eval_affine(), for every lane; lanes of which nothing is known have an error that is not below infinity. The tape has one
  * output. The scratch has tape_scratch_size() lanes. */
 void tape_eval_lanes(const Tape *tape, const AffineLanes *in, AffineLanes *out, AffineLanes *scratch);
-/* The same with the inputs where a tape with as many inputs has left them: at the beginning of `scratch`. */
-void tape_eval_lanes_again(const Tape *tape, AffineLanes *out, AffineLanes *scratch);
+/* The same with the inputs where a tape with as many inputs has left them: at the beginning of `scratch`. Returns where the output is:
+ * in `scratch`, or, of a constant, *filled. */
+const AffineLanes *tape_eval_lanes_again(const Tape *tape, AffineLanes *scratch, AffineLanes *filled);
 
 /* A function as a sum of functions, so that a bound of the sum needs no more of them than tell it apart from zero. */
 typedef struct TapeTerm {
@@ -23,8 +24,8 @@ typedef struct TapeSum {
     const TapeTerm *terms;
     size_t count, scratch_size; /* of the largest term */
     double constant;
-    /* low, high of the terms from k on, and of their absolute values; [count] is 0 */
-    const double *rest_low, *rest_high, *rest_size;
+    /* The terms from k on are within rest_half of rest_middle, their absolute values at most rest_size; [count] is 0. */
+    const double *rest_middle, *rest_half, *rest_size;
 } TapeSum;
 
 struct Interval;
@@ -33,6 +34,7 @@ TapeSum tape_sum_of(const Tape *tape, const struct Interval *box, Arena *arena);
 
 /* Bounds of the sum less `level` in all lanes; terms that the answer to "may it be 0?" does not need count as their ranges. What is
  * unknown in a lane is so in the sum. The scratch has scratch_size lanes, the inputs first. Returns how many terms were evaluated. */
-size_t tape_sum_lanes(const TapeSum *sum, double level, AffineLanes *out, AffineLanes *scratch);
+size_t tape_sum_lanes(const TapeSum *sum, double level, AffineLanes *restrict out,
+                      AffineLanes *restrict scratch);
 
 #endif

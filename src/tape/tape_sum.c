@@ -150,6 +150,23 @@ static void find_range(TapeTerm *term, const Interval *box, Arena *arena) {
     arena_reset_to(arena, mark);
 }
 
+/* No number here is subnormal, as the ends of ranges are: those are slow. */
+static void add_up(TapeSum *sum, Arena *arena) {
+    double *middle = arena_new_array(arena, double, sum->count + 1),
+           *half = arena_new_array(arena, double, sum->count + 1),
+           *size = arena_new_array(arena, double, sum->count + 1), low = 0, high = 0;
+    middle[sum->count] = half[sum->count] = size[sum->count] = 0;
+    for (size_t k = sum->count; k-- > 0;) {
+        const TapeTerm *term = &sum->terms[k];
+        low = round_down(low + term->low), high = round_up(high + term->high);
+        bool known = isfinite(low) && isfinite(high);
+        middle[k] = known ? low / 2 + high / 2 : 0;
+        half[k] = known ? bound_max(high - middle[k], middle[k] - low) * (1 + 0x1p-50) + 0x1p-1000 : HUGE_VAL;
+        size[k] = size[k + 1] * (1 + 0x1p-50) + bound_max(fabs(term->low), fabs(term->high)) + 0x1p-1000;
+    }
+    sum->rest_middle = middle, sum->rest_half = half, sum->rest_size = size;
+}
+
 TapeSum tape_sum_of(const Tape *tape, const Interval *box, Arena *arena) {
     Split s = {.tape = tape};
     split(&s, tape->outputs[0], 1, 0);
@@ -176,49 +193,66 @@ TapeSum tape_sum_of(const Tape *tape, const Interval *box, Arena *arena) {
         sum.scratch_size = size_max(sum.scratch_size, tape_scratch_size(terms[k].tape));
     }
     qsort(terms, s.count, sizeof *terms, wider_first);
-    double *low = arena_new_array(arena, double, s.count + 1), *high = arena_new_array(arena, double, s.count + 1),
-           *size = arena_new_array(arena, double, s.count + 1);
-    low[s.count] = high[s.count] = size[s.count] = 0;
-    for (size_t k = s.count; k-- > 0;) {
-        low[k] = round_down(low[k + 1] + terms[k].low), high[k] = round_up(high[k + 1] + terms[k].high);
-        size[k] = round_up(size[k + 1] + bound_max(fabs(terms[k].low), fabs(terms[k].high)));
-    }
-    sum.rest_low = low, sum.rest_high = high, sum.rest_size = size;
+    add_up(&sum, arena);
     return sum;
 }
 
-/* Whether no lane may be 0 with the terms from k on. */
-static bool all_decided(const TapeSum *sum, size_t k, const AffineLanes *total) {
-    bool decided = true;
-    double low = sum->rest_low[k], high = sum->rest_high[k];
+/* Sums so far, lane by lane: roundings are counted at the end. */
+typedef struct Total {
+    double centre[AFFINE_LANES], slope[AFFINE_LANES], error[AFFINE_LANES], size[AFFINE_LANES];
+} Total;
+
+static void begin(Total *restrict total, const AffineLanes *restrict term, double scale, double constant, double size) {
+    double absolute = fabs(scale);
     AFFINE_EACH_LANE {
-        double radius = (fabs(total->slope[l]) + total->error[l]) * (1 + 0x1p-40), slack = 0x1p-40 * fabs(total->centre[l]);
-        decided &= (total->centre[l] - radius - slack + low > 0) | (total->centre[l] + radius + slack + high < 0);
+        double c = term->centre[l] * scale, s = term->slope[l] * scale, e = term->error[l] * absolute;
+        total->centre[l] = constant + c, total->slope[l] = s, total->error[l] = e;
+        total->size[l] = size + (fabs(c) + fabs(s)) + e;
     }
-    return decided;
 }
 
-size_t tape_sum_lanes(const TapeSum *sum, double level, AffineLanes *out, AffineLanes *scratch) {
-    AffineLanes total, term, scaled;
-    double size[AFFINE_LANES], n = (double)sum->count + 2;
-    size_t k = 0;
-    affine_fill_lanes(out, sum->constant - level);
-    AFFINE_EACH_LANE size[l] = fabs(sum->constant) + fabs(level);
-    for (; k < sum->count; k++) {
-        if (k > 0 && all_decided(sum, k, out)) break;
-        tape_eval_lanes_again(sum->terms[k].tape, &term, scratch);
-        affine_scale_lanes(&scaled, &term, sum->terms[k].scale);
-        total = *out;
-        affine_add_lanes(out, &total, &scaled);
-        AFFINE_EACH_LANE size[l] += fabs(scaled.centre[l]) + fabs(scaled.slope[l]) + scaled.error[l] + sum->terms[k].rounding;
-    }
-    double middle = k < sum->count ? sum->rest_low[k] / 2 + sum->rest_high[k] / 2 : 0;
-    double half = k < sum->count ? bound_max(sum->rest_high[k] - middle, middle - sum->rest_low[k]) : 0;
-    /* The tape adds in another order, with coefficients multiplied in another: a rounding of each partial sum and of each product. */
+static void add_scaled(Total *restrict total, const AffineLanes *restrict term, double scale, double rounding) {
+    double absolute = fabs(scale);
     AFFINE_EACH_LANE {
-        double all = size[l] + sum->rest_size[k];
-        out->centre[l] += middle;
-        out->error[l] = affine_lane_error(out->error[l] + half, n * all);
+        double c = term->centre[l] * scale, s = term->slope[l] * scale, e = term->error[l] * absolute;
+        total->centre[l] += c, total->slope[l] += s, total->error[l] += e;
+        total->size[l] += ((fabs(c) + fabs(s)) + e) + rounding;
+    }
+}
+
+/* Whether no lane may be 0 with terms to come within `half` of `middle`. */
+static bool all_decided(const Total *restrict total, double middle, double half) {
+    uint64_t open = 0;
+    AFFINE_EACH_LANE {
+        double reach = ((fabs(total->slope[l]) + total->error[l]) + half) * (1 + 0x1p-40) +
+                       0x1p-40 * (fabs(total->centre[l]) + fabs(middle));
+        open |= fabs(total->centre[l] + middle) > reach ? 0 : 1;
+    }
+    return open == 0;
+}
+
+size_t tape_sum_lanes(const TapeSum *sum, double level, AffineLanes *restrict out,
+                      AffineLanes *restrict scratch) {
+    Total total;
+    AffineLanes filled;
+    double n = (double)sum->count + 2, constant = sum->constant - level,
+           size = fabs(sum->constant) + fabs(level);
+    if (sum->count == 0) {
+        affine_fill_lanes(&filled, sum->constant);
+        affine_shift_lanes(out, &filled, -level);
+        return 0;
+    }
+    const TapeTerm *term = sum->terms, *end = term + sum->count;
+    begin(&total, tape_eval_lanes_again(term->tape, scratch, &filled), term->scale, constant, size + term->rounding);
+    for (term++; term < end && !all_decided(&total, sum->rest_middle[term - sum->terms], sum->rest_half[term - sum->terms]); term++)
+        add_scaled(&total, tape_eval_lanes_again(term->tape, scratch, &filled), term->scale, term->rounding);
+    size_t k = (size_t)(term - sum->terms);
+    double middle = sum->rest_middle[k], half = sum->rest_half[k], rest = sum->rest_size[k];
+    /* The tape adds in another order, with coefficients multiplied in another: a rounding of each partial sum and of each product,
+     * there and here. */
+    AFFINE_EACH_LANE {
+        out->centre[l] = total.centre[l] + middle, out->slope[l] = total.slope[l];
+        out->error[l] = affine_lane_error(total.error[l] + half, 2 * n * (total.size[l] + rest));
     }
     return k;
 }

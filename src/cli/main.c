@@ -31,7 +31,8 @@ static const Command COMMANDS[] = {
     {"chart", "vts chart", "SCENE --sweep KNOB=V,V,... [options]",
      "charts speed against accuracy: renders with several settings and measures each against the reference", COMMAND_CHART, command_chart},
     {"info", "vts info", "FILE… [options]", "tells what is in maps, texels, volumes and pictures", COMMAND_INFO, command_info},
-    {"farm", NULL, NULL, NULL, 0, NULL},
+    {"farm", "vts farm", "list|slurm SCENE [options]", "makes jobs for many machines of a film's frames or a picture's regions", COMMAND_FARM | COMMAND_RENDER,
+     command_farm},
     {"stitch", "vts stitch", "PART… -o WHOLE [options]", "joins the parts of a picture that were drawn with --region", COMMAND_STITCH, command_stitch},
 };
 enum { COMMAND_COUNT = sizeof COMMANDS / sizeof *COMMANDS };

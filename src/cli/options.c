@@ -2,11 +2,14 @@
 
 #include "cli/command.h"
 #include "cli/complaint.h"
+#include "cli/farm.h"
 #include "cli/frames.h"
 #include "cli/povray_options.h"
 #include "cli/spelling.h"
 #include "cli/option_value.h"
 
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Each returns NULL, or what it wanted: "WxH, such as 640x480". */
@@ -177,6 +180,29 @@ static const char *apply_keep(Settings *s, const char *value) {
 static const char *apply_repeat(Settings *s, const char *value) {
     return option_int(value, 1, 100, &s->repeats) ? NULL : "a number from 1 to 100";
 }
+static const char *apply_regions(Settings *s, const char *value) {
+    bool valid = option_size(value, &s->regions[0], &s->regions[1]) && (long long)s->regions[0] * s->regions[1] <= FARM_MOST_REGIONS;
+    return valid ? NULL : "NxM, columns and rows, at most 1000 together, such as 4x3";
+}
+static const char *apply_chunk(Settings *s, const char *value) {
+    return option_int(value, 1, 1000000, &s->chunk) ? NULL : "a number from 1 to 1000000";
+}
+static const char *apply_at_once(Settings *s, const char *value) {
+    return option_int(value, 1, 1000000, &s->at_once) ? NULL : "a number from 1 to 1000000";
+}
+static const char *apply_dry_run(Settings *s, const char *value) {
+    (void)value;
+    s->dry_run = true;
+    return NULL;
+}
+static const char *apply_script(Settings *s, const char *value) {
+    s->script = value;
+    return *value ? NULL : "a file name";
+}
+static const char *apply_sbatch(Settings *s, const char *value) {
+    settings_add(&s->sbatch, value);
+    return value[0] == '-' && !strpbrk(value, "\r\n") ? NULL : "an option of sbatch, such as --partition=long";
+}
 static const char *apply_wait(Settings *s, const char *value) {
     return option_double(value, &s->wait) && s->wait >= 0 ? NULL : "a number of seconds";
 }
@@ -196,7 +222,7 @@ static const char *apply_help(Settings *s, const char *value) {
 }
 
 static const Option OPTIONS[] = {
-    {"output", 'o', "F", COMMAND_DRAW, apply_output,
+    {"output", 'o', "F", COMMAND_DRAW | COMMAND_FARM, apply_output,
      "the picture; its suffix names the format (.exr .png .tif .jpg .hdr .pfm .ppm); default: the scene's "
      "name with .png"},
     {"output", 'o', "F", COMMAND_CHART, apply_output,
@@ -240,13 +266,19 @@ static const Option OPTIONS[] = {
     {"dump", 0, "tokens|ast|scene|tape|compiled", COMMAND_RUN, apply_dump,
      "prints one stage of the program instead"},
     {"verbose", 'v', NULL, COMMAND_ALL, apply_verbose, "says more about what is done"},
-    {"wait", 0, "S", COMMAND_STITCH, apply_wait, "waits for parts that are not there yet, until none has come for so many seconds; default 0"},
-    {"help", 'h', NULL, COMMAND_ALL | COMMAND_COMPARE | COMMAND_INFO | COMMAND_STITCH, apply_help, "this text"},
-    {"frames", 'f', "A-B[xSTEP],...", COMMAND_ALL, apply_frames, "frames of the scene's animation; default: all, of other commands than render the first"},
+    {"regions", 0, "NxM", COMMAND_FARM, apply_regions, "cuts each picture into N columns and M rows, which another job joins"},
+    {"chunk", 0, "N", COMMAND_FARM, apply_chunk, "frames of one job; default: 1, or what makes at most 1000 tasks of an array"},
+    {"at-once", 0, "N", COMMAND_FARM, apply_at_once, "slurm: at most so many tasks run together"},
+    {"sbatch", 0, "OPTION", COMMAND_FARM, apply_sbatch, "slurm: an option of sbatch, such as --partition=long; may be given several times"},
+    {"script", 0, "F", COMMAND_FARM, apply_script, "slurm: the script; default: the scene's name with .slurm"},
+    {"dry-run", 0, NULL, COMMAND_FARM, apply_dry_run, "slurm: writes the script and does not submit it"},
+    {"wait", 0, "S", COMMAND_STITCH | COMMAND_FARM, apply_wait, "waits for parts that are not there yet, until none has come for so many seconds; default 0"},
+    {"help", 'h', NULL, COMMAND_ALL | COMMAND_COMPARE | COMMAND_INFO | COMMAND_STITCH | COMMAND_FARM, apply_help, "this text"},
+    {"frames", 'f', "A-B[xSTEP],...", COMMAND_ALL | COMMAND_FARM, apply_frames, "frames of the scene's animation; default: all, of other commands than render the first"},
     {"frames", 'f', "A-B[xSTEP],...", COMMAND_STITCH, apply_frames, "of these frames, whose numbers replace #### in all names"},
     {"shutter", 0, "F", COMMAND_ALL, apply_shutter, "part of a frame's time that it is exposed; default: as the scene's animation says, else 0"},
     {"fps", 0, "N", COMMAND_ALL, apply_fps, "frames a second; default: as the scene's animation says, else 24"},
-    {"resume", 0, NULL, COMMAND_RENDER | COMMAND_REFERENCE | COMMAND_STITCH, apply_resume, "leaves out the pictures that are there: goes on with a film that was stopped"},
+    {"resume", 0, NULL, COMMAND_RENDER | COMMAND_REFERENCE | COMMAND_STITCH | COMMAND_FARM, apply_resume, "leaves out the pictures that are there: goes on with a film that was stopped"},
     {"aov", 0, "NAMES", COMMAND_RENDER | COMMAND_REFERENCE, apply_aov,
      "further channels of an EXR: some of depth,normal,albedo,alpha,position,object,uv,texel_level,samples"},
     {"preview", 0, "HOST:PORT", COMMAND_RENDER | COMMAND_REFERENCE, apply_preview,
@@ -298,6 +330,16 @@ static int unknown_long(const Settings *settings, unsigned command, const char *
     return complain_unknown(settings, "option", whole, spelling.best ? best : NULL);
 }
 
+/* For the jobs of a farm, as one word. */
+static void pass_on(Settings *settings, const char *name, const char *value) {
+    size_t size = strlen(name) + (value ? strlen(value) : 0) + 4;
+    char *text = malloc(size);
+    if (!text) return;
+    int length = snprintf(text, size, value ? "--%s=%s" : "--%s", name, value ? value : "");
+    settings_add(&settings->passed, settings_copy(settings, text, (size_t)length));
+    free(text);
+}
+
 /* `value` is what was glued to the option, or NULL; `typed` how the option was written. */
 static int apply_option(Settings *settings, unsigned command, const Option *option, const char *typed,
                         const char *value, Arguments *rest) {
@@ -311,6 +353,7 @@ static int apply_option(Settings *settings, unsigned command, const Option *opti
         value = *rest->at++;
     }
     const char *wanted = option->apply(settings, value);
+    if (!wanted && (command & COMMAND_FARM) && !(option->commands & COMMAND_FARM)) pass_on(settings, option->name, value);
     if (!wanted) return 0;
     return complain_usage(settings, "the value '%s' of '%s' is not valid: wanted %s", value, typed, wanted);
 }
@@ -346,8 +389,12 @@ int options_parse(Settings *settings, unsigned command, int count, char *const *
             status = parse_long(settings, command, argument, &rest);
         else if (argument[0] == '-' && argument[1])
             status = parse_short(settings, command, argument, &rest);
-        else if (povray_recognizes(argument))
+        else if (povray_recognizes(argument)) {
+            size_t scenes = settings->scenes.count;
             status = povray_apply(settings, argument);
+            settings_add(&settings->passed, argument);
+            settings->scene_passed |= settings->scenes.count > scenes;
+        }
         else
             settings_add(&settings->scenes, argument);
         if (status != 0 || settings->help) return status;
@@ -358,10 +405,11 @@ int options_parse(Settings *settings, unsigned command, int count, char *const *
 
 void options_print_help(FILE *stream, unsigned command) {
     enum { COLUMN = 30 };
+    const unsigned shown = command & COMMAND_FARM ? COMMAND_FARM : command;
     fputs("Options:\n", stream);
     for (int i = 0; i < OPTION_COUNT; i++) {
         const Option *option = &OPTIONS[i];
-        if (!option->apply || !(option->commands & command)) continue;
+        if (!option->apply || !(option->commands & shown)) continue;
         char left[80];
         const char *argument = option->argument ? option->argument : "";
         int length = option->letter ? snprintf(left, sizeof left, "  -%c, --%s %s", option->letter,
@@ -372,7 +420,8 @@ void options_print_help(FILE *stream, unsigned command) {
         else
             fprintf(stream, "%-*s %s\n", COLUMN, left, option->help);
     }
-    if (command & COMMAND_ALL)
+    if (command & COMMAND_FARM) fputs("and those of 'vts render', which the jobs get.\n", stream);
+    if (command & COMMAND_ALL && !(command & COMMAND_FARM))
         fputs("POV-Ray's spelling (+W640 +H480 +Ofile +Lfolder +K0.5 Declare=n=1 Width=640 scene.ini) is "
           "understood too.\n",
           stream);

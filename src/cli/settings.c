@@ -31,7 +31,7 @@ void settings_free(Settings *settings) {
                          &settings->sweeps};
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) free(pairs[i]->items);
     TextList *texts[] = {&settings->scenes, &settings->includes, &settings->read_folders,
-                         &settings->write_folders, &settings->references};
+                         &settings->write_folders, &settings->references, &settings->sbatch, &settings->passed};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) free(texts[i]->items);
     free(settings->animation.asked.items);
     *settings = (Settings){0};
@@ -125,7 +125,7 @@ static const char *named_after(Settings *settings, const char *folder, const cha
     return length > 0 && (size_t)length < sizeof path ? settings_copy(settings, path, (size_t)length) : "";
 }
 
-static const char *whole_output(Settings *settings, const char *scene) {
+const char *settings_output_name(Settings *settings, const char *scene) {
     const char *output = settings->output;
     if (!output) return named_after(settings, "", scene);
     if (!settings->output_as_povray || strrchr(file_name(output), '.')) return output;
@@ -137,5 +137,5 @@ static const char *whole_output(Settings *settings, const char *scene) {
 }
 
 const char *settings_output(Settings *settings, const char *scene) {
-    return film_output(settings, whole_output(settings, scene));
+    return film_output(settings, settings_output_name(settings, scene));
 }

@@ -61,6 +61,13 @@ typedef struct Settings {
     ProgressStyle progress;
     bool verbose;
     bool help;
+    int regions[2];             /* of farm: columns and rows that a picture is cut into; 0: it is not */
+    int chunk, at_once;         /* of farm: frames of a job, tasks of an array that run together; 0: not said */
+    bool dry_run;               /* of farm slurm */
+    const char *script;         /* of farm slurm; NULL: by the scene's name */
+    TextList sbatch;            /* options for it */
+    TextList passed;            /* of farm: arguments that its jobs get as they are */
+    bool scene_passed;          /* the scene's name is among them */
     double wait; /* of stitch: seconds for which the next part may be missing; 0: none */
     bool resume; /* pictures that are there are not drawn again */
     bool dumps; /* `dump` was given */
@@ -88,6 +95,8 @@ const char *settings_copy(Settings *settings, const char *text, size_t size);
 /* Makes `options` complete. NULL, or what is wrong. */
 const char *settings_finish(Settings *settings);
 
+/* The same without a film's numbers. */
+const char *settings_output_name(Settings *settings, const char *scene);
 /* Where the picture of a scene goes: what was asked for, else the scene's name in the working folder; in a film as
  * film_output() says. */
 const char *settings_output(Settings *settings, const char *scene);

@@ -37,8 +37,6 @@ case_usage() {
   refused render scene.vts -y
   refused check scene.vts --alpha
   refused render scene.vts --alpha=1
-  local word
-  for word in farm stitch; do refused $word scene.vts; want_in err 'not available in this version'; done
   want_only scene.vts
 }
 

@@ -79,7 +79,7 @@ static int plan(Farm *farm) {
     farm->parts = format_of_parts(farm->output, &farm->lossless);
     farm->columns = s->regions[0] ? s->regions[0] : 1, farm->rows = s->regions[1] ? s->regions[1] : 1;
     farm->chunk = s->chunk ? s->chunk : 1;
-    if (!farm->parts) return complain_usage(s, "'%s': no picture format has this suffix", farm->output);
+    if (!farm->parts) return complain_usage(s, "'%s': no picture format has this suffix; of a film, jobs draw the frames", farm->output);
     if (farm->columns > s->options.width || farm->rows > s->options.height)
         return complain_usage(s, "--regions: there are no %d x %d regions in %d x %d pixels", farm->columns, farm->rows, s->options.width,
                               s->options.height);

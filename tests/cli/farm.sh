@@ -33,7 +33,7 @@ case_regions() {
   scene
   local suffix
   for suffix in exr jpg; do
-    run scene.vts -s 100x70 -o w.$suffix
+    rm -f a.*; run scene.vts -s 100x70 -o w.$suffix
     run farm list scene.vts -s 100x70 -o a.$suffix --regions 3x2; want_status 0
     [ "$(wc -l <out)" = 7 ] || fail "jobs: $(cat out)"
     cp out jobs

@@ -1,6 +1,6 @@
 /* The scene under construction: takes what stands at top level, warns of what is used and not drawn. */
 #include "eval/build_parts.h"
-#include "scene/volumes.h"
+#include "scene/medium.h"
 
 #include <string.h>
 
@@ -42,7 +42,8 @@ struct SceneDraft {
     Color background;
     GlobalSettings settings;
     const Film *film;
-    bool has_terrain;
+    MediaList media;
+    bool has_terrain, has_media;
 };
 
 SceneDraft *scene_draft_create(BuildContext *context, const char *scene_name) {
@@ -162,13 +163,24 @@ static void walk_volume(SceneDraft *draft, BuildContext *context, const Volume *
     walk_object(draft, context, volume->container);
 }
 
+static void walk_media(SceneDraft *draft, BuildContext *context, const MediaList *media) {
+    draft->has_media |= media->count > 0;
+    for (size_t i = 0; i < media->count; i++)
+        for (size_t k = 0; k < media->items[i].density_count; k++) walk_pigment(draft, context, media->items[i].densities[k].pattern);
+}
+
+static void walk_interior(SceneDraft *draft, BuildContext *context, const Interior *interior) {
+    if (!visit(draft, context, interior)) return;
+    warn_inert(draft, context, interior->inert);
+    walk_media(draft, context, &interior->media);
+}
+
 static void walk_object(SceneDraft *draft, BuildContext *context, const Object *object) {
     if (!visit(draft, context, object)) return;
     warn_inert(draft, context, object_inert(object));
     walk_texture(draft, context, object->texture);
     if (object->rest) walk_texture(draft, context, object->rest->interior_texture);
-    if (object->rest && object->rest->interior && visit(draft, context, object->rest->interior))
-        warn_inert(draft, context, object->rest->interior->inert);
+    if (object->rest) walk_interior(draft, context, object->rest->interior);
     if (object_has_group(object) &&
         visit(draft, context, object->as.group))
         for (size_t i = 0; i < object->as.group->count; i++)
@@ -289,16 +301,21 @@ static bool add_film(SceneDraft *draft, BuildContext *context, const EvalBlock *
 
 bool scene_draft_has_film(const SceneDraft *draft) { return draft->film != NULL; }
 
+static bool add_media(SceneDraft *draft, BuildContext *context, const EvalBlock *block) {
+    Reader reader = reader_begin(context, block);
+    Medium medium;
+    if (!medium_read(&reader, block, &medium)) return false;
+    draft->media = media_joined(context->arena, draft->media, &medium);
+    walk_media(draft, context, &draft->media);
+    return true;
+}
+
 static bool add_block(SceneDraft *draft, BuildContext *context, const EvalBlock *block, Span span) {
     const char *word = block->word->text;
     if (strcmp(word, "background") == 0) return background_read(context, block, &draft->background);
     if (strcmp(word, "global_settings") == 0) return settings_read(context, block, &draft->settings);
     if (strcmp(word, "animation") == 0) return add_film(draft, context, block);
-    if (strcmp(word, "media") == 0) {
-        InertNote note = {word, block->word_span, NULL};
-        warn_inert(draft, context, &note);
-        return true;
-    }
+    if (strcmp(word, "media") == 0) return add_media(draft, context, block);
     diag_error(context->diags, span, "'%s' cannot stand at top level: it belongs into another block", word);
     return false;
 }
@@ -393,6 +410,8 @@ const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context) {
                      .fog_count = draft->fogs.count,
                      .rainbows = draft->rainbows.items,
                      .rainbow_count = draft->rainbows.count,
+                     .media = draft->media,
+                     .has_media = draft->has_media,
                      .default_texture = draft->first_default,
                      .settings = draft->settings,
                      .has_terrain = draft->has_terrain,

@@ -1,5 +1,6 @@
 /* interior { … }: what light meets inside of an object. */
 #include "eval/build_parts.h"
+#include "scene/medium.h"
 
 #define FIELD(name) offsetof(Interior, name)
 
@@ -29,6 +30,13 @@ static void read_samples(Reader *reader, const Word *word, void *target) {
     ((Interior *)target)->dispersion_samples = int_clamp(samples, 2, MOST_DISPERSION_SAMPLES);
 }
 
+static void read_media(Reader *reader, const Word *word, void *target) {
+    Interior *interior = target;
+    Medium medium;
+    if (!word->body) reader_error(reader, word->span, "'%s' needs its block { … }", word->text);
+    else if (medium_read(reader, word->body, &medium)) interior->media = media_joined(reader->context->arena, interior->media, &medium);
+}
+
 static const WordRule rules[] = {
     {"ior", WORD_CUSTOM, 0, read_ior, false},
     {"caustics", WORD_FLOAT, FIELD(caustics), NULL, false},
@@ -39,15 +47,11 @@ static const WordRule rules[] = {
     {"fade_color", WORD_COLOR, FIELD(fade_color), NULL, false},
     {"fade_colour", WORD_COLOR, FIELD(fade_color), NULL, false},
     {"refraction", WORD_IGNORED, 0, NULL, false},
-    {"media", WORD_INERT, FIELD(inert), NULL, false},
+    {"media", WORD_CUSTOM, 0, read_media, false},
 };
 
 /* A declared interior comes first, and the block changes it. */
 static bool on_value(Reader *reader, const Argument *value, void *target) {
-    if (value->value.kind == VALUE_BLOCK) { /* media, already read against its grammar */
-        inert_add(reader->context, &((Interior *)target)->inert, "media", value->span);
-        return true;
-    }
     if (value->value.kind != VALUE_INTERIOR || reader->next > 1) return false;
     *(Interior *)target = *value->value.as.interior;
     return true;

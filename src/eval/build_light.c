@@ -79,6 +79,11 @@ static void read_projected(Reader *reader, const Word *word, void *target) {
     inert_add(reader->context, &light->inert, word->text, word->span);
 }
 
+static void read_interaction(Reader *reader, const Word *word, void *target) {
+    double on = 1;
+    if (word_arguments(reader, word, 0, 1) && (word->count == 0 || word_float(reader, word, 0, &on))) ((LightDraft *)target)->light.unscattered = on == 0;
+}
+
 #define FIELD(name) offsetof(LightDraft, light.name)
 #define INERT(word)                                                                                          \
     { word, WORD_INERT, FIELD(inert), NULL, false }
@@ -105,8 +110,8 @@ static const WordRule rules[] = {
     INERT("goniometric"),
     INERT("ies"),
     IGNORED("adaptive"), /* shadows are sampled by the error that remains */
-    IGNORED("media_interaction"),
-    IGNORED("media_attenuation"),
+    {"media_interaction", WORD_CUSTOM, 0, read_interaction, false},
+    {"media_attenuation", WORD_FLAG, FIELD(through_air), NULL, false},
     IGNORED("groups"),
     IGNORED("photons"),
     IGNORED("global_lights"),

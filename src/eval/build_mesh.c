@@ -106,7 +106,7 @@ typedef struct MeshDraft {
 
 static bool on_mesh_value(Reader *reader, const Argument *value, void *target) {
     MeshDraft *draft = target;
-    if (value->value.kind == VALUE_INTERIOR || value->value.kind == VALUE_MATERIAL) take_interior(value, &draft->common);
+    if (value->value.kind == VALUE_INTERIOR || value->value.kind == VALUE_MATERIAL) take_interior(reader->context, value, &draft->common);
     if (value->value.kind != VALUE_OBJECT || value->value.as.object->kind != OBJECT_TRIANGLES)
         return take_looks(reader->context, value, &draft->common.object.texture, &draft->common.rest.inert,
                           &draft->common.transform) ||

@@ -104,11 +104,12 @@ static const WordRule rules[] = {
     {"interior_texture", WORD_CUSTOM, 0, read_inside, false},
 };
 
-void take_interior(const Argument *value, ObjectDraft *draft) {
+void take_interior(const BuildContext *context, const Argument *value, ObjectDraft *draft) {
     const Interior *interior = NULL;
     if (value->value.kind == VALUE_INTERIOR) interior = value->value.as.interior;
-    if (value->value.kind == VALUE_MATERIAL) interior = material_interior(value->value.as.node);
-    if (interior) draft->rest.interior = interior;
+    if (value->value.kind == VALUE_MATERIAL) interior = material_interior(context, value->value.as.node);
+    const Transform back = transform_inverse(&draft->transform);
+    if (interior) draft->rest.interior = interior_placed(context, interior, &back);
 }
 
 /* The interior_texture of a material. */
@@ -126,7 +127,7 @@ bool object_on_value(Reader *reader, const Argument *value, void *target) {
                      "a colour belongs into a pigment: it is ignored here");
         return true;
     }
-    take_interior(value, draft);
+    take_interior(reader->context, value, draft);
     take_inside(reader->context, value, draft);
     return take_looks(reader->context, value, &draft->object.texture, &draft->rest.inert, &draft->transform) ||
            take_transform(value, &draft->transform);

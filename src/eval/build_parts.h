@@ -59,6 +59,15 @@ BlockBuilder build_finish;
 const Finish *finish_over(const BuildContext *context, const Finish *base, const Finish *block);
 
 BlockBuilder build_interior; /* build_interior.c */
+/* build_media.c: media { … }; false after a report. */
+bool medium_read(Reader *parent, const EvalBlock *block, Medium *out);
+/* A new list with one more at its end. */
+MediaList media_joined(Arena *arena, MediaList list, const Medium *medium);
+/* A copy with its media placed by `t`, or the same where there are none. */
+const Interior *interior_placed(const BuildContext *context, const Interior *interior, const Transform *t);
+/* build_pigment.c: density { … } of media, whose colours count; NULL after a report. */
+const Pigment *density_colors_read(Reader *reader);
+const ColorMap *density_map_read(Reader *parent, const EvalBlock *block); /* build_map.c; the same */
 /* build_film.c: animation { … }; false after a report. */
 bool film_read(BuildContext *context, const EvalBlock *block, Film *out);
 
@@ -77,8 +86,8 @@ const Texture *texture_placed(const BuildContext *context, const Texture *textur
 const Texture *texture_over(const BuildContext *context, const Texture *top, const Texture *bottom);
 /* Takes texture, pigment, finish, normal, interior and material onto *texture, which may be NULL (the default then).
  * `place`: transform so far of what carries the texture. */
-/* The interior of a material, or NULL. */
-const Interior *material_interior(const void *material);
+/* The interior of a material, in the space of the material's user, or NULL. */
+const Interior *material_interior(const BuildContext *context, const void *material);
 /* Its interior_texture, in the space of the material's user, or NULL. */
 const Texture *material_inside(const BuildContext *context, const void *material);
 bool take_looks(BuildContext *context, const Argument *value, const Texture **texture,
@@ -94,8 +103,8 @@ typedef struct ObjectDraft {
     const char *word; /* the block's */
 } ObjectDraft;
 ObjectDraft object_begin(const EvalBlock *block, ObjectKind kind);
-/* Takes the interior, if the value is one or a material that has one. */
-void take_interior(const Argument *value, ObjectDraft *draft);
+/* Takes the interior, if the value is one or a material that has one, as it stands after the transforms so far. */
+void take_interior(const BuildContext *context, const Argument *value, ObjectDraft *draft);
 /* Takes looks and transforms; target: an ObjectDraft. */
 bool object_on_value(Reader *reader, const Argument *value, void *target);
 /* Reads to the end of the block, with the modifiers of all objects; false after a diagnostic. */

@@ -98,10 +98,36 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
     }
 }
 
+/* ---- density { … } of media: a pigment that may begin with a declared density, and have maps of densities ---- */
+
+static const Pigment *read_from(Reader *reader, const Pigment *start);
+
+const Pigment *density_colors_read(Reader *reader) {
+    Pigment start = pigment_default();
+    start.color = (Color){1, 1, 1, 0, 0};
+    return read_from(reader, &start);
+}
+
+static void read_density_map(Reader *reader, const Word *word, PigmentDraft *draft) {
+    const ColorMap *map = density_map_read(reader, word->body);
+    if (map) take_map(draft, map);
+}
+
+static bool read_density_word(Reader *reader, const Word *word, PigmentDraft *draft) {
+    if (word->body && strcmp(word->text, "density_map") == 0) {
+        read_density_map(reader, word, draft);
+        return true;
+    }
+    if (!word->body || strcmp(word->text, "density") != 0) return false;
+    Reader body = reader_nested(reader, word->body);
+    const Pigment *declared = density_colors_read(&body);
+    if (reader_end_nested(reader, &body) && declared) draft->pigment = *declared;
+    return true;
+}
+
 /* Options of patterns that are not drawn. */
 static bool on_word(Reader *reader, const Word *word, void *target) {
-    (void)target;
-    return grammar_word(reader, word);
+    return read_density_word(reader, word, target) || grammar_word(reader, word);
 }
 
 /* Whether the item says what kind of pigment this is: a pattern, a picture, a function, a colour. */

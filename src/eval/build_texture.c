@@ -82,13 +82,16 @@ static const Texture *with_normal(const BuildContext *context, const Texture *te
 /* material { … }: a texture and what is not drawn. */
 typedef struct Material {
     const Texture *texture; /* in the space before `transform`; NULL: none */
-    const Interior *interior; /* or NULL */
+    const Interior *interior; /* in the space before `transform`; or NULL */
     const Texture *inside;    /* interior_texture, in the space before `transform`; or NULL */
     const InertNote *inert;
     Transform transform;
 } Material;
 
-const Interior *material_interior(const void *material) { return ((const Material *)material)->interior; }
+const Interior *material_interior(const BuildContext *context, const void *node) {
+    const Material *material = node;
+    return interior_placed(context, material->interior, &material->transform);
+}
 
 const Texture *material_inside(const BuildContext *context, const void *node) {
     const Material *material = node;
@@ -167,7 +170,8 @@ static bool on_material_value(Reader *reader, const Argument *value, void *targe
         return true;
     }
     if (value->value.kind == VALUE_INTERIOR) {
-        material->interior = value->value.as.interior;
+        const Transform back = transform_inverse(&material->transform);
+        material->interior = interior_placed(reader->context, value->value.as.interior, &back);
         return true;
     }
     return take_looks(reader->context, value, &material->texture, &material->inert, &material->transform) ||

@@ -36,7 +36,7 @@ static Vec3f past_surfaces(BeamTracer *tr, const Sight *sight, const Light *ligh
     if (tr->compiled->clear_shadows) {
         SurfaceTracer surfaces = {.compiled = tr->compiled, .counters = &tr->counters, .seed = tr->seed};
         Leg leg;
-        surface_leg(&tr->cones[sight->pixel], &leg);
+        surface_eye_leg(tr->compiled, &tr->cones[sight->pixel], &leg);
         return surface_shadow(&surfaces, light, way, &leg, shadow.origin, clear, random_mix(tr->seed + point));
     }
     tr->counters.shadow_rays++;
@@ -159,7 +159,7 @@ void beam_add_beyond(BeamTracer *tr) {
             tr->volumes.part = 1.0 / (tr->before + tr->samples);
             SurfaceTracer surfaces = tracer_of_surfaces(&tr->volumes);
             Leg leg;
-            surface_leg(&cone, &leg);
+            surface_eye_leg(tr->compiled, &cone, &leg);
             Vec3f one = surface_beyond(&surfaces, &leg, &hit);
             sum = vec3f_add(sum, one);
             if (((uint32_t)i - first) & 1) odd = vec3f_add(odd, one);

@@ -106,7 +106,7 @@ static bool see_sky(BeamTracer *tr, Radiance *out) {
     SurfaceTracer surfaces = air_tracer(tr);
     for (int i = 0; i < tr->columns * tr->rows; i++) {
         Vec3f color = sky_radiance(scene, tr->cones[i].direction, tr->cones[i].spread);
-        Air air = air_along(&surfaces, &tr->cones[i], VTS_INFINITY);
+        Air air = air_from_eye(&surfaces, &tr->cones[i], VTS_INFINITY);
         out[i] = (Radiance){air_over(&air, color, 1), air.cover};
         if (tr->aovs) tr->aovs[i].samples = 1;
     }
@@ -159,7 +159,7 @@ static void see_sight(BeamTracer *tr, const Sight *sight, Radiance *all, Vec3f *
     Vec3f sky = {0, 0, 0};
     if (!sight->look) sky = sky_radiance(scene, cone.direction, cone.spread);
     SurfaceTracer surfaces = air_tracer(tr);
-    Air air = air_along(&surfaces, &cone, t);
+    Air air = air_from_eye(&surfaces, &cone, t);
     *all = (Radiance){air_over(&air, sight->look ? sight->light : sky, 1), sight->look ? 1 : air.cover};
     *odd = air_over(&air, sight->look ? sight->odd_light : sky, 1);
     MatterAov met = {.share = 0};

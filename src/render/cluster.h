@@ -16,11 +16,13 @@ typedef struct Item {
     const Look *look;            /* its own or a flattened union's; NULL: that of the copy it is in */
     const Transform *look_place; /* of the object that has it, to the cluster; NULL: the item's */
     const Object *filled;        /* the object around it that has an interior, in the cluster; or NULL */
+    const Transform *filled_place; /* of that one, to the cluster; NULL: the item's */
     const Body *body;            /* NULL for the plain solids of intersect.h and for copies */
     const Cluster *cluster;      /* what it is a copy of; or NULL */
     const Look *inside;          /* of its surface seen from within; or NULL */
     uint32_t number;             /* among all parts, from 1, in the scene's order */
     bool both_sides;             /* lights shine on both */
+    bool hollow;                 /* it, or what is around it in the cluster */
     uint8_t hidden;              /* bit 1 << RayPurpose: rays that pass */
     Affine back;                 /* cluster → its own space */
     const Transform *place;      /* its own space → cluster, kept where its texture asks for it with every hit; or NULL */

@@ -78,9 +78,10 @@ typedef struct Inherited {
     const Look *look;
     const Transform *look_place;
     const Object *filled;
+    const Transform *filled_place;
     const Look *inside;
     uint8_t hidden;
-    bool both_sides;
+    bool both_sides, hollow;
 } Inherited;
 
 static const Look *look_of(Builder *b, const Texture *texture) {
@@ -129,8 +130,8 @@ static Cluster *new_cluster(Builder *b) {
 
 static Item new_item(const Object *object, const Transform *place, const Inherited *has) {
     const Transform back = transform_inverse(place);
-    return (Item){.object = object, .look = has->look, .look_place = has->look_place, .filled = has->filled, .inside = has->inside,
-                  .hidden = has->hidden, .both_sides = has->both_sides,
+    return (Item){.object = object, .look = has->look, .look_place = has->look_place, .filled = has->filled, .filled_place = has->filled_place,
+                  .inside = has->inside, .hidden = has->hidden, .both_sides = has->both_sides, .hollow = has->hollow,
                   .back = {back.linear, back.offset}};
 }
 
@@ -236,6 +237,7 @@ static void add_soup(Builder *b, Cluster *cluster, const Object *object, const T
     *made = (Object){.span = object->span, .kind = OBJECT_TRIANGLES, .as.mesh = mesh};
     Inherited own = *has;
     if (own.look && !own.look_place) own.look_place = arena_copy(b->arena, place, sizeof *place);
+    if (own.filled && !own.filled_place) own.filled_place = arena_copy(b->arena, place, sizeof *place);
     if (triangle_count) add_copy(b, cluster, made, mesh_cluster(b, made), parent, &own);
 }
 
@@ -290,6 +292,7 @@ static void add_object(Builder *b, Cluster *cluster, const Object *object, const
 static void add_children(Builder *b, Cluster *cluster, const Object *object, const Transform *place, const Inherited *has) {
     Inherited inside = *has;
     if (inside.look && !inside.look_place) inside.look_place = arena_copy(b->arena, place, sizeof *place);
+    if (inside.filled && !inside.filled_place) inside.filled_place = arena_copy(b->arena, place, sizeof *place);
     for (size_t i = 0; i < object->as.group->count; i++) add_object(b, cluster, object->as.group->items[i], place, &inside);
 }
 
@@ -319,7 +322,8 @@ static void add_object(Builder *b, Cluster *cluster, const Object *object, const
     if (object->texture) has.look = look_of(b, object->texture), has.look_place = NULL, has.inside = NULL;
     has.hidden |= hidden_from(object);
     has.both_sides |= object->double_illuminate;
-    if (object->rest && object->rest->interior) has.filled = object;
+    has.hollow |= object->rest && object->rest->hollow;
+    if (object->rest && object->rest->interior) has.filled = object, has.filled_place = NULL;
     if (object->rest && object->rest->interior_texture) has.inside = look_of(b, object->rest->interior_texture);
     bool set = object_clipped_by(object).count || object_bounded_by(object).count;
     switch (object->kind) {

@@ -175,6 +175,9 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     out->hierarchy = hierarchy_build(scene, arena, diags);
     if (!out->hierarchy) return COMPILE_FAILED;
     out->clear_shadows = hierarchy_is_clear(out->hierarchy);
+    out->has_air = scene->fog_count || scene->rainbow_count || scene->media.count;
+    out->clear_shadows |= scene->has_media;
+    out->eye_filling_count = hierarchy_inside(out->hierarchy, scene->camera.location, out->eye_fillings, EYE_FILLINGS);
     if (!volumes_compile(out, diags)) return COMPILE_FAILED;
     out->exact_paths = options->exact;
     out->clear_shadows |= out->volumes != NULL; /* which let some light through, too */

@@ -31,6 +31,8 @@ typedef struct CompileOptions {
     bool film;  /* one of several pictures in a row: skins are drawn so much better that what changes between two is right to max_error */
 } CompileOptions;
 
+enum { EYE_FILLINGS = 12 };
+
 typedef struct CompiledScene {
     const Scene *scene;
     const CompileOptions *options; /* while it is being compiled */
@@ -45,6 +47,9 @@ typedef struct CompiledScene {
     struct RigidCopies *rigid; /* copies that rays meet, or NULL */
     struct WangKept *wang; /* texels taken apart */
     struct VolumeSet *volumes; /* clouds, or NULL */
+    bool has_air;         /* there are fogs, or media that are nowhere in particular */
+    Filling eye_fillings[EYE_FILLINGS]; /* what holds the camera's location */
+    size_t eye_filling_count;
     bool exact_paths;     /* one path of light through volumes for each sample, of which there are many */
     BuiltTexel **texels;  /* every texel built, for the report */
     size_t texel_count;

@@ -48,6 +48,7 @@ static bool meet_plain(const Object *object, const Ray *ray, double t_min, doubl
     hit->place = met.point;
     hit->tag = (SolidTag){.part = met.part};
     hit->looked = hit->filled = hit->cut_object = NULL;
+    hit->hollow = false; /* the item knows */
     hit->cut = NULL;
     return true;
 }
@@ -362,6 +363,6 @@ bool hierarchy_occluded(const Hierarchy *h, const Ray *ray, double t_min, double
 }
 
 size_t hierarchy_inside(const Hierarchy *h, Vec3 point, Filling *out, size_t most) {
-    const InsideSearch search = {.cluster = h->all, .point = point};
+    const InsideSearch search = {.cluster = h->all, .point = point, .to_cluster = {transform_identity().linear, vec3_splat(0)}};
     return vec3_is_finite(point) ? inside_gather(&search, out, 0, most) : 0;
 }

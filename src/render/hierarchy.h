@@ -35,7 +35,9 @@ typedef struct SurfaceHit {
     const Object *solid; /* whose surface it is, within sets and copies */
     const struct Interior *interior; /* what fills it, its own or of a set around it; or NULL */
     bool both_sides;   /* lights shine on both of its sides */
-    uint64_t filled;   /* tells the object that has that interior from its copies */
+    uint64_t filled;   /* tells the object that has that interior from its copies; without one, that has the surface */
+    bool hollow;       /* it is, so that air goes on in it, and media show */
+    Affine to_interior; /* scene → space of the object that has the interior; unset where it has no media */
     int share_count;   /* where several looks blend: all but `look`, which has the rest; it is clear or mirrors if any does */
     LookShare shares[LOOK_SHARES];
 } SurfaceHit;
@@ -44,6 +46,8 @@ typedef struct SurfaceHit {
 typedef struct Filling {
     const struct Interior *interior;
     uint64_t filled; /* as SurfaceHit has it */
+    bool hollow;
+    Affine to_interior;
 } Filling;
 
 /* NULL after a diagnostic. */

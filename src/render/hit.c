@@ -158,25 +158,46 @@ static uint32_t part_number(const Found *found) {
     return HASHES + (uint32_t)(path % HASHES);
 }
 
+/* From the object that has the interior, in the space of path[depth] or the cluster that that one is in, to the scene. */
+static Affine back_from(const Found *found, int depth, const Transform *place) {
+    Transform to_scene = *place;
+    place_in_scene(found, depth, &to_scene);
+    const Transform back = transform_inverse(&to_scene);
+    return (Affine){back.linear, back.offset};
+}
+
+static Transform filled_place(const Item *item) { return item->filled_place ? *item->filled_place : item_place(item); }
+
 static void find_filling(const Found *found, SurfaceHit *out) {
     uint64_t path = 0;
+    int at = -1, last = found->depth - 1;
     out->interior = NULL;
     out->filled = 0;
+    out->hollow = !found->cluster && found->body.hollow;
     for (int i = 0; i < found->depth; i++) {
         const Object *filled = found->path[i]->filled;
+        out->hollow |= found->path[i]->hollow;
         if (filled) {
             out->interior = filled->rest->interior;
             out->filled = path_step(path, filled);
+            at = i;
         }
         path = path_step(path, found->path[i]);
     }
-    if (!found->cluster && found->body.filled && found->body.filled != found->path[found->depth - 1]->filled) {
+    bool within = !found->cluster && found->body.filled && found->body.filled != found->path[last]->filled;
+    if (within) {
         out->interior = found->body.filled->rest->interior;
         out->filled = path_step(path, found->body.filled);
     }
-    out->solid = found->cluster ? found->path[found->depth - 1]->object : found->body.leaf;
+    out->solid = found->cluster ? found->path[last]->object : found->body.leaf;
     out->object = (uint32_t)path_step(path, out->solid);
     out->number = part_number(found);
+    if (!out->interior) out->filled = path;
+    else if (out->interior->media.count && within) out->to_interior = back_from(found, last, &found->body.filled_place);
+    else if (out->interior->media.count) {
+        const Transform place = filled_place(found->path[at]);
+        out->to_interior = back_from(found, at - 1, &place);
+    }
 }
 
 static bool item_holds(const Item *item, Vec3 point) {
@@ -185,23 +206,31 @@ static bool item_holds(const Item *item, Vec3 point) {
     return ops->inside && ops->inside(item->object, point) != item->object->inverse;
 }
 
+static Affine affine_then(const Affine *first, const Affine *then) {
+    return (Affine){mat3_multiply(&then->linear, &first->linear), vec3_add(mat3_apply(&then->linear, first->offset), then->offset)};
+}
+
 /* The search within a copy; the interior of the item, if it has one, is nearer than those of the copies around it. */
 static InsideSearch search_in(const InsideSearch *outer, const Item *item) {
     InsideSearch inner = *outer;
     if (item->filled) {
+        const Transform place = filled_place(item), back = transform_inverse(&place);
         inner.filled = item->filled;
         inner.number = path_step(outer->path, item->filled);
+        inner.to_filled = affine_then(&outer->to_cluster, &(Affine){back.linear, back.offset});
     }
     inner.cluster = item->cluster;
     inner.path = path_step(outer->path, item);
+    inner.to_cluster = affine_then(&outer->to_cluster, &item->back);
     inner.point = vec3_add(mat3_apply(&item->back.linear, outer->point), item->back.offset);
+    inner.hollow |= item->hollow;
     return inner;
 }
 
 static size_t add_filling(const InsideSearch *search, Filling *out, size_t count, size_t most) {
     for (size_t i = 0; i < count; i++)
         if (out[i].filled == search->number) return count;
-    if (count < most) out[count++] = (Filling){search->filled->rest->interior, search->number};
+    if (count < most) out[count++] = (Filling){search->filled->rest->interior, search->number, search->hollow, search->to_filled};
     return count;
 }
 

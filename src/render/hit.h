@@ -24,9 +24,12 @@ void hit_finish(const ClusterSet *set, Found *found, const Ray *ray, bool places
 typedef struct InsideSearch {
     const Cluster *cluster;
     Vec3 point;           /* in the cluster */
+    Affine to_cluster;    /* scene → the cluster */
     uint64_t path;        /* number of the copies around it */
-    const Object *filled; /* the innermost of them that has an interior, and its number */
+    const Object *filled; /* the innermost of them that has an interior, its number, and scene → its space */
     uint64_t number;
+    Affine to_filled;
+    bool hollow;          /* one of them is */
 } InsideSearch;
 
 /* Adds to the `count` that are in `out`; returns how many there are then. */

@@ -241,7 +241,7 @@ static float record_visibility(Tracer *tr, const Light *light, const Cone *cone,
     } else { /* of what is clear on the way the mean of the colours */
         SurfaceTracer surfaces = {.compiled = scene, .counters = &tr->counters, .seed = tr->seed};
         Leg leg;
-        surface_leg(cone, &leg);
+        surface_eye_leg(tr->compiled, cone, &leg);
         Vec3f passed = surface_shadow(&surfaces, light, &ray, &leg, point, r->tolerance, tr->seed);
         clear = (passed.x + passed.y + passed.z) / 3;
         if (!(clear > 0)) return 0;
@@ -340,7 +340,7 @@ Vec3f trace_skins(Tracer *tr, const Cone *cone, const ConeStart *start, double t
     float covered = 1 - *transmittance;
     if (count && covered > 0) {
         SurfaceTracer surfaces = tracer_of_surfaces(tr);
-        Air air = air_along(&surfaces, cone, mean_t / (double)covered);
+        Air air = air_from_eye(&surfaces, cone, mean_t / (double)covered);
         color = air_over(&air, color, covered);
     }
     return color;
@@ -376,12 +376,12 @@ Radiance trace_cone(Tracer *tr, const Cone *cone, const SurfaceHit *hit, float *
     *reaching = transmittance;
     if (transmittance <= 0) return out;
     SurfaceTracer surfaces = tracer_of_surfaces(tr);
-    Air air = air_along(&surfaces, cone, hit ? hit->t : VTS_INFINITY);
+    Air air = air_from_eye(&surfaces, cone, hit ? hit->t : VTS_INFINITY);
     Vec3f behind;
     out.alpha += transmittance * air.cover;
     if (hit) {
         Leg leg;
-        surface_leg(cone, &leg);
+        surface_eye_leg(tr->compiled, cone, &leg);
         leg.weight = transmittance;
         behind = surface_radiance(&surfaces, &leg, hit);
         out.alpha = 1;

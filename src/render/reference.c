@@ -110,7 +110,7 @@ static Vec3f lit(const Sample *s, const Light *light, const LightRay *to_light, 
     SurfaceTracer tracer = tracer_of(&own);
     const Cone cone = ray_cone(s);
     Leg leg;
-    surface_leg(&cone, &leg);
+    surface_eye_leg(s->compiled, &cone, &leg);
     const Ray from = leaving(s, facet, to_light->direction);
     return surface_shadow(&tracer, light, to_light, &leg, from.origin, facet->bias, random_mix(s->random + 3));
 }
@@ -150,7 +150,7 @@ static Vec3f exact_matter(void *sample, const Cone *cone, double t_max, float *t
     *transmittance = 0;
     const Facet facet = skin_facet(&s, &matter);
     SurfaceTracer tracer = tracer_of(&s);
-    Air air = air_along(&tracer, cone, facet.t);
+    Air air = air_from_eye(&tracer, cone, facet.t);
     return air_over(&air, shade(&s, &facet), 1);
 }
 
@@ -167,14 +167,14 @@ static Radiance trace_sample(Sample *s) {
         SurfaceTracer tracer = tracer_of(s);
         const Cone cone = ray_cone(s);
         Leg leg;
-        surface_leg(&cone, &leg);
+        surface_eye_leg(s->compiled, &cone, &leg);
         light = surface_radiance(&tracer, &leg, &surface);
     } else {
         light = met ? shade(s, &facet) : sky_radiance(scene, s->ray.direction, 0);
     }
     SurfaceTracer tracer = tracer_of(s);
     const Cone cone = ray_cone(s);
-    Air air = air_along(&tracer, &cone, met ? facet.t : VTS_INFINITY);
+    Air air = air_from_eye(&tracer, &cone, met ? facet.t : VTS_INFINITY);
     return (Radiance){air_over(&air, light, 1), met ? 1 : air.cover};
 }
 

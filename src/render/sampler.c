@@ -69,7 +69,7 @@ Sampler *sampler_create(const CompiledScene *compiled, const SamplePlan *plan, A
     Sampler *sp = arena_new(arena, Sampler);
     sp->compiled = compiled;
     sp->plan = *plan;
-    sp->shares = compiled->skin_count == 0 && !compiled->volumes && !view_has_lens(&compiled->view) && !plan->fixed;
+    sp->shares = compiled->skin_count == 0 && !compiled->volumes && !compiled->scene->has_media && !view_has_lens(&compiled->view) && !plan->fixed;
     tracer_init(&sp->tracer, compiled, arena);
     return sp;
 }

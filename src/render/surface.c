@@ -70,7 +70,7 @@ static double index_of(const Leg *leg, const Interior *interior) {
 
 static double outermost_but(const Leg *leg, int but) {
     for (int i = leg->enclosure_count - 1; i >= 0; i--)
-        if (i != but) return index_of(leg, leg->enclosures[i].interior);
+        if (i != but && leg->enclosures[i].interior) return index_of(leg, leg->enclosures[i].interior);
     return 1;
 }
 
@@ -213,7 +213,7 @@ static Vec3f bent_light(SurfaceTracer *tracer, Meeting *m, double ratio, bool *a
     double bend = vec3_dot(direction, normal) - vec3_dot(m->leg->cone.direction, normal) / ratio; /* n cos i - cos t */
     Leg leg;
     leg_from(tracer, m, direction, bend, most_of(m->through), &leg);
-    surface_cross(leg.enclosures, &leg.enclosure_count, m->hit);
+    surface_cross(leg.enclosures, &leg.enclosure_count, m->hit, tracer->compiled->has_air);
     return follow(tracer, &leg, NULL, false);
 }
 
@@ -299,7 +299,7 @@ static bool gather_before(SurfaceTracer *tracer, const Leg *leg, double t, Vec3f
         *through = vec3f_scale(*through, transmittance);
         if (transmittance <= 0) return false;
     }
-    Air air = air_along(tracer, &leg->cone, t);
+    Air air = air_along(tracer, leg, t);
     *sum = vec3f_add(*sum, vec3f_mul(*through, air.add));
     *through = vec3f_mul(*through, air.keep);
     return true;
@@ -334,7 +334,7 @@ static Vec3f follow(SurfaceTracer *tracer, Leg *leg, const SurfaceHit *first, bo
         leg->clear = clearance(tracer, point, hit->t);
         leg->cone = (Cone){point, leg->cone.direction, cone_diameter(&leg->cone, hit->t), leg->cone.spread};
         leg->weight *= most_of(seen.straight);
-        surface_cross(leg->enclosures, &leg->enclosure_count, hit);
+        surface_cross(leg->enclosures, &leg->enclosure_count, hit, compiled->has_air);
     }
     return sum;
 }

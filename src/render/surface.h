@@ -8,8 +8,10 @@
 
 /* An object that a ray is inside of. */
 typedef struct Enclosure {
-    const Interior *interior;
-    uint64_t filled; /* as SurfaceHit's */
+    const Interior *interior; /* or NULL: it is there because it keeps air out */
+    uint64_t filled;          /* as SurfaceHit's */
+    bool hollow;
+    Affine to_interior;       /* as SurfaceHit's */
 } Enclosure;
 enum { MOST_ENCLOSURES = 12 }; /* of more, the outermost are forgotten */
 
@@ -41,8 +43,12 @@ typedef struct SurfaceTracer {
     bool no_volumes;    /* whoever asks sees to what volumes take of light */
 } SurfaceTracer;
 
-/* The first leg of a line of sight. */
+/* A leg that is in nothing. */
 void surface_leg(const Cone *cone, Leg *leg);
+/* The first leg of a line of sight, in what holds the eye. */
+void surface_eye_leg(const CompiledScene *compiled, const Cone *cone, Leg *leg);
+/* Whether fogs and the scene's own media are there: within all that is hollow. */
+bool surface_in_air(const Enclosure *enclosures, int count);
 
 /* What comes from the surface that the leg has met back along it: its own light, and what it mirrors and lets through. Without the air
  * and matter before it. */
@@ -85,9 +91,9 @@ Vec3f surface_faded(const Interior *interior, double distance);
 
 /* The index of the enclosure that the surface bounds, or −1. */
 int surface_enclosure(const Enclosure *enclosures, int count, const SurfaceHit *hit);
-/* Steps over the surface: into its object, or out. */
-void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit);
-/* What comes along the ray past explicit objects and volumes, between `clear` and `distance`. */
+/* Steps over the surface: into its object, or out. `air`: objects count that keep air out. */
+void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit, bool air);
+/* What comes along the ray past explicit objects, volumes and media in objects, between `clear` and `distance`. */
 Vec3f surface_open(SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, double clear);
 /* The share of light from one place of the light, to a point within volumes. */
 Vec3f surface_shadow_way(SurfaceTracer *tracer, const Light *light, const LightRay *way, const Leg *leg, Vec3 point);

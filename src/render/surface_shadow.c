@@ -1,8 +1,11 @@
 #include "render/surface.h"
 
 #include "base/random.h"
+#include "render/media.h"
 #include "render/surface_parts.h"
 #include "render/volume_set.h"
+
+#include <string.h>
 
 static float most_of(Vec3f c) { return float_max(c.x, float_max(c.y, c.z)); }
 
@@ -12,8 +15,35 @@ int surface_enclosure(const Enclosure *enclosures, int count, const SurfaceHit *
     return -1;
 }
 
-void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit) {
-    if (!hit->interior) return;
+bool surface_in_air(const Enclosure *enclosures, int count) {
+    for (int i = 0; i < count; i++)
+        if (!enclosures[i].hollow) return false;
+    return true;
+}
+
+static void enclose(Enclosure *out, const Interior *interior, uint64_t filled, bool hollow, const Affine *to_interior) {
+    out->interior = interior;
+    out->filled = filled;
+    out->hollow = hollow;
+    if (interior && interior->media.count) out->to_interior = *to_interior;
+}
+
+void surface_eye_leg(const CompiledScene *compiled, const Cone *cone, Leg *leg) {
+    Filling here[MOST_ENCLOSURES];
+    const Filling *fillings = compiled->eye_fillings;
+    size_t count = compiled->eye_filling_count;
+    surface_leg(cone, leg);
+    Vec3 eye = compiled->scene->camera.location, at = cone->origin;
+    if (at.x != eye.x || at.y != eye.y || at.z != eye.z) {
+        fillings = here;
+        count = hierarchy_inside(compiled->hierarchy, at, here, MOST_ENCLOSURES);
+    }
+    for (size_t i = 0; i < count; i++)
+        enclose(&leg->enclosures[leg->enclosure_count++], fillings[i].interior, fillings[i].filled, fillings[i].hollow, &fillings[i].to_interior);
+}
+
+void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit, bool air) {
+    if (!hit->interior && (hit->hollow || !air)) return;
     int at = surface_enclosure(enclosures, *count, hit);
     if (at < 0 && *count == MOST_ENCLOSURES) at = 0; /* makes room */
     bool entering = at < 0 || surface_enclosure(enclosures, *count, hit) < 0;
@@ -21,7 +51,7 @@ void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit) {
         for (int i = at; i + 1 < *count; i++) enclosures[i] = enclosures[i + 1];
         --*count;
     }
-    if (entering) enclosures[(*count)++] = (Enclosure){hit->interior, hit->filled};
+    if (entering) enclose(&enclosures[(*count)++], hit->interior, hit->filled, hit->hollow, &hit->to_interior);
 }
 
 /* What a surface lets through of light: of each layer filter × pigment + transmit. */
@@ -50,23 +80,27 @@ enum { MOST_CLEAR = 1000 };
 /* POV-Ray's bright spot in the shadow of what is clear: cos^(45 caustics) is added to 1 (measured). */
 static const double CAUSTICS = 45;
 
-static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from, double distance, const Leg *leg) {
+/* `air`: the scene's own media count. */
+static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from, double distance, const Leg *leg, bool air) {
     const CompiledScene *compiled = tracer->compiled;
     Vec3f through = {1, 1, 1};
     Enclosure enclosures[MOST_ENCLOSURES];
     int count = leg->enclosure_count;
     double bailout = compiled->scene->settings.adc_bailout, begun = 0;
-    for (int i = 0; i < count; i++) enclosures[i] = leg->enclosures[i];
+    bool media = compiled->scene->has_media;
+    if (count) memcpy(enclosures, leg->enclosures, (size_t)count * sizeof *enclosures);
     for (int i = 0; i < MOST_CLEAR; i++) {
         SurfaceHit hit;
-        if (!hierarchy_glimpse(compiled->hierarchy, RAY_SHADOWS, ray, from, distance, &hit)) return through;
-        if (hit.look->opaque) break;
+        bool met = hierarchy_glimpse(compiled->hierarchy, RAY_SHADOWS, ray, from, distance, &hit);
+        if (met && hit.look->opaque) break;
+        if (media) through = vec3f_mul(through, media_passing(compiled, enclosures, count, ray, begun, met ? hit.t : distance, air));
+        if (!met) return through;
         through = vec3f_mul(through, filtered(ray, &hit));
         if (hit.interior && surface_enclosure(enclosures, count, &hit) >= 0)
             through = vec3f_mul(through, surface_faded(hit.interior, hit.t - begun));
         if (hit.interior && hit.interior->caustics != 0)
             through = vec3f_scale(through, (float)(1 + pow(fabs(vec3_dot(hit.normal, ray->direction)), CAUSTICS * hit.interior->caustics)));
-        surface_cross(enclosures, &count, &hit);
+        surface_cross(enclosures, &count, &hit, air && compiled->has_air);
         if (most_of(through) < (float)bailout) break;
         begun = hit.t;
         from = hit.t * (1 + 1e-9) + leg->clear;
@@ -74,18 +108,22 @@ static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from,
     return vec3f(0, 0, 0);
 }
 
-Vec3f surface_open(SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, double clear) {
+static Vec3f open_way(SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, double clear, bool air) {
     const CompiledScene *compiled = tracer->compiled;
     tracer->counters->shadow_rays++;
     if (!compiled->clear_shadows) return hierarchy_occluded(compiled->hierarchy, ray, clear, distance) ? vec3f(0, 0, 0) : vec3f(1, 1, 1);
-    Vec3f through = clear_way(tracer, ray, clear, distance, leg);
+    Vec3f through = clear_way(tracer, ray, clear, distance, leg, air);
     if (!compiled->volumes || tracer->no_volumes || most_of(through) <= 0) return through;
     return vec3f_mul(through, volumes_passing(compiled->volumes, ray, clear, distance, RAY_SHADOWS));
 }
 
-static Vec3f one_way(SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, double clear, double width) {
+Vec3f surface_open(SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, double clear) {
+    return open_way(tracer, ray, distance, leg, clear, false);
+}
+
+static Vec3f one_way(SurfaceTracer *tracer, const Light *light, const Ray *ray, double distance, const Leg *leg, double clear, double width) {
     const CompiledScene *compiled = tracer->compiled;
-    Vec3f through = surface_open(tracer, ray, distance, leg, clear);
+    Vec3f through = open_way(tracer, ray, distance, leg, clear, light->through_air);
     if (!tracer->passing || most_of(through) <= 0) return through;
     double aperture = compiled->shadow_aperture;
     Cone cone = {ray->origin, ray->direction, width * aperture, leg->cone.spread * aperture};
@@ -104,7 +142,7 @@ static Vec3f mean_of_places(SurfaceTracer *tracer, const Light *light, const Leg
         double u = (i % n + shift_u) / n, v = (i / n + shift_v) / n;
         LightRay way = light_ray_from(light, point, light_place(light, point, u, v));
         Ray ray = {point, way.direction};
-        Vec3f one = one_way(tracer, &ray, way.distance, leg, clear, width);
+        Vec3f one = one_way(tracer, light, &ray, way.distance, leg, clear, width);
         if (i == 0) first = one;
         else *agreed &= most_of(vec3f_sub(one, first)) < 0.01f && most_of(vec3f_sub(first, one)) < 0.01f;
         sum = vec3f_add(sum, one);
@@ -118,7 +156,7 @@ Vec3f surface_shadow(SurfaceTracer *tracer, const Light *light, const LightRay *
     double width = cone_diameter(&leg->cone, vec3_length(vec3_sub(point, leg->cone.origin)));
     if (!light_is_area(light)) {
         Ray ray = {point, way->direction};
-        return one_way(tracer, &ray, way->distance, leg, clear, width);
+        return one_way(tracer, light, &ray, way->distance, leg, clear, width);
     }
     bool agreed;
     Vec3f mean = mean_of_places(tracer, light, leg, point, clear, width, FEW_PLACES, seed, &agreed);
@@ -128,5 +166,5 @@ Vec3f surface_shadow(SurfaceTracer *tracer, const Light *light, const LightRay *
 Vec3f surface_shadow_way(SurfaceTracer *tracer, const Light *light, const LightRay *way, const Leg *leg, Vec3 point) {
     if (light->shadowless) return vec3f(1, 1, 1);
     Ray ray = {point, way->direction};
-    return one_way(tracer, &ray, way->distance, leg, 0, 0);
+    return one_way(tracer, light, &ray, way->distance, leg, 0, 0);
 }

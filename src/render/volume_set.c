@@ -1,6 +1,7 @@
 #include "render/volume_set.h"
 
 #include "base/random.h"
+#include "render/media.h"
 #include "scene/scene_bounds.h"
 #include "volume/field.h"
 
@@ -309,18 +310,38 @@ Air volumes_air(SurfaceTracer *tracer, const Cone *cone, double t_max) {
     return volumes_alone(tracer, cone, t_max, &mean_t);
 }
 
-Air air_along(SurfaceTracer *tracer, const Cone *cone, double t_max) {
+/* `over` before what lies farther. */
+static Air air_laid(const Air *over, const Air *under) {
+    return (Air){vec3f_mul(over->keep, under->keep), vec3f_add(over->add, vec3f_mul(over->keep, under->add)), 1 - (1 - over->cover) * (1 - under->cover)};
+}
+
+/* Fog before the volumes lies over their light too. */
+static Air volumes_in_fog(SurfaceTracer *tracer, const Cone *cone, double t_max, bool fog) {
     const Scene *scene = tracer->compiled->scene;
     const Ray ray = {cone->origin, cone->direction};
-    Air far = air_between(scene, &ray, t_max);
+    const Air nothing = {{1, 1, 1}, {0, 0, 0}, 0};
+    Air far = fog ? air_between(scene, &ray, t_max) : nothing;
     if (!tracer->compiled->volumes) return far;
     double mean_t;
     Air volumes = volumes_alone(tracer, cone, t_max, &mean_t);
     if (!(volumes.cover > 0)) return far;
-    /* Fog before the volumes lies over their light too. */
-    Air near = air_between(scene, &ray, mean_t);
+    Air near = fog ? air_between(scene, &ray, mean_t) : nothing;
     Vec3f keep = volumes.keep, rest = vec3f_sub(vec3f(1, 1, 1), keep);
     Air out = {.keep = vec3f_mul(far.keep, keep), .add = vec3f_mul(far.add, keep), .cover = volumes.cover};
     out.add = vec3f_add(out.add, vec3f_add(vec3f_mul(volumes.add, near.keep), vec3f_mul(near.add, rest)));
     return out;
+}
+
+/* As POV-Ray has it, fogs lie before media. */
+Air air_along(SurfaceTracer *tracer, const Leg *leg, double t_max) {
+    Air air = volumes_in_fog(tracer, &leg->cone, t_max, surface_in_air(leg->enclosures, leg->enclosure_count));
+    if (!tracer->compiled->scene->has_media) return air;
+    const Air media = media_air(tracer, leg, t_max);
+    return air_laid(&air, &media);
+}
+
+Air air_from_eye(SurfaceTracer *tracer, const Cone *cone, double t_max) {
+    Leg leg;
+    surface_eye_leg(tracer->compiled, cone, &leg);
+    return air_along(tracer, &leg, t_max);
 }

@@ -64,8 +64,10 @@ static inline bool volume_counts(const CompiledVolume *v, RayPurpose purpose) { 
 
 /* What volumes make of what is seen at t_max along the cone: color·keep + add, and how much of it they cover. */
 Air volumes_air(SurfaceTracer *tracer, const Cone *cone, double t_max);
-/* The same with fogs and rainbows. */
-Air air_along(SurfaceTracer *tracer, const Cone *cone, double t_max);
+/* The same with fogs, rainbows and media. */
+Air air_along(SurfaceTracer *tracer, const Leg *leg, double t_max);
+/* On the first leg. */
+Air air_from_eye(SurfaceTracer *tracer, const Cone *cone, double t_max);
 
 /* Light scattered towards the ray's origin before t_max, by one path, drawn by `seed`: unbiased. volume_path.c */
 Vec3f volumes_path(SurfaceTracer *tracer, const Ray *ray, double t_max, uint64_t seed);

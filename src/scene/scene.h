@@ -202,6 +202,13 @@ typedef struct Finish {
     double irid, irid_thickness, irid_turbulence; /* 0: none */
 } Finish;
 
+/* medium.h */
+typedef struct Medium Medium;
+typedef struct MediaList {
+    const Medium *items; /* whose densities are told apart and effects added */
+    size_t count;
+} MediaList;
+
 /* What is inside of an object. */
 typedef struct Interior {
     Span span;
@@ -212,7 +219,8 @@ typedef struct Interior {
     int dispersion_samples;          /* 7 */
     double fade_distance, fade_power; /* 0, 0: light is not taken away; power >= 1000: exponentially */
     Color fade_color;                /* black */
-    const InertNote *inert;          /* media */
+    MediaList media;                 /* in the space of the object that has the interior; of hollow ones alone they are seen */
+    const InertNote *inert;
 } Interior;
 
 /* How a bump comes about. All but the last have vector fields of their own. */
@@ -635,6 +643,8 @@ struct Light {
     bool jitter, circular, orient;
     const Object *looks_like, *projected_through; /* in the scene; or NULL */
     const LightGroup *group; /* shines on nothing else; NULL: on all */
+    bool unscattered;        /* media do not scatter it */
+    bool through_air;        /* media that are nowhere in particular weaken it */
     const InertNote *inert;
 };
 
@@ -723,6 +733,8 @@ typedef struct Scene {
     size_t fog_count;
     const Rainbow *rainbows;
     size_t rainbow_count;
+    MediaList media;                  /* between all objects; and in those that are hollow */
+    bool has_media;                   /* these, or some interior's */
     const Texture *default_texture;
     GlobalSettings settings;
     double clock;

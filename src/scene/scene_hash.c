@@ -1,6 +1,6 @@
 #include "scene/scene_hash.h"
 
-#include "scene/volumes.h"
+#include "scene/medium.h"
 
 #include <string.h>
 
@@ -156,6 +156,7 @@ void interior_rehash(Interior *i) {
     const double numbers[] = {i->ior, i->caustics, i->dispersion, i->dispersion_samples, i->fade_distance, i->fade_power};
     for (size_t k = 0; k < VTS_ARRAY_COUNT(numbers); k++) hash_add_double(&h, numbers[k]);
     hash_add_color(&h, i->fade_color);
+    media_hash(&h, &i->media);
     i->hash = h;
 }
 

@@ -1,7 +1,6 @@
 /* The graph as text: one node a line, two spaces of indent for what belongs to the node above, defaults left out. Numbers are
  * printed with %g: enough to compare, short enough to read. */
-#include "scene/scene.h"
-#include "scene/volumes.h"
+#include "scene/medium.h"
 
 typedef struct Printer {
     StrBuf *out;
@@ -152,6 +151,17 @@ static void print_finish(Printer *p, const Finish *f) {
     end_line(p);
 }
 
+static void print_media(Printer *p, const MediaList *media) {
+    for (size_t i = 0; i < media->count; i++) {
+        begin_line(p, "media");
+        medium_print(&media->items[i], p->out);
+        end_line(p);
+        p->depth++;
+        for (size_t k = 0; k < media->items[i].density_count; k++) print_pigment(p, "density", media->items[i].densities[k].pattern);
+        p->depth--;
+    }
+}
+
 static void print_interior(Printer *p, const Interior *interior) {
     begin_line(p, "interior");
     add_number(p, "ior", interior->ior);
@@ -164,6 +174,9 @@ static void print_interior(Printer *p, const Interior *interior) {
     }
     add_inert(p, interior->inert);
     end_line(p);
+    p->depth++;
+    print_media(p, &interior->media);
+    p->depth--;
 }
 
 static const char *const normal_forms[] = {"gradient", "bumps",  "dents",    "ripples", "waves",
@@ -514,6 +527,8 @@ static void print_light(Printer *p, const Light *light) {
         add_flag(p, "circular", light->circular);
         add_flag(p, "orient", light->orient);
     }
+    add_flag(p, "media_interaction off", light->unscattered);
+    add_flag(p, "media_attenuation", light->through_air);
     add_flag(p, "parallel", light->parallel && light->kind != LIGHT_PARALLEL);
     add_flag(p, "shadowless", light->shadowless);
     add_flag(p, "grouped", light->group != NULL);
@@ -586,6 +601,7 @@ void scene_print(const Scene *scene, StrBuf *out) {
     for (size_t i = 0; i < scene->sky_layer_count; i++) print_pigment(p, "sky", scene->sky_layers[i]);
     for (size_t i = 0; i < scene->fog_count; i++) print_fog(p, &scene->fogs[i]);
     for (size_t i = 0; i < scene->rainbow_count; i++) print_rainbow(p, &scene->rainbows[i]);
+    print_media(p, &scene->media);
     for (size_t i = 0; i < scene->light_count; i++) print_light(p, &scene->lights[i]);
     for (size_t i = 0; i < scene->object_count; i++) print_object(p, scene->objects[i]);
     for (size_t i = 0; i < scene->skin_count; i++) print_skin(p, scene->skins[i]);

@@ -1,23 +1,28 @@
 #include "scene/scene_hash.h"
 #include "scene/volumes.h"
 
+void phase_hash(Hash128 *hash, const Phase *phase) {
+    hash_add_double(hash, phase->count);
+    for (int i = 0; i < phase->count; i++) {
+        hash_add_u64(hash, phase->lobes[i].kind);
+        hash_add_double(hash, phase->lobes[i].k);
+        hash_add_double(hash, phase->lobes[i].weight);
+    }
+}
+
 void volume_rehash(Volume *v) {
-    const double numbers[] = {v->orders, v->rays, v->step, v->method, v->storage, v->phase.count, v->density != NULL};
+    const double numbers[] = {v->orders, v->rays, v->step, v->method, v->storage, v->density != NULL};
     Hash128 h = hash_begin(0x766f6c75);
     if (v->density) hash_add_hash(&h, v->density->hash);
     hash_add_hash(&h, object_geometry_hash(v->container));
     hash_add_color(&h, v->scattering);
     hash_add_color(&h, v->absorption);
     for (size_t i = 0; i < VTS_ARRAY_COUNT(numbers); i++) hash_add_double(&h, numbers[i]);
-    for (int i = 0; i < v->phase.count; i++) {
-        hash_add_u64(&h, v->phase.lobes[i].kind);
-        hash_add_double(&h, v->phase.lobes[i].k);
-        hash_add_double(&h, v->phase.lobes[i].weight);
-    }
+    phase_hash(&h, &v->phase);
     v->hash = h;
 }
 
-static void print_phase(const Phase *phase, StrBuf *out) {
+void phase_print(const Phase *phase, StrBuf *out) {
     static const char *const names[] = {"isotropic", "rayleigh", "power", "henyey_greenstein", "schlick"};
     strbuf_adds(out, " phase");
     for (int i = 0; i < phase->count; i++) {
@@ -38,7 +43,7 @@ void volume_print(const Volume *v, StrBuf *out) {
     }
     strbuf_addf(out, " scattering <%g, %g, %g> absorption <%g, %g, %g>", v->scattering.red, v->scattering.green, v->scattering.blue, v->absorption.red,
                 v->absorption.green, v->absorption.blue);
-    print_phase(&v->phase, out);
+    phase_print(&v->phase, out);
     if (v->orders) strbuf_addf(out, " orders %d", v->orders);
     if (v->rays > 0) strbuf_addf(out, " rays %g", v->rays);
     if (v->step > 0) strbuf_addf(out, " step %g", v->step);

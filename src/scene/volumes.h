@@ -53,5 +53,8 @@ struct Volume {
 void volume_rehash(Volume *volume);
 /* The volume's fields after its word, on the same line. */
 void volume_print(const Volume *volume, StrBuf *out);
+void phase_hash(Hash128 *hash, const Phase *phase);
+/* " phase" and its lobes. */
+void phase_print(const Phase *phase, StrBuf *out);
 
 #endif

@@ -188,6 +188,8 @@ static void walk_trail(const Trail *trail, BodyHit *hit) {
     hit->looked = hit->filled = hit->cut_object = NULL;
     hit->cut = NULL;
     hit->looked_place = transform_identity();
+    hit->hollow = false;
+    bool placed = false; /* where the interior is matters */
     for (; trail; trail = trail->outer) {
         if (!hit->looked && has_texture(trail->object)) hit->looked = trail->object;
         if (!hit->looked && trail->object->cutaway) {
@@ -195,12 +197,19 @@ static void walk_trail(const Trail *trail, BodyHit *hit) {
             hit->cut_object = trail->object;
             hit->cut_place = transform_identity();
         }
-        if (!hit->filled && trail->object->rest && trail->object->rest->interior) hit->filled = trail->object;
+        const ObjectRest *rest = trail->object->rest;
+        hit->hollow |= rest && rest->hollow;
+        if (!hit->filled && rest && rest->interior) {
+            hit->filled = trail->object;
+            placed = rest->interior->media.count > 0;
+            if (placed) hit->filled_place = transform_identity();
+        }
         if (!trail->place) continue;
         hit->normal = moved_normal(trail->place, hit->normal);
         hit->flat = moved_normal(trail->place, hit->flat);
         if (hit->looked) hit->looked_place = transform_then(&hit->looked_place, trail->place);
         if (hit->cut) hit->cut_place = transform_then(&hit->cut_place, trail->place);
+        if (placed) hit->filled_place = transform_then(&hit->filled_place, trail->place);
     }
 }
 

@@ -21,6 +21,8 @@ typedef struct BodyHit {
     const Object *looked; /* the innermost object around it that has a texture; NULL: none */
     Transform looked_place; /* from that one's space to the space of the ray */
     const Object *filled; /* the innermost that has an interior; NULL: none */
+    Transform filled_place; /* from that one's space to the space of the ray; unset without media in it */
+    bool hollow;          /* the leaf or something around it */
     const Body *cut;        /* of the outermost object around it with `cutaway`, where nothing on the way has a texture; or NULL */
     const Object *cut_object;
     Transform cut_place;    /* from that one's space to the space of the ray; unset without it */

@@ -102,13 +102,13 @@ static void enclosures_open_and_close(void **state) {
     for (int pass = 0; pass < 2; pass++) { /* in through many, and out again in the same order */
         for (uint64_t k = 1; k <= 5; k++) {
             SurfaceHit hit = {.interior = &glass, .filled = k};
-            surface_cross(e, &count, &hit);
+            surface_cross(e, &count, &hit, false);
         }
         assert_int_equal(count, pass == 0 ? 5 : 0);
     }
     for (uint64_t k = 1; k <= 3 * MOST_ENCLOSURES; k++) {
         SurfaceHit hit = {.interior = &glass, .filled = k};
-        surface_cross(e, &count, &hit);
+        surface_cross(e, &count, &hit, false);
     }
     assert_int_equal(count, MOST_ENCLOSURES);
     assert_true(e[count - 1].filled == 3 * MOST_ENCLOSURES);

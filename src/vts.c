@@ -113,7 +113,9 @@ VtsSession *vts_session_create(const VtsOptions *options, const char **error) {
 
 static void end_call(VtsSession *session) {
     preview_close(session->preview);
+    tile_file_close(session->kept, false);
     session->preview = NULL;
+    session->kept = NULL;
     session->scene_name = NULL;
     compiled_scene_destroy(&session->compiled);
     image_free(&session->picture);
@@ -363,7 +365,7 @@ VtsStatus session_draw(VtsSession *session, bool exact, const MomentPlan *plan, 
     const VtsOptions *o = &session->options;
     RenderOptions options = {.pool = session->pool, .progress = &session->progress, .interrupted = &session->interrupted,
                              .samples = exact ? o->reference_samples : session->scene->settings.samples,
-                             .seed = o->seed ^ plan->seed, .noise = plan->noise, .tiles = plan->tiles, .exposure = o->exposure, .alpha = o->alpha};
+                             .seed = o->seed ^ plan->seed, .noise = plan->noise, .tiles = plan->tiles, .kept = session->kept, .exposure = o->exposure, .alpha = o->alpha};
     if (plan->samples) options.samples = plan->samples;
     snprintf(session->stage, sizeof session->stage, "picture");
     if (o->aovs && !plan->unseen) options.aovs = &session->aovs;
@@ -419,10 +421,14 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
     if ((status = session_compile(session, exact, 0)) != VTS_OK) return status;
     double built = stopwatch_wall();
     RenderStats stats;
+    session_keep_tiles(session, output_path, exact);
     if ((status = session_expose(session, scene_path, exact, &stats)) != VTS_OK) return status;
+    stats.kept_tiles = tile_file_taken(session->kept);
     double rendered = stopwatch_wall();
     session_mark_part(session, exact);
     if ((status = session_save_picture(session, scene_path, output_path)) != VTS_OK) return status;
+    tile_file_close(session->kept, true);
+    session->kept = NULL;
     double written = stopwatch_wall();
     FrameReport report = {.frame = o->frame, .clock = o->clock, .output = output_path, .wall_s = written - session->started_wall,
                           .cpu_s = stopwatch_cpu() - session->started_cpu, .parse_s = parsed - session->started_wall,

@@ -64,6 +64,7 @@ typedef struct VtsOptions {
     int samples;                     /* a pixel where it needs several, 1 to 256; 0: by max_error */
     int reference_samples;           /* rays of a pixel of vts_reference(), 1 to 65536; default 64 */
     double exposure;                 /* EV, the picture is multiplied by 2^exposure */
+    bool resume;                     /* tiles of this picture that another vts_render() or vts_reference() left unfinished are taken over */
     bool alpha;                      /* transparent background */
     const char *preview;             /* "host:port" of a viewer that speaks tev's protocol; NULL: none. One that does not answer is warned of */
     const char *aovs;                /* further channels of EXR pictures, "depth,normal"; NULL: none */

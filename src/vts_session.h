@@ -42,6 +42,7 @@ struct VtsSession {
     Image picture;
     Image blurred, between; /* the mean over moments so far, and the sum over those between them */
     PilotResult pilot;
+    TileFile *kept; /* what is done of the picture that is being drawn; or NULL */
     double started_wall, started_cpu;
 };
 
@@ -71,7 +72,11 @@ VtsStatus session_draw(VtsSession *session, bool exact, const MomentPlan *plan, 
 /* vts_shutter.c: the same over the time that the picture is exposed. Leaves scene and compiled scene of some moment of it. */
 VtsStatus session_expose(VtsSession *session, const char *scene_path, bool exact, RenderStats *stats);
 struct Preview *session_connect_preview(VtsSession *session);
-/* vts_stitch.c: the picture says which part it is, if it is one. */
+/* vts_resume.c: a file beside the picture for what is done of it, closed by end of the call; of blurred pictures none. */
+void session_keep_tiles(VtsSession *session, const char *output_path, bool exact);
+/* vts_stitch.c: of the texts that were read and of every option that pixels depend on, but the region. */
+uint64_t session_key(const VtsSession *session, bool exact);
+/* The picture says which part it is, if it is one. */
 void session_mark_part(VtsSession *session, bool exact);
 VtsStatus session_save_picture(VtsSession *session, const char *scene_path, const char *output_path);
 /* VTS_ERROR_FILE, reported, when the output is a file that the scene was read from. */

@@ -238,8 +238,8 @@ static void lay_tiles(Exposure *e) {
     const VtsOptions *o = &e->session->options;
     memcpy(e->region, o->region, sizeof e->region);
     if (e->region[2] == 0) e->region[2] = o->width, e->region[3] = o->height;
-    e->tiles_x = (e->region[2] - 1) / FILM_TILE - e->region[0] / FILM_TILE + 1;
-    e->tiles_y = (e->region[3] - 1) / FILM_TILE - e->region[1] / FILM_TILE + 1;
+    e->tiles_x = film_tiles_x(e->region);
+    e->tiles_y = film_tiles_y(e->region);
     size_t count = (size_t)e->tiles_x * (size_t)e->tiles_y;
     e->open = arena_new_array(&e->session->arena, bool, count);
     e->moving = arena_new_array(&e->session->arena, bool, count);

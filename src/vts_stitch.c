@@ -21,7 +21,7 @@ static void add_pairs(Hash128 *hash, const VtsPair *pairs, size_t count) {
 }
 
 /* Of the texts that were read and of every option that pixels depend on; of data files only the names stand in the texts. */
-static uint64_t key_of(const VtsSession *session, bool exact) {
+uint64_t session_key(const VtsSession *session, bool exact) {
     const VtsOptions *o = &session->options;
     Hash128 hash = hash_begin(exact);
     add_text(&hash, VTS_VERSION);
@@ -48,7 +48,7 @@ void session_mark_part(VtsSession *session, bool exact) {
     const int *r = o->region;
     if (r[2] == 0) return;
     image_part_set(&session->picture, &(ImagePart){.x = r[0], .y = r[1], .width = r[2] - r[0], .height = r[3] - r[1], .whole_width = o->width,
-                                                   .whole_height = o->height, .key = key_of(session, exact)});
+                                                   .whole_height = o->height, .key = session_key(session, exact)});
 }
 
 VtsStatus vts_stitch(const char *const *part_paths, size_t count, const char *output_path, char *error, size_t error_size) {

@@ -22,6 +22,8 @@ void interrupt_watch(VtsSession *session) {
     }
     struct sigaction action = {.sa_handler = stop, .sa_flags = (int)SA_RESETHAND};
     sigemptyset(&action.sa_mask);
+    struct sigaction ignore = {.sa_handler = SIG_IGN}; /* files that grow too large fail as on a full disk */
+    sigaction(SIGXFSZ, &ignore, NULL);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
 }

@@ -48,7 +48,7 @@ static const char *apply_fps(Settings *s, const char *value) {
 }
 static const char *apply_resume(Settings *s, const char *value) {
     (void)value;
-    s->resume = true;
+    s->resume = s->options.resume = true;
     return NULL;
 }
 static const char *apply_quality(Settings *s, const char *value) {
@@ -278,7 +278,7 @@ static const Option OPTIONS[] = {
     {"frames", 'f', "A-B[xSTEP],...", COMMAND_STITCH, apply_frames, "of these frames, whose numbers replace #### in all names"},
     {"shutter", 0, "F", COMMAND_ALL, apply_shutter, "part of a frame's time that it is exposed; default: as the scene's animation says, else 0"},
     {"fps", 0, "N", COMMAND_ALL, apply_fps, "frames a second; default: as the scene's animation says, else 24"},
-    {"resume", 0, NULL, COMMAND_RENDER | COMMAND_REFERENCE | COMMAND_STITCH | COMMAND_FARM, apply_resume, "leaves out the pictures that are there: goes on with a film that was stopped"},
+    {"resume", 0, NULL, COMMAND_RENDER | COMMAND_REFERENCE | COMMAND_STITCH | COMMAND_FARM, apply_resume, "leaves out the pictures that are there, and goes on with one that was not finished"},
     {"aov", 0, "NAMES", COMMAND_RENDER | COMMAND_REFERENCE, apply_aov,
      "further channels of an EXR: some of depth,normal,albedo,alpha,position,object,uv,texel_level,samples"},
     {"preview", 0, "HOST:PORT", COMMAND_RENDER | COMMAND_REFERENCE, apply_preview,

@@ -2,9 +2,11 @@
 
 #include "image/whole_file.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +14,7 @@
 #include <unistd.h>
 
 enum { NAME_ATTEMPTS = 1000 };
+#define MARK ".tmp-vts-"
 
 static const char *error_text(int number, char *buffer, size_t size) {
     switch (number) {
@@ -66,10 +69,41 @@ bool whole_file_can_replace(const char *path, StrBuf *error) {
     return true;
 }
 
+/* Names of unfinished files say whose they are: a number for the machine, and the process. */
+static unsigned machine_number(void) {
+    char name[256] = "";
+    unsigned number = 2166136261u; /* FNV-1a */
+    if (gethostname(name, sizeof name - 1) != 0) return 0;
+    for (const char *c = name; *c; c++) number = (number ^ (unsigned char)*c) * 16777619u;
+    return number;
+}
+
+static bool is_leftover(const char *tail) {
+    unsigned machine;
+    long process;
+    int attempt;
+    return sscanf(tail, "%8x-%ld-%d", &machine, &process, &attempt) == 3 && machine == machine_number() && process > 1 &&
+           kill((pid_t)process, 0) != 0 && errno == ESRCH;
+}
+
+/* What a process that was killed on this machine has left of the same file. */
+static void remove_leftovers(const char *path) {
+    char folder[PATH_MAX];
+    const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
+    size_t length = strlen(base);
+    DIR *entries = folder_of(path, folder, sizeof folder) ? opendir(folder) : NULL;
+    for (struct dirent *entry; entries && (entry = readdir(entries)) != NULL;) {
+        const char *tail = entry->d_name + length;
+        if (strncmp(entry->d_name, base, length) == 0 && strncmp(tail, MARK, sizeof MARK - 1) == 0 && is_leftover(tail + sizeof MARK - 1))
+            unlinkat(dirfd(entries), entry->d_name, 0);
+    }
+    if (entries) closedir(entries);
+}
+
 /* A new file beside `path`, open for writing; its name in `name`. -1 and errno on failure. */
 static int open_beside(const char *path, char *name, size_t size) {
     for (int attempt = 0; attempt < NAME_ATTEMPTS; attempt++) {
-        int length = snprintf(name, size, "%s.tmp-vts-%ld-%d", path, (long)getpid(), attempt);
+        int length = snprintf(name, size, "%s" MARK "%08x-%ld-%d", path, machine_number(), (long)getpid(), attempt);
         if (length < 0 || (size_t)length >= size) {
             errno = ENAMETOOLONG;
             return -1;
@@ -101,6 +135,7 @@ bool whole_file_replace(const char *path, const void *data, size_t size, StrBuf 
     if (!whole_file_can_replace(path, error)) return false;
     bool is_link = lstat(path, &info) == 0 && S_ISLNK(info.st_mode);
     const char *place = is_link && realpath(path, target) ? target : path;
+    remove_leftovers(place);
     int file = open_beside(place, temporary, sizeof temporary);
     if (file < 0) return fail(error, "write", path, errno);
     int number = write_all(file, data, size);

@@ -27,22 +27,28 @@ static float exposed(const Film *film, float seen) {
     return (film->gamma == 1 ? seen : (float)gamma_to_light((double)seen, film->gamma)) * film->gain;
 }
 
-static void expose_tile(void *context, size_t index, int worker) {
-    Film *film = context;
-    const RenderOptions *options = film->options;
-    if ((options->interrupted && *options->interrupted) || (options->tiles && !options->tiles[index])) return;
+/* Part of the picture, [x0, x1) × [y0, y1) of the whole. */
+typedef struct Place {
+    int x0, y0, x1, y1;
+} Place;
+
+/* Tiles lie at multiples of their size, whatever the region. */
+static Place place_of(const Film *film, size_t index) {
+    const int *region = film->options->region;
     int tx = (int)(index % (size_t)film->tiles_x), ty = (int)(index / (size_t)film->tiles_x);
-    /* Tiles lie at multiples of their size, whatever the region. */
-    int x0 = (options->region[0] / FILM_TILE + tx) * FILM_TILE, y0 = (options->region[1] / FILM_TILE + ty) * FILM_TILE;
-    int x1 = int_min(x0 + FILM_TILE, options->region[2]), y1 = int_min(y0 + FILM_TILE, options->region[3]);
-    x0 = int_max(x0, options->region[0]), y0 = int_max(y0, options->region[1]);
+    int x0 = (region[0] / FILM_TILE + tx) * FILM_TILE, y0 = (region[1] / FILM_TILE + ty) * FILM_TILE;
+    return (Place){int_max(x0, region[0]), int_max(y0, region[1]), int_min(x0 + FILM_TILE, region[2]), int_min(y0 + FILM_TILE, region[3])};
+}
+
+static void see(Film *film, Place p, int worker) {
+    const RenderOptions *options = film->options;
     Radiance seen[FILM_TILE * FILM_TILE];
     AovSum *aovs = film->aovs ? film->aovs + (size_t)worker * FILM_TILE * FILM_TILE : NULL;
     if (aovs) memset(aovs, 0, sizeof *aovs * FILM_TILE * FILM_TILE);
-    film->tile(film->context, worker, x0, y0, x1, y1, seen, aovs);
-    for (int y = y0; y < y1; y++)
-        for (int x = x0; x < x1; x++) {
-            int i = (y - y0) * (x1 - x0) + x - x0;
+    film->tile(film->context, worker, p.x0, p.y0, p.x1, p.y1, seen, aovs);
+    for (int y = p.y0; y < p.y1; y++)
+        for (int x = p.x0; x < p.x1; x++) {
+            int i = (y - p.y0) * (p.x1 - p.x0) + x - p.x0;
             Radiance r = seen[i];
             float *sample = image_pixel(film->image, x - options->region[0], y - options->region[1]);
             sample[0] = exposed(film, r.color.x);
@@ -51,8 +57,40 @@ static void expose_tile(void *context, size_t index, int worker) {
             if (options->alpha) sample[3] = r.alpha;
             if (aovs) aov_write(options->aovs, &aovs[i], r.alpha, sample + (options->alpha ? 4 : 3));
         }
+}
+
+/* Between the tile's rows in the picture and `samples`, as many as a kept tile has. */
+static size_t copy_tile(const Film *film, Place p, float *samples, bool into_picture) {
+    size_t row = (size_t)(p.x1 - p.x0) * (size_t)film->image->channels;
+    for (int y = p.y0; y < p.y1; y++, samples += row) {
+        float *pixels = image_pixel(film->image, p.x0 - film->options->region[0], y - film->options->region[1]);
+        memcpy(into_picture ? pixels : samples, into_picture ? samples : pixels, row * sizeof *samples);
+    }
+    return row * (size_t)(p.y1 - p.y0);
+}
+
+/* Sees what no other run has seen. Pixels after an interruption are black, and not kept. */
+static void see_or_take(Film *film, size_t index, Place p, int worker) {
+    const RenderOptions *options = film->options;
+    size_t count = (size_t)(p.x1 - p.x0) * (size_t)(p.y1 - p.y0) * (size_t)film->image->channels;
+    float *samples = options->kept ? malloc(count * sizeof *samples) : NULL;
+    if (samples && tile_file_read(options->kept, (uint32_t)index, samples, count)) {
+        copy_tile(film, p, samples, true);
+    } else {
+        see(film, p, worker);
+        if (samples && !(options->interrupted && *options->interrupted)) tile_file_write(options->kept, (uint32_t)index, samples, copy_tile(film, p, samples, false));
+    }
+    free(samples);
+}
+
+static void expose_tile(void *context, size_t index, int worker) {
+    Film *film = context;
+    const RenderOptions *options = film->options;
+    if ((options->interrupted && *options->interrupted) || (options->tiles && !options->tiles[index])) return;
+    Place p = place_of(film, index);
+    see_or_take(film, index, p, worker);
     if (options->preview)
-        preview_tile(options->preview, x0 - options->region[0], y0 - options->region[1], x1 - options->region[0], y1 - options->region[1]);
+        preview_tile(options->preview, p.x0 - options->region[0], p.y0 - options->region[1], p.x1 - options->region[0], p.y1 - options->region[1]);
     size_t done = atomic_fetch_add(&film->done, 1) + 1;
     pthread_mutex_lock(&film->progress_lock);
     progress_update(options->progress, film->stage, done, (size_t)film->tiles_x * (size_t)film->tiles_y);
@@ -72,8 +110,7 @@ bool film_expose(const RenderOptions *options, double gamma, const char *stage, 
                  StrBuf *error) {
     if (!init_image(options, memory, out, error)) return false;
     Film film = {.options = options, .stage = stage, .tile = tile, .context = context, .image = out, .gain = (float)exp2(options->exposure), .gamma = gamma,
-                 .tiles_x = (options->region[2] - 1) / FILM_TILE - options->region[0] / FILM_TILE + 1,
-                 .tiles_y = (options->region[3] - 1) / FILM_TILE - options->region[1] / FILM_TILE + 1};
+                 .tiles_x = film_tiles_x(options->region), .tiles_y = film_tiles_y(options->region)};
     if (options->aovs) film.aovs = calloc((size_t)pool_threads(options->pool) * FILM_TILE * FILM_TILE, sizeof *film.aovs);
     if (options->aovs && !film.aovs) {
         image_free(out);

@@ -6,6 +6,7 @@
 #include "base/progress.h"
 #include "base/vec.h"
 #include "image/image.h"
+#include "image/tile_file.h"
 #include "render/aov.h"
 
 #include <stdatomic.h>
@@ -23,6 +24,7 @@ typedef struct RenderOptions {
     int samples;     /* cones per pixel side where one is not enough; 0: by max_error. Of the reference: rays a pixel */
     uint64_t seed;   /* of what is sampled */
     double noise;    /* so many times as noisy as else may be what random samples draw, 1 or more; 0: 1. The same for all that is not random */
+    TileFile *kept;    /* tiles of another run, which are taken as they are, and those of this one; or NULL */
     const bool *tiles; /* those of the region that are wanted, rows from the top; the others stay black. NULL: all */
     double exposure; /* EV */
     bool alpha;      /* keep the background transparent */
@@ -32,6 +34,10 @@ typedef struct RenderOptions {
 } RenderOptions;
 
 enum { FILM_TILE = 32 };
+
+/* How many tiles a region touches, across and down. */
+static inline int film_tiles_x(const int region[4]) { return (region[2] - 1) / FILM_TILE - region[0] / FILM_TILE + 1; }
+static inline int film_tiles_y(const int region[4]) { return (region[3] - 1) / FILM_TILE - region[1] / FILM_TILE + 1; }
 
 /* What the pixels of [x0, x1) × [y0, y1), at most FILM_TILE each way, see: rows of x1 − x0 in `out`, and in `aovs` (NULL: not
  * wanted; comes as zeros). Called by worker `worker` of the pool; must not depend on it. */

@@ -158,6 +158,39 @@ case_warned_once() {
   [ "$(grep -c "'media' is not modelled" err)" = 1 ] || fail "a warning of each frame: $(cat err)"
 }
 
+# A picture that is killed again and again goes on where it was, and comes out the same.
+case_resume_tiles() {
+  scene
+  run scene.vts -s 400x300 --samples 25 -o whole.png --report r.json; want_status 0
+  grep -q '"kept_tiles":0' r.json || fail "tiles kept of nothing"
+  local tries=0 kept=0 wait=2
+  until [ -s part.png ] || [ $((++tries)) -gt 60 ]; do
+    "$vts" scene.vts -s 400x300 --samples 25 -o part.png --resume --report r.json >out 2>err </dev/null &
+    local pid=$!
+    sleep "0.$(printf %02d $((RANDOM % 10 + wait)))"
+    wait=$((wait < 80 ? wait + 3 : wait))
+    kill -s KILL $pid 2>/dev/null
+    wait $pid 2>/dev/null
+    [ -s part.png.tiles-vts ] && [ "$(stat -c %s part.png.tiles-vts)" -gt 12000 ] && kept=1
+  done
+  cmp -s part.png whole.png || fail "another picture after $tries kills"
+  [ $kept = 1 ] || fail "nothing was kept"
+  want_only scene.vts whole.png part.png r.json
+  # With another setting nothing of it is taken.
+  "$vts" scene.vts -s 400x300 --samples 25 -o other.png --resume >out 2>err </dev/null &
+  pid=$!
+  until [ -s other.png ] || [ "$(stat -c %s other.png.tiles-vts 2>/dev/null || echo 0)" -gt 30000 ]; do sleep 0.01; done
+  kill -s KILL $pid 2>/dev/null; wait $pid 2>/dev/null; rm -f other.png
+  run scene.vts -s 400x300 --samples 4 -o other.png --resume --report r.json; want_status 0
+  grep -q '"kept_tiles":0' r.json || fail "tiles of another picture"
+  run scene.vts -s 400x300 --samples 4 -o same.png; cmp -s same.png other.png || fail "a mixture of two pictures"
+  # Unfinished files of a process that is no more go when the picture is written again.
+  "$vts" version >/dev/null & pid=$!; wait $pid
+  local mark; mark=$(printf '%08x' 0)
+  : >"same.png.tmp-vts-$mark-$pid-0"; run scene.vts -s 16x12 -o same.png; want_file "same.png"
+  [ -e "same.png.tmp-vts-$mark-$pid-0" ] || fail "a file of another machine is gone"
+}
+
 # A stand-in for ffmpeg: keeps what it is called with, and makes of its input the file that its last argument names.
 encoder() {
   mkdir -p bin

@@ -11,7 +11,8 @@ static const double WORTH_KEEPING = 10;
 /* Also of the sky light's and other files' contents no more is known than their names: they stand in the texts. */
 static TileFileKey key_of(const VtsSession *session, bool exact) {
     const VtsOptions *o = &session->options;
-    TileFileKey key = {.picture = session_key(session, exact), .channels = (o->alpha ? 4 : 3) + (o->aovs ? session->aovs.channels : 0)};
+    TileFileKey key = {.picture = session_key(session, exact),
+                       .channels = (o->alpha ? 4 : 3) + (o->aovs ? session->aovs.channels : 0)};
     int region[4];
     memcpy(region, o->region, sizeof region);
     if (region[2] == 0) region[2] = o->width, region[3] = o->height;

@@ -42,6 +42,7 @@ struct VtsSession {
     Image picture;
     Image blurred, between; /* the mean over moments so far, and the sum over those between them */
     PilotResult pilot;
+    struct ClothStates *cloths; /* followed so far; NULL: none */
     TileFile *kept; /* what is done of the picture that is being drawn; or NULL */
     double started_wall, started_cpu;
 };
@@ -72,6 +73,11 @@ VtsStatus session_draw(VtsSession *session, bool exact, const MomentPlan *plan, 
 /* vts_shutter.c: the same over the time that the picture is exposed. Leaves scene and compiled scene of some moment of it. */
 VtsStatus session_expose(VtsSession *session, const char *scene_path, bool exact, RenderStats *stats);
 struct Preview *session_connect_preview(VtsSession *session);
+/* vts_cloth.c: states of cloths, kept in memory as long as each frame asks for them, and in the session's cache folder. */
+EvalClothStates session_cloth_states(VtsSession *session);
+/* Before a frame: lets go what the last one did not ask for; all of it. */
+void session_trim_cloths(VtsSession *session, bool all);
+
 /* vts_resume.c: a file beside the picture for what is done of it, closed by end of the call; of blurred pictures none. */
 void session_keep_tiles(VtsSession *session, const char *output_path, bool exact);
 /* vts_stitch.c: of the texts that were read and of every option that pixels depend on, but the region. */

@@ -270,9 +270,65 @@ static void look_ahead(Cloth *cloth, double part, Vec3 *places) {
     cloth->limit = limit;
 }
 
+/* Times of frames are rounded: a hair before a tick is the tick. */
+static double whole_ticks(double ticks) { return floor(ticks + 1e-6); }
+
+uint64_t cloth_tick_of(double time) { return (uint64_t)double_clamp(whole_ticks(time * CLOTH_TICKS), 0, 1e15); }
+
+/* ---- state ---- */
+
+enum { STATE_HEAD = 2, STATE_OF_MASS = 9, STATE_OF_SPRING = 2 };
+
+size_t cloth_state_count(const Cloth *cloth) {
+    return STATE_HEAD + STATE_OF_MASS * cloth->mass_count + STATE_OF_SPRING * cloth->spring_count;
+}
+
+void cloth_save_state(const Cloth *cloth, double *state) {
+    *state++ = (double)cloth->tick;
+    *state++ = cloth->limit;
+    for (size_t i = 0; i < cloth->mass_count; i++) {
+        const Mass *m = &cloth->masses[i];
+        const double numbers[STATE_OF_MASS] = {m->place.x, m->place.y, m->place.z, m->speed.x, m->speed.y, m->speed.z, m->next.x, m->next.y, m->next.z};
+        memcpy(state, numbers, sizeof numbers);
+        state += STATE_OF_MASS;
+    }
+    for (size_t i = 0; i < cloth->spring_count; i++) {
+        *state++ = cloth->springs[i].multiplier;
+        *state++ = cloth->springs[i].force;
+    }
+}
+
+bool cloth_load_state(Cloth *cloth, const double *state) {
+    for (size_t i = 0; i < cloth_state_count(cloth); i++)
+        if (!isfinite(state[i])) return false;
+    if (!(state[0] >= 0 && state[0] < 1e15 && state[0] == floor(state[0]))) return false;
+    cloth->tick = (uint64_t)*state++;
+    cloth->limit = *state++;
+    for (size_t i = 0; i < cloth->mass_count; i++, state += STATE_OF_MASS) {
+        Mass *m = &cloth->masses[i];
+        m->place = vec3(state[0], state[1], state[2]);
+        m->speed = vec3(state[3], state[4], state[5]);
+        m->next = vec3(state[6], state[7], state[8]);
+    }
+    for (size_t i = 0; i < cloth->spring_count; i++) {
+        cloth->springs[i].multiplier = *state++;
+        cloth->springs[i].force = *state++;
+    }
+    return true;
+}
+
+Hash128 cloth_spec_hash(const ClothSpec *s) {
+    enum { RULES = 1 }; /* another number when the same sheet moves otherwise */
+    Hash128 hash = hash_begin(RULES);
+    const double numbers[] = {s->width, s->height, s->nu, s->nv, s->pins, s->mass, s->stiffness, s->shear, s->bend, s->damping, s->elongation,
+                              s->gravity.x, s->gravity.y, s->gravity.z, s->unrest, s->wind != NULL};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(numbers); i++) hash_add_double(&hash, numbers[i]);
+    if (s->wind) hash_add_hash(&hash, s->wind->hash);
+    return hash;
+}
+
 bool cloth_follow(Cloth *cloth, double time, const atomic_bool *interrupted, Vec3 *places) {
-    /* Times of frames are rounded: a hair before a tick is the tick. */
-    double ticks = fmax(0, time * CLOTH_TICKS), whole = floor(ticks + 1e-6);
+    double ticks = fmax(0, time * CLOTH_TICKS), whole = whole_ticks(ticks);
     while ((double)cloth->tick < whole) {
         if (interrupted && *interrupted) return false;
         run_tick(cloth);

@@ -58,6 +58,17 @@ double cloth_work(const ClothSpec *spec);
 bool cloth_follow(Cloth *cloth, double time, const atomic_bool *interrupted, Vec3 *places);
 
 uint64_t cloth_tick(const Cloth *cloth);
+/* The tick that cloth_follow() goes to for a time. */
+uint64_t cloth_tick_of(double time);
+/* All that the sheet's movement depends on. */
+Hash128 cloth_spec_hash(const ClothSpec *spec);
+
+/* What changes with time, as numbers: so many. A sheet of the same spec goes on from them as if it had come there itself. */
+size_t cloth_state_count(const Cloth *cloth);
+void cloth_save_state(const Cloth *cloth, double *state);
+/* False, and nothing changes, when they cannot be a state of this sheet's: not finite, or at no tick. */
+bool cloth_load_state(Cloth *cloth, const double *state);
+
 /* Of the masses as they are: kinetic, of their heights (0 at rest), and of the springs' forces. */
 double cloth_energy(const Cloth *cloth);
 /* What the energy may be: that of the start and what the wind has done since. */

@@ -33,9 +33,9 @@ struct TileFile {
     pthread_mutex_t lock;
     char *path;
     int file;
-    off_t size;     /* of what is whole */
-    bool full;      /* nothing more can be written */
-    double begins;  /* to be written */
+    off_t size;    /* of what is whole */
+    bool full;     /* nothing more can be written */
+    double begins; /* to be written */
     uint32_t tiles, taken;
     off_t places[]; /* of the tiles' records; 0: not there */
 };
@@ -48,7 +48,11 @@ static uint64_t checksum_of(const Record *record, const float *samples) {
 }
 
 static Header header_of(const TileFileKey *key) {
-    Header header = {.magic = "vtstile", .version = TILE_FILE_VERSION, .tiles = key->tiles, .picture = key->picture, .channels = key->channels};
+    Header header = {.magic = "vtstile",
+                     .version = TILE_FILE_VERSION,
+                     .tiles = key->tiles,
+                     .picture = key->picture,
+                     .channels = key->channels};
     memcpy(header.region, key->region, sizeof header.region);
     return header;
 }
@@ -79,7 +83,9 @@ static bool read_at(int file, void *data, size_t size, off_t at) {
 static bool append(TileFile *t, uint32_t tile, const float *samples, size_t count) {
     Record record = {.tile = tile, .count = (uint32_t)count};
     record.checksum = checksum_of(&record, samples);
-    if (!write_at(t->file, &record, sizeof record, t->size) || !write_at(t->file, samples, count * sizeof *samples, t->size + (off_t)sizeof record)) return false;
+    if (!write_at(t->file, &record, sizeof record, t->size) ||
+        !write_at(t->file, samples, count * sizeof *samples, t->size + (off_t)sizeof record))
+        return false;
     t->places[tile] = t->size;
     t->size += (off_t)(sizeof record + count * sizeof *samples);
     return true;
@@ -89,7 +95,8 @@ static bool append(TileFile *t, uint32_t tile, const float *samples, size_t coun
 static float *read_record(int file, off_t at, Record *record) {
     if (!read_at(file, record, sizeof *record, at) || record->count > LARGEST_TILE) return NULL;
     float *samples = malloc(record->count * sizeof *samples + 1);
-    if (samples && read_at(file, samples, record->count * sizeof *samples, at + (off_t)sizeof *record) && checksum_of(record, samples) == record->checksum)
+    if (samples && read_at(file, samples, record->count * sizeof *samples, at + (off_t)sizeof *record) &&
+        checksum_of(record, samples) == record->checksum)
         return samples;
     free(samples);
     return NULL;
@@ -101,7 +108,8 @@ static void take_over(TileFile *t, int old, const Header *header) {
     if (!read_at(old, &found, sizeof found, 0) || memcmp(&found, header, sizeof found) != 0) return;
     Record record;
     float *samples;
-    for (off_t at = sizeof found; (samples = read_record(old, at, &record)) != NULL; at += (off_t)(sizeof record + record.count * sizeof *samples)) {
+    for (off_t at = sizeof found; (samples = read_record(old, at, &record)) != NULL;
+         at += (off_t)(sizeof record + record.count * sizeof *samples)) {
         bool wanted = record.tile < t->tiles && !t->places[record.tile] && !t->full;
         if (wanted) t->full = !append(t, record.tile, samples, record.count);
         t->taken += wanted && !t->full;

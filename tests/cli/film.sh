@@ -191,6 +191,31 @@ case_resume_tiles() {
   [ -e "same.png.tmp-vts-$mark-$pid-0" ] || fail "a file of another machine is gone"
 }
 
+# A cloth's frame is the same whether it follows the one before, a state in the cache, or the beginning.
+case_cloth() {
+  cat >cloth.vts <<'S'
+animation { frames 40 fps 10 }
+camera { location <0, 0, -4> look_at 0 }
+light_source { <-30, 40, -30>, rgb 1.2 }
+#declare Breeze = wind_field { direction <1, 0, 0.4> speed 6 strength 2 turbulence { amplitude 0.6 scale 1.2 octaves 2 seed 7 } }
+cloth { size <2, 1.5> grid 8, 6 pin left wind_field { Breeze } pigment { rgb 0.8 } }
+S
+  run cloth.vts -s 32x24 -o alone.ppm -f 35; want_status 0
+  run cloth.vts -s 32x24 -o film.ppm -f 1-40x17; want_status 0
+  cmp -s alone35.ppm film35.ppm || fail "frames that go on from each other differ from one alone"
+  run cloth.vts -s 32x24 -o cold.ppm -f 35,3,31 --cache kept; want_status 0
+  [ "$(ls kept | wc -l)" = 3 ] || fail "not one state for each second: $(ls kept)"
+  run cloth.vts -s 32x24 -o warm.ppm -f 35 --cache kept; want_status 0
+  cmp -s alone35.ppm cold35.ppm && cmp -s alone35.ppm warm35.ppm || fail "states of a cache change the cloth"
+  local file
+  for file in kept/*; do printf 'broken' >"$file"; done
+  run cloth.vts -s 32x24 -o broken.ppm -f 35 --cache kept; want_status 0
+  cmp -s alone35.ppm broken35.ppm || fail "a broken state was believed"
+  sed 's/frames 40/frames 40 shutter 1/' cloth.vts >blurred.vts
+  run blurred.vts -s 32x24 -o b.ppm -f 34-35; run blurred.vts -s 32x24 -o c.ppm -f 35 --cache kept
+  cmp -s b35.ppm c35.ppm || fail "blurred, a frame alone is another"
+}
+
 # A stand-in for ffmpeg: keeps what it is called with, and makes of its input the file that its last argument names.
 encoder() {
   mkdir -p bin

@@ -256,8 +256,41 @@ static void an_interruption_is_heard(void **state) {
     fold(&s);
 }
 
+/* Saved and taken up again, a sheet goes on as if nothing had happened. */
+static void states_go_on(void **state) {
+    (void)state;
+    ClothSpec spec = flag(60, CLOTH_PIN_LEFT);
+    Sheet through = lay(&spec), first = lay(&spec), second = lay(&spec);
+    double *numbers = malloc(cloth_state_count(first.cloth) * sizeof *numbers);
+    cloth_follow(through.cloth, 1.3, NULL, through.places);
+    cloth_follow(first.cloth, 0.71, NULL, first.places);
+    cloth_save_state(first.cloth, numbers);
+    assert_int_equal(cloth_tick(first.cloth), cloth_tick_of(0.71));
+    assert_true(cloth_load_state(second.cloth, numbers));
+    cloth_follow(second.cloth, 1.3, NULL, second.places);
+    assert_memory_equal(second.places, through.places, through.bytes);
+    numbers[7] = NAN;
+    assert_false(cloth_load_state(first.cloth, numbers));
+    free(numbers);
+    fold(&through), fold(&first), fold(&second);
+}
+
+/* Whatever changes a sheet's movement changes its key. */
+static void keys_differ(void **state) {
+    (void)state;
+    ClothSpec plain = flag(60, CLOTH_PIN_LEFT), other = plain;
+    assert_true(hash_equal(cloth_spec_hash(&plain), cloth_spec_hash(&other)));
+    other.damping += 0.01;
+    assert_false(hash_equal(cloth_spec_hash(&plain), cloth_spec_hash(&other)));
+    other = plain, other.pins |= CLOTH_PIN_TOP;
+    assert_false(hash_equal(cloth_spec_hash(&plain), cloth_spec_hash(&other)));
+    other = plain, other.gravity.x = 1;
+    assert_false(hash_equal(cloth_spec_hash(&plain), cloth_spec_hash(&other)));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(states_go_on), cmocka_unit_test(keys_differ),
         cmocka_unit_test(a_hanging_sheet_stretches_as_its_weight_says),
         cmocka_unit_test(a_row_between_two_pins_is_an_elastic_catenary),
         cmocka_unit_test(a_loose_sheet_falls_as_things_fall),

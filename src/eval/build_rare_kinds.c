@@ -1,6 +1,7 @@
 /* One builder for each of the rarer solids. */
 #include "eval/build_rare.h"
 #include "eval/eval_files.h"
+#include "tape/tape_interval.h"
 
 #include <string.h>
 
@@ -270,6 +271,9 @@ bool build_isosurface(BuildContext *context, const EvalBlock *block, Value *out)
     s->as.isosurface.open = draft.open;
     s->as.isosurface.method = draft.method;
     s->as.isosurface.full_detail = draft.full_detail;
+    if (!tape_is_bounded(s->as.isosurface.function))
+        diag_warning(context->diags, block->word_span,
+                     "a part of this isosurface's function has no bounds: rays march by 'max_gradient', and may miss parts of it");
     return rare_end(&draft, out);
 }
 

@@ -1,4 +1,4 @@
-/* What the noises made of scattered points share: for noise_nodes.c and noise_nodes_forms.c alone. */
+/* What the noises made of scattered points share: for noise_nodes.c and noise_nodes_forms.c (and what measures them) alone. */
 #ifndef VTS_TAPE_NOISE_NODES_H
 #define VTS_TAPE_NOISE_NODES_H
 
@@ -76,6 +76,7 @@ static inline double sparse_kernel(double q, double *slope) {
                                    1.540260519133547e-20};
     enum { LAST = sizeof terms / sizeof *terms - 1 };
     double value = terms[LAST], first = 0;
+#pragma GCC unroll 32
     for (int k = LAST; k-- > 0;) {
         first = first * q + value;
         value = value * q + terms[k];

@@ -249,18 +249,43 @@ static void gather_impulses(Points *points, const Box3 *box, int impulses) {
     }
 }
 
-/* Value and slope at the centre, and the bound of the second derivative for the rest: the kernel's first derivative has no jumps. */
-static AffineForm along_impulses(const Points *points, const Piece *p, double root) {
-    double value = 0, slope = 0, weights = 0, size = 0, near = 1 + p->length + p->off;
+enum { TOGETHER = 8 };
+
+/* Impulses that count at a place: squares of their distances, weights, and the slopes of those squares. */
+typedef struct Impulses {
+    double square[MOST_POINTS + TOGETHER], weight[MOST_POINTS + TOGETHER], along[MOST_POINTS + TOGETHER];
+    int count;
+} Impulses;
+
+/* Returns the weights of all that count anywhere on the piece. */
+static double find_near(const Points *points, const Piece *p, Impulses *near) {
+    double reach = 1 + p->length + p->off, weights = 0;
+    int count = 0;
     for (int i = 0; i < points->count; i++) {
         Vec3 to = vec3_sub(p->centre, points->at[i]);
-        double square = vec3_length_squared(to), w = points->weight[i], rise;
-        if (!(square < near * near)) continue;
-        weights += fabs(w);
-        if (!(square < 1)) continue;
-        value += w * sparse_kernel(square, &rise);
-        slope += 2 * w * rise * vec3_dot(to, p->way);
-        size += fabs(w);
+        double square = vec3_length_squared(to), w = points->weight[i];
+        weights += square < reach * reach ? fabs(w) : 0;
+        near->square[count] = square, near->weight[count] = w, near->along[count] = 2 * vec3_dot(to, p->way);
+        count += square < 1;
+    }
+    near->count = count;
+    for (int i = count; i < count + TOGETHER; i++) near->square[i] = near->weight[i] = near->along[i] = 0;
+    return weights;
+}
+
+/* Value and slope at the centre, and the bound of the second derivative for the rest: the kernel's first derivative has no jumps. */
+static AffineForm along_impulses(const Points *points, const Piece *p, double root) {
+    Impulses near;
+    double weights = find_near(points, p, &near), value = 0, slope = 0, size = 0;
+    for (int i = 0; i < near.count; i += TOGETHER) {
+        const double *square = &near.square[i], *weight = &near.weight[i], *along = &near.along[i];
+        double values[TOGETHER], slopes[TOGETHER];
+        for (int k = 0; k < TOGETHER; k++) {
+            double rise;
+            values[k] = weight[k] * sparse_kernel(square[k], &rise);
+            slopes[k] = weight[k] * rise * along[k];
+        }
+        for (int k = 0; k < TOGETHER; k++) value += values[k], slope += slopes[k], size += fabs(weight[k]);
     }
     double rest = weights * (SPARSE_CURVATURE / 2 * p->length * p->length + SPARSE_STEEPEST * p->off);
     return (AffineForm){value / root, slope / root, round_up((rest + 0x1p-44 * (size + 1)) / root), false};
@@ -279,7 +304,10 @@ void affine_sparse_convolution(int count, const AffineForm *place, int impulses,
         if (!pieces[i].known) {
             const Interval range[3] = {affine_range(place[i]), affine_range(place[count + i]),
                                        affine_range(place[2 * count + i])};
-            out[i] = affine_of_interval(interval_sparse_convolution(range, impulses));
+            /* As long as a cell's side: sums of each impulse's own bounds would tell little more than those of all noises, and slowly. */
+            bool some_nan = range[0].nan || range[1].nan || range[2].nan;
+            bool tells = some_nan || pieces[i].length < MOST_SPAN / 2 || !(pieces[i].length < FAR);
+            out[i] = affine_of_interval(tells ? interval_sparse_convolution(range, impulses) : whole);
             continue;
         }
         n = group_of(&pieces[i], count - i, &box);

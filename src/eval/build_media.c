@@ -76,8 +76,11 @@ static void read_scattering(Reader *reader, const Word *word, void *target) {
     }
     Reader body = reader_nested(reader, word->body);
     reader_add_table(&body, rules, VTS_ARRAY_COUNT(rules), &draft);
-    if (reader_float(&body, "the type of scattering", &type, &span) && !(type >= 1 && type <= 5 && type == floor(type)))
-        reader_error(&body, span, "types of scattering are 1 (isotropic), 2 and 3 (Mie), 4 (Rayleigh) and 5 (Henyey and Greenstein), found %g", type);
+    if (reader_float(&body, "the type of scattering", &type, &span) && !(type >= 1 && type < 6)) {
+        diag_warning(body.context->diags, span, "types of scattering are 1 (isotropic), 2 and 3 (Mie), 4 (Rayleigh) and 5 (Henyey and Greenstein): %g is taken as 1", type);
+        type = 1;
+    }
+    type = floor(type);
     const BlockItem *item = reader_peek(&body);
     if (is_number(item)) {
         const Argument color = {item->value, item->span};

@@ -175,7 +175,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     out->hierarchy = hierarchy_build(scene, arena, diags);
     if (!out->hierarchy) return COMPILE_FAILED;
     out->clear_shadows = hierarchy_is_clear(out->hierarchy);
-    out->has_air = scene->fog_count || scene->rainbow_count || scene->media.count;
+    out->solids_matter = scene->fog_count || scene->rainbow_count || scene->has_media;
     out->clear_shadows |= scene->has_media;
     out->eye_filling_count = hierarchy_inside(out->hierarchy, scene->camera.location, out->eye_fillings, EYE_FILLINGS);
     if (!volumes_compile(out, diags)) return COMPILE_FAILED;

@@ -47,7 +47,7 @@ typedef struct CompiledScene {
     struct RigidCopies *rigid; /* copies that rays meet, or NULL */
     struct WangKept *wang; /* texels taken apart */
     struct VolumeSet *volumes; /* clouds, or NULL */
-    bool has_air;         /* there are fogs, or media that are nowhere in particular */
+    bool solids_matter;   /* there are fogs or media: what is not hollow keeps them out */
     Filling eye_fillings[EYE_FILLINGS]; /* what holds the camera's location */
     size_t eye_filling_count;
     bool exact_paths;     /* one path of light through volumes for each sample, of which there are many */

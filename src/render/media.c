@@ -289,13 +289,14 @@ Air media_air(SurfaceTracer *tracer, const Leg *leg, double t_max) {
     const Scene *scene = tracer->compiled->scene;
     const Ray ray = {leg->cone.origin, leg->cone.direction};
     MediaMatter matter;
+    if (!surface_in_air(leg->enclosures, leg->enclosure_count)) return (Air){{1, 1, 1}, {0, 0, 0}, 0};
     media_matter_begin(&matter, 0, end_of(t_max));
     for (int i = 0; i < leg->enclosure_count; i++) {
         const Enclosure *e = &leg->enclosures[i];
-        if (e->hollow && e->interior && e->interior->media.count) media_matter_add(&matter, &e->interior->media, &e->to_interior, &ray);
+        if (e->interior && e->interior->media.count) media_matter_add(&matter, &e->interior->media, &e->to_interior, &ray);
     }
     Air air = gather(tracer, leg, &matter);
-    if (!scene->media.count || !surface_in_air(leg->enclosures, leg->enclosure_count)) return air;
+    if (!scene->media.count) return air;
     media_matter_begin(&matter, 0, end_of(t_max));
     media_matter_add(&matter, &scene->media, NULL, &ray);
     const Air over = gather(tracer, leg, &matter);
@@ -349,13 +350,20 @@ static Vec3f what_passes(const CompiledScene *compiled, const MediaMatter *matte
     return to_floats(passing(p.depth));
 }
 
-Vec3f media_passing(const CompiledScene *compiled, const Enclosure *enclosures, int count, const Ray *ray, double t0, double t1, bool air) {
+Vec3f media_passing(const CompiledScene *compiled, const Enclosure *enclosures, int count, const Ray *ray, double t0, double t1) {
     MediaMatter matter;
+    if (!count || !surface_in_air(enclosures, count)) return vec3f(1, 1, 1);
     media_matter_begin(&matter, t0, end_of(t1));
     for (int i = 0; i < count; i++) {
         const Enclosure *e = &enclosures[i];
-        if (e->hollow && e->interior && e->interior->media.count) media_matter_add(&matter, &e->interior->media, &e->to_interior, ray);
+        if (e->interior && e->interior->media.count) media_matter_add(&matter, &e->interior->media, &e->to_interior, ray);
     }
-    if (air && surface_in_air(enclosures, count)) media_matter_add(&matter, &compiled->scene->media, NULL, ray);
+    return what_passes(compiled, &matter);
+}
+
+Vec3f media_air_passing(const CompiledScene *compiled, const Ray *ray, double distance) {
+    MediaMatter matter;
+    media_matter_begin(&matter, 0, end_of(distance));
+    media_matter_add(&matter, &compiled->scene->media, NULL, ray);
     return what_passes(compiled, &matter);
 }

@@ -4,11 +4,14 @@
 
 #include "render/surface.h"
 
-/* What the media that the leg is in make of what is seen at t_max along it: of interiors first, and the scene's own before them. */
+/* What the media that the leg is in make of what is seen at t_max along it: of interiors first, and the scene's own before them. Within what is
+ * not hollow there are none. */
 Air media_air(SurfaceTracer *tracer, const Leg *leg, double t_max);
 
-/* The share of light that passes the media of these objects between t0 and t1 of the ray of unit direction; `air`: the scene's own too. */
-Vec3f media_passing(const CompiledScene *compiled, const Enclosure *enclosures, int count, const Ray *ray, double t0, double t1, bool air);
+/* The share of light that passes the media of these objects between t0 and t1 of the ray of unit direction; */
+Vec3f media_passing(const CompiledScene *compiled, const Enclosure *enclosures, int count, const Ray *ray, double t0, double t1);
+/* and that passes the scene's own. */
+Vec3f media_air_passing(const CompiledScene *compiled, const Ray *ray, double distance);
 
 /* ---- media_matter.c: what is there along a ray ---- */
 

@@ -8,7 +8,7 @@
 
 /* An object that a ray is inside of. */
 typedef struct Enclosure {
-    const Interior *interior; /* or NULL: it is there because it keeps air out */
+    const Interior *interior; /* or NULL: it is there because it keeps fogs and media out */
     uint64_t filled;          /* as SurfaceHit's */
     bool hollow;
     Affine to_interior;       /* as SurfaceHit's */
@@ -47,7 +47,7 @@ typedef struct SurfaceTracer {
 void surface_leg(const Cone *cone, Leg *leg);
 /* The first leg of a line of sight, in what holds the eye. */
 void surface_eye_leg(const CompiledScene *compiled, const Cone *cone, Leg *leg);
-/* Whether fogs and the scene's own media are there: within all that is hollow. */
+/* Whether fogs and media are there: within all that is hollow. */
 bool surface_in_air(const Enclosure *enclosures, int count);
 
 /* What comes from the surface that the leg has met back along it: its own light, and what it mirrors and lets through. Without the air
@@ -91,8 +91,8 @@ Vec3f surface_faded(const Interior *interior, double distance);
 
 /* The index of the enclosure that the surface bounds, or −1. */
 int surface_enclosure(const Enclosure *enclosures, int count, const SurfaceHit *hit);
-/* Steps over the surface: into its object, or out. `air`: objects count that keep air out. */
-void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit, bool air);
+/* Steps over the surface: into its object, or out. `solids`: those without an interior count, too. */
+void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit, bool solids);
 /* What comes along the ray past explicit objects, volumes and media in objects, between `clear` and `distance`. */
 Vec3f surface_open(SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, double clear);
 /* The share of light from one place of the light, to a point within volumes. */

@@ -42,8 +42,8 @@ void surface_eye_leg(const CompiledScene *compiled, const Cone *cone, Leg *leg) 
         enclose(&leg->enclosures[leg->enclosure_count++], fillings[i].interior, fillings[i].filled, fillings[i].hollow, &fillings[i].to_interior);
 }
 
-void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit, bool air) {
-    if (!hit->interior && (hit->hollow || !air)) return;
+void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit, bool solids) {
+    if (!hit->interior && (hit->hollow || !solids)) return;
     int at = surface_enclosure(enclosures, *count, hit);
     if (at < 0 && *count == MOST_ENCLOSURES) at = 0; /* makes room */
     bool entering = at < 0 || surface_enclosure(enclosures, *count, hit) < 0;
@@ -80,8 +80,7 @@ enum { MOST_CLEAR = 1000 };
 /* POV-Ray's bright spot in the shadow of what is clear: cos^(45 caustics) is added to 1 (measured). */
 static const double CAUSTICS = 45;
 
-/* `air`: the scene's own media count. */
-static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from, double distance, const Leg *leg, bool air) {
+static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from, double distance, const Leg *leg) {
     const CompiledScene *compiled = tracer->compiled;
     Vec3f through = {1, 1, 1};
     Enclosure enclosures[MOST_ENCLOSURES];
@@ -93,14 +92,14 @@ static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from,
         SurfaceHit hit;
         bool met = hierarchy_glimpse(compiled->hierarchy, RAY_SHADOWS, ray, from, distance, &hit);
         if (met && hit.look->opaque) break;
-        if (media) through = vec3f_mul(through, media_passing(compiled, enclosures, count, ray, begun, met ? hit.t : distance, air));
+        if (media) through = vec3f_mul(through, media_passing(compiled, enclosures, count, ray, begun, met ? hit.t : distance));
         if (!met) return through;
         through = vec3f_mul(through, filtered(ray, &hit));
         if (hit.interior && surface_enclosure(enclosures, count, &hit) >= 0)
             through = vec3f_mul(through, surface_faded(hit.interior, hit.t - begun));
         if (hit.interior && hit.interior->caustics != 0)
             through = vec3f_scale(through, (float)(1 + pow(fabs(vec3_dot(hit.normal, ray->direction)), CAUSTICS * hit.interior->caustics)));
-        surface_cross(enclosures, &count, &hit, air && compiled->has_air);
+        surface_cross(enclosures, &count, &hit, compiled->solids_matter);
         if (most_of(through) < (float)bailout) break;
         begun = hit.t;
         from = hit.t * (1 + 1e-9) + leg->clear;
@@ -108,11 +107,13 @@ static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from,
     return vec3f(0, 0, 0);
 }
 
+/* `air`: the scene's own media count, in solids as well (measured). */
 static Vec3f open_way(SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, double clear, bool air) {
     const CompiledScene *compiled = tracer->compiled;
     tracer->counters->shadow_rays++;
     if (!compiled->clear_shadows) return hierarchy_occluded(compiled->hierarchy, ray, clear, distance) ? vec3f(0, 0, 0) : vec3f(1, 1, 1);
-    Vec3f through = clear_way(tracer, ray, clear, distance, leg, air);
+    Vec3f through = clear_way(tracer, ray, clear, distance, leg);
+    if (air && compiled->scene->media.count && most_of(through) > 0) through = vec3f_mul(through, media_air_passing(compiled, ray, distance));
     if (!compiled->volumes || tracer->no_volumes || most_of(through) <= 0) return through;
     return vec3f_mul(through, volumes_passing(compiled->volumes, ray, clear, distance, RAY_SHADOWS));
 }

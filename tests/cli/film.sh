@@ -153,9 +153,9 @@ S
 }
 
 case_warned_once() {
-  film; echo 'media { }' >>film.vts
+  film; echo 'sphere { <0, -9, 0>, 1 uv_mapping }' >>film.vts
   run film.vts -s 8x6; want_status 0
-  [ "$(grep -c "'media' is not modelled" err)" = 1 ] || fail "a warning of each frame: $(cat err)"
+  [ "$(grep -c "'uv_mapping' is not modelled" err)" = 1 ] || fail "a warning of each frame: $(cat err)"
 }
 
 # A picture that is killed again and again goes on where it was, and comes out the same.

@@ -132,7 +132,7 @@ static const Case warnings[] = {
      "1:21: the camera looks along its sky vector: the picture's horizon follows 'right'", NULL},
     {"camera { right <1, 1, 0> }", "1:1: the camera's vectors are not perpendicular", NULL},
     {"sphere { 0, 1 interior { ior -1.5 } }", "1:30: an index of refraction is positive: -1.5 is taken as 1", NULL},
-    {"sphere { 0, 1 interior { media { } } }", "1:26: 'media' is not modelled yet: it has no effect", NULL},
+    {"sphere { 0, 1 uv_mapping }", "1:15: 'uv_mapping' is not modelled yet: it has no effect", NULL},
     {"sphere { 0, 1 texture { pigment { image_map { \"a.png\" } } } }",
      "1:35: 'image_map' is not modelled yet: it has no effect", NULL},
     {"lsystem { axiom \"A\" }", "1:1: this L-system draws nothing: its word has no F and no symbol with an object", NULL},
@@ -195,8 +195,7 @@ static void test_inert_is_named_once(void **state) {
     (void)state;
     BlockText t;
     block_text_begin(&t);
-    assert_non_null(
-        block_text_scene(&t, "sphere { 0, 1 interior { media { } } } sphere { 0, 2 interior { media { } } }"));
+    assert_non_null(block_text_scene(&t, "sphere { 0, 1 uv_mapping } sphere { 0, 2 uv_mapping }"));
     assert_int_equal(t.diags.warning_count, 1);
     block_text_end(&t);
 }

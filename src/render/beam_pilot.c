@@ -1,14 +1,15 @@
 /* A few blocks of pixels drawn both ways, before all others: how wrong voxels are in this picture tells where they may begin. */
 #include "base/random.h"
-#include "render/beam_tile.h"
+#include "render/beam_afford.h"
 
 /* So many blocks of so many pixels each way; no error is told from fewer blocks. As exact geometry they are drawn twice, at so many samples: the noises of both
  * know nothing of each other, so that the product of their differences from the voxels tells the error of these alone. */
 enum { BLOCKS = 16, LEAST_BLOCKS = 4, BLOCK = 4, EXACT_SAMPLES = 64, VOXEL_SAMPLES = 16, TRIES = 400 };
 /* Distances at which blocks are taken, relative to the one where voxels were planned to begin. */
 static const double NEAREST_BLOCK = 0.3, FARTHEST_BLOCK = 1.5;
-/* So far all of a block's samples are drawn as exact geometry: beyond, far fields would cost too much. */
-static const double EXACT_REACH = 2.2;
+/* So far all of a block's samples are drawn as exact geometry, relative to where it first meets the layer, and on: what lies behind is mostly hidden, and far
+ * fields would cost too much. */
+static const double EXACT_REACH = 1.2, EXACT_BEYOND = 0.4;
 /* Voxels may make this part of the error that is accepted: the rest is left to noise, and to what differs from frame to frame. Where exact geometry would be
  * noisier than that error with all the samples it may have, they may make all of it. */
 static const double VOXELS_SHARE = 0.6;
@@ -25,21 +26,6 @@ typedef struct Block {
     Radiance drawn[3][BLOCK * BLOCK]; /* as exact geometry, once more, and from voxels */
 } Block;
 
-/* Where the pixel first sees a skin's layer, relative to the distance at which its voxels begin; < 0 where it sees none. */
-static double distance_at(const CompiledScene *compiled, int x, int y) {
-    Cone cone = view_cone(&compiled->view, x + 0.5, y + 0.5, 1);
-    Ray ray = {cone.origin, cone.direction};
-    double nearest = VTS_INFINITY, relative = -1;
-    for (size_t i = 0; i < compiled->skin_count; i++) {
-        const CompiledSkin *skin = &compiled->skins[i];
-        SkinPoint point;
-        double t;
-        if (!skin->boxes || !isfinite(skin->exact_to) || !skin_enter(skin, &ray, 0, nearest, &point, &t) || t >= nearest) continue;
-        nearest = t, relative = t / skin->exact_to;
-    }
-    return relative >= 0 && hierarchy_occluded(compiled->hierarchy, &ray, 1e-9, 0.999 * nearest) ? -1 : relative;
-}
-
 static int choose_blocks(const CompiledScene *compiled, Block *blocks) {
     const View *view = &compiled->view;
     int count = 0;
@@ -47,26 +33,22 @@ static int choose_blocks(const CompiledScene *compiled, Block *blocks) {
     for (uint64_t i = 0; i < TRIES && count < BLOCKS; i++) {
         uint64_t bits = random_hash(i, 0, 0, 17);
         int x = (int)(random_unit(bits) * (view->width - BLOCK + 1)), y = (int)(random_unit(random_mix(bits)) * (view->height - BLOCK + 1));
-        double distance = distance_at(compiled, x + BLOCK / 2, y + BLOCK / 2);
+        double distance = beam_distance_at(compiled, x + BLOCK / 2, y + BLOCK / 2);
         if (distance >= NEAREST_BLOCK && distance <= FARTHEST_BLOCK) blocks[count++] = (Block){.x = x, .y = y, .distance = distance};
     }
     return count;
 }
 
-/* Draws all blocks; skins are exact geometry up to so many times the planned distances. */
-static void draw_blocks(CompiledScene *compiled, double reach, int samples, int way, Block *blocks, int count) {
+/* Draws all blocks, as exact geometry or from voxels alone. */
+static void draw_blocks(CompiledScene *compiled, bool exact, int samples, int way, Block *blocks, int count) {
     const BeamPlan plan = {.first = samples, .most = samples, .interrupted = compiled->options->interrupted};
-    double planned = compiled->all_exact_to;
-    double *to = arena_new_array(&compiled->scratch, double, compiled->skin_count);
-    for (size_t i = 0; i < compiled->skin_count; i++) {
-        to[i] = compiled->skins[i].exact_to;
-        compiled->skins[i].exact_to = reach > 0 ? reach * to[i] : 0;
-    }
-    compiled->all_exact_to = reach * planned;
     BeamTracer *tracer = beam_tracer_create(compiled, &plan, (uint64_t)way + 17, &compiled->scratch);
-    for (int i = 0; i < count; i++) beam_tile(tracer, blocks[i].x, blocks[i].y, blocks[i].x + BLOCK, blocks[i].y + BLOCK, blocks[i].drawn[way], NULL);
-    for (size_t i = 0; i < compiled->skin_count; i++) compiled->skins[i].exact_to = to[i];
-    compiled->all_exact_to = planned;
+    for (int i = 0; i < count; i++) {
+        Block *b = &blocks[i];
+        ExactReach before = beam_reach_set(compiled, exact ? EXACT_REACH * b->distance + EXACT_BEYOND : 0);
+        beam_tile(tracer, b->x, b->y, b->x + BLOCK, b->y + BLOCK, b->drawn[way], NULL);
+        beam_reach_reset(compiled, before);
+    }
 }
 
 static double difference(float a, float b) { return (double)float_clamp(a, 0, 1) - (double)float_clamp(b, 0, 1); }
@@ -93,8 +75,8 @@ static double error_of_voxels(const Block *blocks, int count) {
     return sqrt(fmax(sum, 0) / weight);
 }
 
-/* The noise of exact geometry with as many samples as it may have. */
-static double least_noise(const CompiledScene *compiled, const Block *blocks, int count) {
+/* The noise of exact geometry. */
+static double noise_of(const Block *blocks, int count) {
     double sum = 0;
     for (int k = 0; k < count; k++)
         for (int i = 0; i < BLOCK * BLOCK; i++) {
@@ -102,7 +84,7 @@ static double least_noise(const CompiledScene *compiled, const Block *blocks, in
             double x = difference(a.x, b.x), y = difference(a.y, b.y), z = difference(a.z, b.z);
             sum += x * x + y * y + z * z;
         }
-    return sqrt(sum / (2 * 3 * BLOCK * BLOCK * count)) * pow((double)EXACT_SAMPLES / compiled->most_samples, NOISE_POWER);
+    return sqrt(sum / (2 * 3 * BLOCK * BLOCK * count));
 }
 
 static PilotResult draw_trials(CompiledScene *compiled) {
@@ -110,10 +92,13 @@ static PilotResult draw_trials(CompiledScene *compiled) {
     Block *blocks = arena_new_array(&compiled->scratch, Block, BLOCKS);
     int count = choose_blocks(compiled, blocks);
     if (count < LEAST_BLOCKS) return result;
-    for (int way = 0; way < 3; way++) draw_blocks(compiled, way < 2 ? EXACT_REACH : 0, way < 2 ? EXACT_SAMPLES : VOXEL_SAMPLES, way, blocks, count);
-    double error = fmax(error_of_voxels(blocks, count), LEAST_ERROR * compiled->max_error);
-    double accepted = compiled->max_error * (least_noise(compiled, blocks, count) > compiled->max_error ? 1 : VOXELS_SHARE);
-    result.factor = double_clamp(error / accepted, EARLIEST_VOXELS, LATEST);
+    for (int way = 0; way < 3; way++) draw_blocks(compiled, way < 2, way < 2 ? EXACT_SAMPLES : VOXEL_SAMPLES, way, blocks, count);
+    double error = fmax(error_of_voxels(blocks, count), LEAST_ERROR * compiled->max_error), noise = noise_of(blocks, count);
+    double least_noise = noise * pow((double)EXACT_SAMPLES / compiled->most_samples, NOISE_POWER);
+    double accepted = compiled->max_error * (least_noise > compiled->max_error ? 1 : VOXELS_SHARE);
+    double samples = EXACT_SAMPLES * pow(noise / compiled->max_error, 1 / NOISE_POWER);
+    double wanted = double_clamp(error / accepted, EARLIEST_VOXELS, LATEST);
+    result.factor = beam_afford(compiled, &(BeamOffer){wanted, error, least_noise, samples});
     result.voxel_error = error / result.factor;
     return result;
 }
@@ -124,10 +109,8 @@ void beam_pilot(CompiledScene *compiled) {
     PilotResult *kept = compiled->options->pilot, result = kept ? *kept : (PilotResult){.known = false};
     ArenaMark mark = arena_mark(&compiled->scratch);
     if (!result.known) result = draw_trials(compiled);
-    arena_reset_to(&compiled->scratch, mark);
     if (kept) *kept = result;
-    for (size_t i = 0; i < compiled->skin_count; i++)
-        if (compiled->skins[i].boxes) compiled->skins[i].exact_to *= result.factor;
-    compiled->all_exact_to *= result.factor;
+    beam_reach_set(compiled, result.factor);
     compiled->voxel_error = result.voxel_error;
+    arena_reset_to(&compiled->scratch, mark);
 }

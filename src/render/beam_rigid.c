@@ -44,7 +44,7 @@ struct RigidCopies {
     Box3 bounds;
     const RigidCopy *items; /* by the numbers of Embree's instances */
     size_t count;
-    double exact_to;     /* of all these skins */
+    const CompiledSkin *skin; /* one of these: exact_to of all */
     RigidTexel *texels;
     bool wide;           /* the machine takes rays by eights */
 };
@@ -323,12 +323,12 @@ RigidCopies *rigid_copies_build(CompiledScene *compiled) {
     if (!tiles || too_many) return NULL;
     RTCDevice device = hierarchy_device(compiled->hierarchy);
     RigidCopies *out = arena_new(compiled->arena, RigidCopies);
-    *out = (RigidCopies){.scene = rtcNewScene(device), .origin = compiled->view.camera.location, .bounds = box3_empty(), .exact_to = exact_to,
+    *out = (RigidCopies){.scene = rtcNewScene(device), .origin = compiled->view.camera.location, .bounds = box3_empty(),
                          .wide = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0};
     Building b = {.compiled = compiled, .device = device, .out = out};
     rtcSetSceneFlags(out->scene, RTC_SCENE_FLAG_ROBUST);
     for (size_t i = 0; i < compiled->skin_count; i++)
-        if (compiled->skins[i].rigid) add_skin(&b, &compiled->skins[i]);
+        if (compiled->skins[i].rigid) add_skin(&b, out->skin = &compiled->skins[i]);
     rtcCommitScene(out->scene);
     out->items = b.copies.items;
     out->count = b.copies.count;
@@ -477,7 +477,7 @@ static void add_sample(const RigidCopies *copies, const Beam *beam, const Sample
         return;
     }
     float far = 1 / s->key[i];
-    if (s->limit[i] > 0) far = float_min(far, (float)(copies->exact_to / (double)s->limit[i]));
+    if (s->limit[i] > 0) far = float_min(far, (float)(copies->skin->exact_to / (double)s->limit[i]));
     bundle_add(bundle, vec3f_from(lines->shift), vec3f_from(to), (float)beam->nearest, far, i);
 }
 
@@ -521,7 +521,7 @@ uint64_t rigid_hide(const RigidCopies *copies, const Light *light, const ShadowP
     Bundle bundle;
     bundle_clear(&bundle);
     for (uint32_t i = 0; i < points->count; i++) {
-        if (points->hidden[i] || !(copies->exact_to >= (double)points->distance[i])) continue;
+        if (points->hidden[i] || !(copies->skin->exact_to >= (double)points->distance[i])) continue;
         Vec3 from = vec3_add(shift, vec3_from_f(points->points[i]));
         Vec3 to = parallel ? light->to_light : vec3_sub(vec3_sub(light->location, copies->origin), from);
         bundle_add(&bundle, vec3f_from(from), vec3f_from(to), 0, parallel ? INFINITY : 1, i);

@@ -147,9 +147,17 @@ static void cast(ShadowScratch *scratch, const CompiledScene *compiled, const Be
     for (uint32_t i = 0; i < count; i++) in->hidden[scratch->sorted[i]] |= (uint8_t)beam.samples.mark[i];
 }
 
-/* Points that are not hidden yet and whose way to the light meets the box of all skins. */
-static bool may_be_hidden(const CompiledScene *compiled, const Light *light, const ShadowPoints *in, uint32_t i) {
-    if (in->hidden[i]) return false;
+/* The greatest distance from the eye of points that any skin's triangles shadow: behind it voxels do. */
+static double exact_reach(const CompiledScene *compiled) {
+    double reach = 0;
+    for (size_t i = 0; i < compiled->skin_count; i++)
+        if (compiled->skins[i].boxes && !compiled->skins[i].rigid) reach = fmax(reach, compiled->skins[i].exact_to);
+    return reach;
+}
+
+/* Points that are not hidden yet, are within `reach` and whose way to the light meets the box of all skins. */
+static bool may_be_hidden(const CompiledScene *compiled, double reach, const Light *light, const ShadowPoints *in, uint32_t i) {
+    if (in->hidden[i] || in->distance[i] > (float)reach) return false;
     Vec3 from = vec3_add(in->origin, vec3_from_f(in->points[i]));
     bool parallel = light_is_parallel(light);
     Ray ray = {from, parallel ? light->to_light : vec3_sub(light->location, from)};
@@ -170,8 +178,9 @@ static Vec3 longest_across(const ShadowPoints *in, const uint32_t *order, uint32
 
 static void cast_parallel(ShadowScratch *scratch, const CompiledScene *compiled, const Light *light, const ShadowPoints *in) {
     uint32_t count = 0;
+    double reach = exact_reach(compiled);
     for (uint32_t i = 0; i < in->count; i++)
-        if (may_be_hidden(compiled, light, in, i)) scratch->order[count++] = i;
+        if (may_be_hidden(compiled, reach, light, in, i)) scratch->order[count++] = i;
     if (count == 0) return;
     Vec3 s = longest_across(in, scratch->order, count, light->to_light);
     Beam beam = {.origin = in->origin, .rows = {s, vec3_cross(light->to_light, s), light->to_light}, .light = true};
@@ -182,6 +191,7 @@ static void cast_parallel(ShadowScratch *scratch, const CompiledScene *compiled,
 /* Towards a light at a place: six beams, one for each side of a cube around it. */
 static void cast_central(ShadowScratch *scratch, const CompiledScene *compiled, const Light *light, const ShadowPoints *in) {
     Vec3 from = vec3_sub(in->origin, light->location);
+    double reach = exact_reach(compiled);
     for (int face = 0; face < 6; face++) {
         double sign = face & 1 ? -1 : 1;
         Vec3 axis = face / 2 == 0 ? vec3(sign, 0, 0) : face / 2 == 1 ? vec3(0, sign, 0) : vec3(0, 0, sign), s, t;
@@ -190,7 +200,7 @@ static void cast_central(ShadowScratch *scratch, const CompiledScene *compiled, 
             Vec3 p = vec3_add(from, vec3_from_f(in->points[i]));
             double size[3] = {fabs(p.x), fabs(p.y), fabs(p.z)};
             int most = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
-            if (may_be_hidden(compiled, light, in, i) && most == face / 2 && vec3_dot(p, axis) > 0) scratch->order[count++] = i;
+            if (may_be_hidden(compiled, reach, light, in, i) && most == face / 2 && vec3_dot(p, axis) > 0) scratch->order[count++] = i;
         }
         vec3_frame(axis, &s, &t);
         Vec3 rows[3] = {s, t, axis};

@@ -45,7 +45,7 @@ struct BeamTracer {
     int before;            /* of the passes before */
     BeamPlan plan;
     double squared_error;  /* summed over the pixels of all tiles: noise, and what voxels are wrong by */
-    uint64_t pixel_count;
+    uint64_t pixel_count, sample_count;
     uint64_t seed;
     Tracer volumes;        /* empty where no voxels are seen */
     Beam beam;

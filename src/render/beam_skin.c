@@ -348,6 +348,7 @@ static void draw_copy(Drawing *d, const BeamTexel *texel) {
         const ClusterNode *node = &texel->nodes[stack[--depth]];
         CellBox box;
         float nearest;
+        d->draft->nodes++;
         if (!node_box(&d->at, node, &box) || !cell_box_met(d->draft->beam, d->at.frame, &box, &nearest)) continue;
         if (node->leaf) {
             draw_cluster(d, &texel->clusters[node->first]);

@@ -40,7 +40,7 @@ typedef struct BeamDraft {
     uint32_t facet_count, facet_capacity;
     uint32_t *renumber;       /* [facet_capacity + 1] */
     BeamCell *cells;          /* room for as many cells as all skins have */
-    uint64_t triangles;       /* mapped and drawn: counted up */
+    uint64_t triangles, nodes; /* mapped and drawn, and boxes around some that were looked at: counted up */
     const atomic_bool *interrupted; /* may be NULL; what is not drawn when it becomes true is left out */
 } BeamDraft;
 

@@ -69,9 +69,16 @@ BeamTracer *beam_tracer_create(const CompiledScene *compiled, const BeamPlan *pl
     return tr;
 }
 
+BeamWork beam_tracer_work(const BeamTracer *tr) {
+    return (BeamWork){.triangles = tr->draft.triangles + tr->shadow.draft.triangles, .nodes = tr->draft.nodes + tr->shadow.draft.nodes,
+                      .rays = tr->counters.camera_rays + tr->counters.shadow_rays + tr->shadow.rays, .samples = tr->sample_count,
+                      .steps = tr->volumes.counters.steps};
+}
+
 void beam_tracer_count(const BeamTracer *tr, TraceCounters *sum) {
     trace_counters_add(sum, &tr->counters);
     sum->shadow_rays += tr->shadow.rays;
+    sum->triangles += tr->draft.triangles + tr->shadow.draft.triangles;
     trace_counters_add(sum, &tr->volumes.counters);
 }
 /* ---- skins ---- */
@@ -243,6 +250,7 @@ static double take_pixels(BeamTracer *tr, Radiance *out) {
 /* One pass of tr->samples a pixel. */
 static double see_pass(BeamTracer *tr, Radiance *out) {
     const Scene *scene = tr->compiled->scene;
+    tr->sample_count += (uint64_t)tr->samples * (uint64_t)(tr->columns * tr->rows);
     uint32_t cells = beam_gather(&tr->draft, tr->compiled);
     beam_lay_samples(tr);
     beam_see_surfaces(tr);

@@ -8,6 +8,7 @@ enum { MOST_MATTER_HITS = 12 };
 
 typedef struct TraceCounters {
     uint64_t camera_rays, shadow_rays, steps, voxels_visited;
+    uint64_t triangles; /* of texels, drawn by beams */
 } TraceCounters;
 
 static inline void trace_counters_add(TraceCounters *sum, const TraceCounters *c) {
@@ -15,6 +16,7 @@ static inline void trace_counters_add(TraceCounters *sum, const TraceCounters *c
     sum->shadow_rays += c->shadow_rays;
     sum->steps += c->steps;
     sum->voxels_visited += c->voxels_visited;
+    sum->triangles += c->triangles;
 }
 
 /* How the way through texture space is followed (Neyret 1998, footnote 7). */

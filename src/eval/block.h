@@ -72,6 +72,7 @@ struct EvalBlock {
     const ListedNumber *numbers; /* NULL, or instead of items: a list of a mesh that holds nothing else */
     size_t number_count;
     Name outer;       /* the word of the block in which this one stands, or NULL */
+    bool of_layers;   /* made of texture { … } texture { … } where one value was wanted */
     Name declared_as; /* the name of `#declare Name = texel { … }` when the block is its whole right side; else NULL */
 };
 

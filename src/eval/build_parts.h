@@ -84,6 +84,8 @@ const Texture *texture_default(const BuildContext *context);
 /* Copies with all layers changed: placed by `t`; laid over `bottom`. */
 const Texture *texture_placed(const BuildContext *context, const Texture *texture, const Transform *t);
 const Texture *texture_over(const BuildContext *context, const Texture *top, const Texture *bottom);
+/* The same, with an error at `span` where there are too many layers; `top` alone then. */
+const Texture *texture_layered(const BuildContext *context, const Texture *top, const Texture *bottom, Span span);
 /* Takes texture, pigment, finish, normal, interior and material onto *texture, which may be NULL (the default then).
  * `place`: transform so far of what carries the texture. */
 /* The interior of a material, in the space of the material's user, or NULL. */

@@ -44,6 +44,12 @@ static size_t layer_count(const Texture *texture) {
     return count;
 }
 
+const Texture *texture_layered(const BuildContext *context, const Texture *top, const Texture *bottom, Span span) {
+    if (layer_count(top) + layer_count(bottom) <= TEXTURE_MOST_LAYERS) return texture_over(context, top, bottom);
+    diag_error(context->diags, span, "a texture has at most %d layers", TEXTURE_MOST_LAYERS);
+    return top;
+}
+
 static const Pigment *pigment_placed(const BuildContext *context, const Pigment *pigment,
                                      const Transform *t) {
     if (transform_is_identity(t)) return pigment;
@@ -112,11 +118,7 @@ bool take_looks(BuildContext *context, const Argument *value, const Texture **te
     const Texture *made = NULL;
     switch (value->value.kind) {
     case VALUE_TEXTURE:
-        made = value->value.as.texture;
-        if (layer_count(made) + layer_count(*texture) > TEXTURE_MOST_LAYERS)
-            diag_error(context->diags, value->span, "a texture has at most %d layers", TEXTURE_MOST_LAYERS);
-        else if (*texture)
-            made = texture_over(context, made, texture_placed(context, *texture, place));
+        made = texture_layered(context, value->value.as.texture, texture_placed(context, *texture, place), value->span);
         break;
     case VALUE_PIGMENT:
         made = with_pigment(context, current(context, *texture, place), value->value.as.pigment);
@@ -150,12 +152,8 @@ void read_interior_texture(Reader *reader, const Word *word, const Texture **tex
     Reader body = reader_nested(reader, word->body);
     const Texture *made = texture_read(&body);
     if (!reader_end_nested(reader, &body) || !made) return;
-    if (layer_count(made) + layer_count(*texture) > TEXTURE_MOST_LAYERS) {
-        reader_error(reader, word->span, "a texture has at most %d layers", TEXTURE_MOST_LAYERS);
-        return;
-    }
     Transform back = transform_inverse(place);
-    *texture = texture_over(reader->context, texture_placed(reader->context, made, &back), *texture);
+    *texture = texture_layered(reader->context, texture_placed(reader->context, made, &back), *texture, word->span);
 }
 
 /* ---- material ---- */

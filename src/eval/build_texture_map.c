@@ -53,7 +53,7 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
             list_texture(reader, draft, value->value.as.texture);
             return true;
         }
-        if (begun && !reader->block->declared_as) return false; /* #declare L = texture … texture … */
+        if (begun && !reader->block->of_layers) return false;
         break;
     case VALUE_PIGMENT:
     case VALUE_NORMAL:

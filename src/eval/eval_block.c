@@ -109,6 +109,7 @@ Value eval_block(Eval *ev, const Node *node, Name declared_as) {
     ev->block_word = outer;
     block->outer = declared_as ? NULL : outer;
     block->declared_as = declared_as;
+    block->of_layers = node->op == BLOCK_OF_LAYERS;
     Value v = value_error();
     if (keyword_of(&ev->keywords, block->word) == KW_spline) {
         v = eval_spline(ev, block);

@@ -540,6 +540,7 @@ Flow run_node(Eval *ev, const Node *node, Sink *sink) {
     case NODE_LIST: sink_list(ev, sink, node); break;
     case NODE_EMPTY:
         if (node->op == ',' || !after_declare) check_stray(ev, node, sink);
+        sink->layers = false;
         break;
     case NODE_ERROR: break;
     case NODE_CALL:

@@ -1,3 +1,4 @@
+#include "eval/build_parts.h"
 #include "eval/eval_state.h"
 
 #include <math.h>
@@ -76,6 +77,13 @@ static void add_item(Eval *ev, Sink *sink, Value v, Span span) {
 }
 
 static void add_element(Eval *ev, Sink *sink, Value v, Span span) {
+    bool layers = sink->layers && v.kind == VALUE_TEXTURE && sink->next > 0 && sink->array->items[sink->next - 1].value.kind == VALUE_TEXTURE;
+    sink->layers = v.kind == VALUE_TEXTURE;
+    if (layers) {
+        v.as.texture = texture_layered(&ev->build, v.as.texture, sink->array->items[--sink->next].value.as.texture, span);
+        slot_set(ev, &sink->array->items[sink->next++], &v);
+        return;
+    }
     if (sink->array->growing && sink->next == sink->array->count) {
         if (!array_take(ev, 1, span)) return;
         array_grow(ev, sink->array);

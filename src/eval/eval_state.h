@@ -96,6 +96,7 @@ typedef struct Sink {
     bool filled;
     Array *array; /* SINK_ARRAY */
     size_t next;  /* element */
+    bool layers;  /* SINK_ARRAY: a texture without a comma before it is a layer of the last element */
 } Sink;
 
 /* FLOW_TEXT: nothing was run, the statement is half of something and must be read together with what follows it. */

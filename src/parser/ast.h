@@ -25,7 +25,7 @@ typedef enum NodeKind {
     NODE_ARRAY,     /* array [list]… { body }; op: mixed */
     NODE_DICTIONARY, /* list: key, value, key, value … */
     NODE_FUNCTION,  /* function ( names ) { list } or { block } */
-    NODE_BLOCK,     /* word { body } */
+    NODE_BLOCK,     /* word { body }; op: 0 or BLOCK_OF_LAYERS */
     /* what only a body may hold */
     NODE_WORD,    /* word list [{ body }] */
     NODE_ENTRY,   /* [ body ] */
@@ -48,6 +48,9 @@ typedef enum NodeKind {
     NODE_WRITE,
     NODE_EMPTY, /* a stray ; or , */
 } NodeKind;
+
+/* texture { … } texture { … } where one value is wanted. */
+enum { BLOCK_OF_LAYERS = 1 };
 
 typedef enum DotComponent { DOT_X, DOT_Y, DOT_Z, DOT_4, DOT_5, DOT_GRAY, DOT_OTHER } DotComponent;
 

@@ -347,33 +347,6 @@ static void skip_deprecation(Parser *p) {
     parser_accept(p, TOKEN_STRING);
 }
 
-static bool texture_follows(Parser *p) {
-    const Token *t, *after;
-    if (!p->slow || p->has_window) {
-        t = parser_peek(p);
-        after = parser_peek_after(p);
-    } else {
-        t = p->host->after(p->host->context, 0);
-        after = p->host->after(p->host->context, 1);
-    }
-    return t->kind == TOKEN_WORD && t->keyword == KW_texture && after->kind == '{';
-}
-
-/* texture { … } texture { … }: layers, made into one texture block that holds them. */
-static Node *layers(Parser *p, Node *first, Token word) {
-    Node *n = parser_node(p, NODE_BLOCK, first->span);
-    n->as.block.word = word.as.name;
-    n->as.block.word_span = word.span;
-    n->as.block.body = arena_new(p->arena, Body);
-    *list_push(p->arena, &n->as.block.body->items) = first;
-    while (!p->failed && texture_follows(p)) {
-        Node *layer = parser_expression(p);
-        if (!layer) return NULL;
-        *list_push(p->arena, &n->as.block.body->items) = layer;
-    }
-    return n;
-}
-
 /* What an operator that cannot stand here was meant to say. */
 static const char *operator_hint(const Token *t) {
     switch (t->kind) {
@@ -401,10 +374,7 @@ static Node *declare_directive(Parser *p, Token head) {
     skip_deprecation(p);
     n->as.declare.target = parser_target(p);
     if (!n->as.declare.target || !parser_expect(p, '=', "'='")) return NULL;
-    Token first = p->slow ? *p->host->after(p->host->context, 0) : *parser_peek(p);
-    Node *value = parser_begins_component(p) ? parser_color(p) : parser_expression(p);
-    if (value && p->closed && first.kind == TOKEN_WORD && first.keyword == KW_texture && texture_follows(p))
-        value = layers(p, value, first);
+    Node *value = parser_begins_component(p) ? parser_color(p) : parser_layers(p);
     n->as.declare.value = value;
     if (!value) return NULL;
     n->span = span_join(head.span, p->last.span);

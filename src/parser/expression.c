@@ -97,9 +97,9 @@ static bool references(Parser *p, NodeList *out, Node *(*argument)(Parser *)) {
     return true;
 }
 
-/* macro_arguments = "(" [expression { [","] expression } [","]] ")"
+/* macro_arguments = "(" [layers { [","] layers } [","]] ")"
  * A comparison needs parentheses of its own: in `M(a <1, 2>)` a vector follows. */
-bool parser_arguments(Parser *p, NodeList *out) { return references(p, out, parser_expression); }
+bool parser_arguments(Parser *p, NodeList *out) { return references(p, out, parser_layers); }
 
 /* arguments = "(" [full { [","] full } [","]] ")" */
 static bool plain_arguments(Parser *p, NodeList *out) {

@@ -133,6 +133,7 @@ NameClass parser_classify(Parser *parser, Name name, const void **macro);
 /* On the slow road, the finished operand evaluated. */
 Node *parser_fold(Parser *parser, Node *node);
 Node *parser_expression(Parser *parser); /* additive */
+Node *parser_layers(Parser *parser);     /* additive, or several texture blocks: layers of one */
 Node *parser_full(Parser *parser);       /* with comparisons and ?: */
 Node *parser_color(Parser *parser);
 Node *parser_function(Parser *parser);

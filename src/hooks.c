@@ -104,6 +104,26 @@ static bool picture_file(void *context, Arena *arena, ImageMap *image, StrBuf *e
     return true;
 }
 
+/* Pixels become light that is multiplied by alpha, as picture_make() wants it. */
+static bool picture_made(void *context, Arena *arena, int columns, int rows, const float (*pixels)[4], ImageMap *image) {
+    (void)context;
+    Image made;
+    if (!image_init(&made, columns, rows, 4, NULL, arena->budget, NULL)) return false;
+    for (size_t i = 0; i < (size_t)columns * (size_t)rows; i++)
+        for (int c = 0; c < 4; c++) made.pixels[4 * i + (size_t)c] = c < 3 ? pixels[i][c] * pixels[i][3] : pixels[i][3];
+    size_t need = (size_t)columns * (size_t)rows * 4 * sizeof(float) * 3 / 2;
+    bool room = memory_budget_take(arena->budget, need); /* the arena may not return, and nothing else frees the image */
+    if (room) {
+        memory_budget_give_back(arena->budget, need);
+        Picture *picture = arena_new(arena, Picture);
+        picture_make(&made, arena, picture);
+        image->picture = picture;
+        hash_add_hash(&image->hash, picture->hash);
+    }
+    image_free(&made);
+    return room;
+}
+
 static bool density_grid(void *context, Arena *arena, const char *path, const EvalDensityRequest *request, DensityGrid *out, StrBuf *error) {
     (void)context;
     if (request->fractal) return grid_fractal(request->size, request->dimension, request->threshold, request->seed, request->interrupted, arena, out);
@@ -222,6 +242,7 @@ EvalGeometry hooks_geometry(Arena *arena, TexelCache *texels) {
         .texel_file = texel_file,
         .mesh_file = mesh_file,
         .picture_file = picture_file,
+        .picture_made = picture_made,
         .picture_place = picture_place,
         .density_grid = density_grid,
         .geo = geo,

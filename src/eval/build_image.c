@@ -11,7 +11,8 @@ typedef struct ImageDraft {
         size_t count, capacity;
     } palette;
     Span file; /* where the text names it */
-    bool made; /* by a function, not from a file */
+    const UserFunction *made; /* by a function, not from a file; or NULL */
+    Span made_span;
     bool textures;
 } ImageDraft;
 
@@ -115,10 +116,49 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
         return true;
     case VALUE_FLOAT: return true; /* function WIDTH, HEIGHT { … } */
     case VALUE_FUNCTION:
-    case VALUE_PIGMENT: draft->made = true; return true;
+        if (draft->image.path || draft->made) reader_error(reader, value->span, "a second picture");
+        draft->made = value->value.as.function;
+        draft->made_span = value->span;
+        return true;
     case VALUE_TEXTURE: return draft->textures; /* of a material_map: its reader's */
     default: return take_transform(value, &ignored);
     }
+}
+
+enum { LARGEST_SIDE = 1 << 14, MOST_PIXELS = 1 << 24 };
+
+/* A function's picture lies over the unit square: the middles of its outermost pixels are on its rim; its first row has y = 0 and is the
+ * top of the picture, as in POV-Ray (measured). */
+static const float (*sample(const UserFunction *function, Arena *arena))[4] {
+    int columns = function->columns, rows = function->rows;
+    float(*pixels)[4] = arena_push_array_(arena, (size_t)columns * (size_t)rows, sizeof *pixels), (*out)[4] = pixels;
+    bool colored = tape_output_count(function->tape) >= 3;
+    for (int j = 0; j < rows; j++)
+        for (int i = 0; i < columns; i++, out++) {
+            double place[3] = {(double)i / int_max(columns - 1, 1), (double)j / int_max(rows - 1, 1), 0};
+            double value[TAPE_CALL_MAX] = {0};
+            tape_eval_once(function->tape, place, value);
+            for (int c = 0; c < 3; c++) (*out)[c] = (float)value[colored ? c : 0];
+            (*out)[3] = colored ? (float)double_clamp(1 - value[4], 0, 1) : 1;
+        }
+    return (const float(*)[4])pixels;
+}
+
+static void make_picture(Reader *reader, ImageDraft *draft) {
+    const UserFunction *f = draft->made;
+    if (f->columns < 1 || f->rows < 1 || f->columns > LARGEST_SIDE || f->rows > LARGEST_SIDE || (int64_t)f->columns * f->rows > MOST_PIXELS) {
+        reader_error(reader, draft->made_span, "the function of a picture needs its size before it: 'function 300, 200 {…}', at most %d pixels", MOST_PIXELS);
+        return;
+    }
+    if (f->parameter_count != 3) {
+        reader_error(reader, draft->made_span, "the function of a picture takes x, y and z");
+        return;
+    }
+    Arena scratch; /* of no budget: whoever runs out of that never comes back to destroy it */
+    arena_init(&scratch, NULL, 1 << 16);
+    bool good = picture_from_pixels(reader->context, f->columns, f->rows, sample(f, &scratch), &draft->image);
+    arena_destroy(&scratch);
+    if (!good) reader_error(reader, draft->made_span, "the picture does not fit into the memory limit");
 }
 
 static void rehash(ImageMap *image) {
@@ -171,9 +211,10 @@ const ImageMap *image_read(Reader *parent, const Word *word) {
         reader_error(&reader, word->span, "'%s' needs the name of a file", word->text);
     check_place(&reader, &draft, word);
     if (!reader_end_nested(parent, &reader)) return NULL;
+    if (draft.made) draft.image.gamma = 1; /* its numbers are the scene's */
     draft.image.palette_filter = draft.palette.items;
     draft.image.palette_count = draft.palette.count / 3;
-    bool told = draft.image.gamma != 0;
+    bool told = draft.image.gamma != 0 && !draft.made;
     if (!told) draft.image.gamma = usual_gamma(&draft.image, word->text);
     draft.image.assumed_gamma = !told && draft.image.gamma == 1 ? 1 : build_assumed_gamma(parent->context);
     rehash(&draft.image);
@@ -181,5 +222,6 @@ const ImageMap *image_read(Reader *parent, const Word *word) {
         parent->failed = true;
         return NULL;
     }
+    if (draft.made) make_picture(parent, &draft);
     return arena_copy(parent->context->arena, &draft.image, sizeof draft.image);
 }

@@ -44,6 +44,8 @@ const char *picture_find(const BuildContext *context, const char *name, const ch
 /* The path of a file that the text at `span` names, where includes are looked for (eval_path.c); `what` it is, for the report: "mesh
  * file". NULL after one. */
 const char *data_file_find(const BuildContext *context, const char *what, const char *name, Span span);
+/* Makes image->picture of red, green, blue and alpha, not multiplied, in rows from the top (eval_path.c); false where memory is short. */
+bool picture_from_pixels(const BuildContext *context, int columns, int rows, const float (*pixels)[4], ImageMap *image);
 /* Loads the picture at image->path (eval_path.c). True, with image->picture NULL, where pictures are not read; false after a report. */
 bool picture_file_load(const BuildContext *context, ImageMap *image, Span span);
 /* Reads the file of meshes that the text at `span` names (eval_path.c); false after a report. */

@@ -99,6 +99,8 @@ typedef struct EvalGeometry {
     /* Sets image->place, of a picture that was read; false with a line in `error`. */
     bool (*picture_place)(void *context, Arena *arena, const GeoOrigin *origin, ImageMap *image, StrBuf *error);
     bool (*picture_file)(void *context, Arena *arena, ImageMap *image, StrBuf *error);
+    /* The same from colours: rows from the top, red, green, blue and alpha of each pixel, which are not multiplied by alpha. */
+    bool (*picture_made)(void *context, Arena *arena, int columns, int rows, const float (*pixels)[4], ImageMap *image);
     /* The ground of maps, in `arena`; sets request->origin. False after a report at `span`. */
     bool (*terrain)(void *context, Arena *arena, EvalTerrainRequest *request, DiagList *diags, Span span, Terrain *out);
     /* A pattern as a function of place: 3 inputs, 1 output; otherwise the same. */

@@ -184,6 +184,11 @@ bool mesh_file_load(const BuildContext *context, const char *name, Span span, co
     return false;
 }
 
+bool picture_from_pixels(const BuildContext *context, int columns, int rows, const float (*pixels)[4], ImageMap *image) {
+    const EvalGeometry *geometry = geometry_of(context);
+    return !geometry || !geometry->picture_made || geometry->picture_made(geometry->context, context->arena, columns, rows, pixels, image);
+}
+
 bool picture_file_load(const BuildContext *context, ImageMap *image, Span span) {
     const EvalGeometry *geometry = geometry_of(context);
     StrBuf error = {0};

@@ -22,6 +22,7 @@ struct SceneDraft {
         const Pigment **items;
         size_t count, capacity;
     } sky;
+    Color sky_emission;
     struct {
         const char **items;
         size_t count, capacity;
@@ -272,6 +273,7 @@ static void add_camera(SceneDraft *draft, BuildContext *context, const Camera *c
 }
 
 static void add_sky(SceneDraft *draft, BuildContext *context, const SkySphere *sky) {
+    draft->sky_emission = sky->emission;
     draft->sky.count = 0; /* the last sky_sphere counts */
     for (size_t i = 0; i < sky->count; i++) {
         walk_pigment(draft, context, sky->layers[i]);
@@ -403,6 +405,7 @@ const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context) {
                      .object_count = draft->objects.count,
                      .skins = draft->skins.items,
                      .skin_count = draft->skins.count,
+                     .sky_emission = draft->sky_emission,
                      .sky_layers = draft->sky.items,
                      .sky_layer_count = draft->sky.count,
                      .background = draft->background,

@@ -7,6 +7,7 @@ typedef struct SkyDraft {
         size_t count, capacity;
     } layers;
     Transform transform;
+    Color emission;
 } SkyDraft;
 
 static bool on_sky_value(Reader *reader, const Argument *value, void *target) {
@@ -15,6 +16,7 @@ static bool on_sky_value(Reader *reader, const Argument *value, void *target) {
         const SkySphere *sky = value->value.as.sky_sphere;
         for (size_t i = 0; i < sky->count; i++)
             *list_push(reader->context->arena, &draft->layers) = sky->layers[i];
+        draft->emission = sky->emission;
         return true;
     }
     if (value->value.kind != VALUE_PIGMENT) return take_transform(value, &draft->transform);
@@ -31,8 +33,8 @@ static const Pigment *pigment_placed(BuildContext *context, const Pigment *pigme
 }
 
 bool build_sky_sphere(BuildContext *context, const EvalBlock *block, Value *out) {
-    static const WordRule sky_rules[] = {{"emission", WORD_IGNORED, 0, NULL, false}};
-    SkyDraft draft = {.transform = transform_identity()};
+    static const WordRule sky_rules[] = {{"emission", WORD_COLOR, offsetof(SkyDraft, emission), NULL, false}};
+    SkyDraft draft = {.transform = transform_identity(), .emission = {1, 1, 1, 0, 0}};
     Reader reader = reader_begin(context, block);
     reader_add_table(&reader, sky_rules, VTS_ARRAY_COUNT(sky_rules), &draft);
     reader_add_table(&reader, transform_rules, transform_rule_count, &draft.transform);
@@ -46,7 +48,7 @@ bool build_sky_sphere(BuildContext *context, const EvalBlock *block, Value *out)
     for (size_t i = 0; i < draft.layers.count; i++)
         draft.layers.items[i] = pigment_placed(context, draft.layers.items[i], &draft.transform);
     SkySphere *sky = arena_new(context->arena, SkySphere);
-    *sky = (SkySphere){draft.layers.items, draft.layers.count};
+    *sky = (SkySphere){draft.layers.items, draft.layers.count, draft.emission};
     *out = (Value){.kind = VALUE_SKY_SPHERE, .as.sky_sphere = sky};
     return true;
 }

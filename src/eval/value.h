@@ -41,6 +41,7 @@ typedef struct ColorMap {
 typedef struct SkySphere {
     const Pigment *const *layers;
     size_t count;
+    Color emission; /* times which they are bright */
 } SkySphere;
 
 typedef struct Value {

@@ -92,7 +92,7 @@ static void read_layers(Meeting *m, float bailout) {
         SurfaceLayer *seen = &m->layers[m->layer_count++];
         Vec3 normal = texture_layer_normal(m->part, layer, hit->normal);
         Color c = texture_layer_color(m->part, layer, normal);
-        *seen = (SurfaceLayer){layer->finish, normal, rgb_of(c), above, (float)(1 - c.filter - c.transmit)};
+        *seen = (SurfaceLayer){layer->finish, normal, rgb_of(c), above, (float)(1 - c.filter - c.transmit), surface_film(layer->finish, m->point)};
         float filter = (float)c.filter, transmit = (float)c.transmit;
         above = vec3f_mul(above, vec3f(filter * seen->color.x + transmit, filter * seen->color.y + transmit, filter * seen->color.z + transmit));
         if (layer->finish->conserve_energy) {
@@ -275,6 +275,7 @@ void surface_glance(const Cone *cone, const SurfaceHit *hit, Vec3f *color, Vec3 
     looks_of(&leg, hit, &looks);
     m.leg = &leg;
     m.hit = hit;
+    m.point = cone_point(cone, hit->t);
     double heaviest = 0;
     *color = vec3f(0, 0, 0);
     for (size_t i = 0; i < looks.count; i++) {

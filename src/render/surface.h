@@ -69,7 +69,11 @@ typedef struct SurfaceLayer {
     Vec3f color;     /* of the pigment */
     Vec3f above;     /* what the layers over it let through, of light that comes back */
     float opaque;    /* 1 - filter - transmit: of diffuse light */
+    double film;     /* thickness of the thin layer on it */
 } SurfaceLayer;
+
+/* The thickness of a finish's thin layer at a place of the scene. */
+double surface_film(const Finish *finish, Vec3 point);
 
 /* What a layer sends along −view of light that comes from `to_light`, for each unit of it; `view` is the ray's direction.
  * `both_sides`: of `double_illuminate`. `place`: where, for grain and thickness. */

@@ -1,5 +1,6 @@
 /* Diffuse light, highlights and thin layers by POV-Ray 3.7's formulas (its documentation, "Finish"; measured where that is silent). */
 #include "base/random.h"
+#include "pattern/pattern.h"
 #include "render/surface.h"
 
 /* White highlights of plastic, coloured ones of metal: which whiten where the light grazes. */
@@ -32,10 +33,18 @@ static float in_step(double amount, double way, double wavelength) {
     return wavelength > 0 ? (float)(1 + amount * cos(2 * VTS_PI * way / wavelength)) : 1;
 }
 
+/* Where it is uneven, by the turbulence of five octaves: measured. */
+double surface_film(const Finish *finish, Vec3 point) {
+    if (!(finish->irid > 0) || finish->irid_turbulence == 0) return finish->irid_thickness;
+    Pigment uneven = pigment_default();
+    uneven.octaves = 5;
+    return finish->irid_thickness * (1 + finish->irid_turbulence * (2 * pigment_turbulence(&uneven, point) - 1));
+}
+
 /* Waves that a thin layer gives back from its top and from its bottom meet in step or against it: a factor of the light. */
 static Vec3f thin_layer(const SurfaceLayer *layer, Vec3 view, double cosine, Vec3 wavelengths) {
     const Finish *f = layer->finish;
-    double way = f->irid_thickness * (cosine - vec3_dot(view, layer->normal));
+    double way = layer->film * (cosine - vec3_dot(view, layer->normal));
     return vec3f(in_step(f->irid, way, wavelengths.x), in_step(f->irid, way, wavelengths.y), in_step(f->irid, way, wavelengths.z));
 }
 

@@ -728,6 +728,7 @@ typedef struct Scene {
     size_t skin_count;
     const Pigment *const *sky_layers; /* of sky_sphere, first below; pattern space: unit direction */
     size_t sky_layer_count;
+    Color sky_emission;               /* times which they are bright */
     Color background;
     const Fog *fogs;
     size_t fog_count;

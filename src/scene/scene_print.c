@@ -599,6 +599,12 @@ void scene_print(const Scene *scene, StrBuf *out) {
     add_color(p, "color", scene->background);
     end_line(p);
     for (size_t i = 0; i < scene->sky_layer_count; i++) print_pigment(p, "sky", scene->sky_layers[i]);
+    const Color *bright = &scene->sky_emission;
+    if (scene->sky_layer_count && (bright->red != 1 || bright->green != 1 || bright->blue != 1)) {
+        begin_line(p, "sky");
+        add_color(p, "emission", *bright);
+        end_line(p);
+    }
     for (size_t i = 0; i < scene->fog_count; i++) print_fog(p, &scene->fogs[i]);
     for (size_t i = 0; i < scene->rainbow_count; i++) print_rainbow(p, &scene->rainbows[i]);
     print_media(p, &scene->media);

@@ -189,6 +189,9 @@ static void walk_object(SceneDraft *draft, BuildContext *context, const Object *
     if (object->kind == OBJECT_TRIANGLES && visit(draft, context, object->as.mesh))
         for (size_t i = 0; i < object->as.mesh->texture_count; i++)
             walk_texture(draft, context, object->as.mesh->textures[i]);
+    size_t count;
+    const BlobPart *parts = object_textured_parts(object, &count);
+    for (size_t i = 0; i < count; i++) walk_texture(draft, context, parts[i].texture);
     if (object->kind == OBJECT_SURFACE) walk_surface(draft, context, object->as.surface);
     if (object->kind == OBJECT_TEXEL) walk_texel(draft, context, object->as.texel);
     if (object->kind == OBJECT_VOLUME) walk_volume(draft, context, object->as.volume);

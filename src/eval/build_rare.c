@@ -289,7 +289,7 @@ static const WordRule picture_rules[] = {
 /* ---- values ---- */
 
 static bool take_blob_part(RareDraft *draft, const Object *object) {
-    BlobPart part = {.transform = object_transform(object)};
+    BlobPart part = {.transform = object_transform(object), .texture = object->texture};
     if (object->kind == OBJECT_SPHERE) {
         part.base = part.cap = object->as.sphere.center;
         part.radius = object->as.sphere.radius;

@@ -235,6 +235,7 @@ bool build_blob(BuildContext *context, const EvalBlock *block, Value *out) {
     draft.solid.as.blob.threshold = draft.threshold;
     draft.solid.as.blob.parts = draft.parts.items;
     draft.solid.as.blob.count = draft.parts.count;
+    for (size_t i = 0; i < draft.parts.count; i++) draft.solid.as.blob.textured |= draft.parts.items[i].texture != NULL;
     return rare_end(&draft, out);
 }
 

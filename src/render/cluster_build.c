@@ -107,6 +107,10 @@ static void learn_looks(Builder *b, const Object *object) {
     if (object->rest && object->rest->interior_texture) look_of(b, object->rest->interior_texture);
     if (object->kind == OBJECT_TRIANGLES)
         for (size_t i = 0; i < object->as.mesh->texture_count; i++) look_of(b, object->as.mesh->textures[i]);
+    size_t count;
+    const BlobPart *parts = object_textured_parts(object, &count);
+    for (size_t i = 0; i < count; i++)
+        if (parts[i].texture) look_of(b, parts[i].texture);
     if (!object_has_group(object)) return;
     Slot *slot = slot_of(b->arena, &b->groups, object->as.group);
     if (slot->looked) return;

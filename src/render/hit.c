@@ -143,6 +143,24 @@ static void find_look(const ClusterSet *set, const Found *found, const Ray *ray,
     out->space = transform_identity();
 }
 
+/* Parts of a blob with textures of their own share it by their densities; what is left has the blob's. */
+static void share_parts(const ClusterSet *set, const Found *found, SurfaceHit *out) {
+    BlobShare parts[LOOK_SHARES + 1];
+    const Solid *blob = found->body.leaf->as.solid;
+    Transform to_scene = found->body.leaf_place;
+    place_in_scene(found, found->depth - 1, &to_scene);
+    size_t count = solid_blob_shares(blob, found->body.place, parts, LOOK_SHARES + 1);
+    bool own = parts[count - 1].part < 0;
+    for (size_t i = 0; i < count; i++) {
+        if (parts[i].part < 0) continue;
+        const BlobPart *part = &blob->as.blob.parts[parts[i].part];
+        const LookShare share = {look_table_find(&set->looks, part->texture), parts[i].weight, transform_then(&part->transform, &to_scene)};
+        if (i == 0 && !own) out->look = share.look, out->space = share.space;
+        else out->shares[out->share_count++] = share;
+    }
+    order_shares(out);
+}
+
 /* ---- interiors ---- */
 
 static uint64_t path_step(uint64_t path, const void *next) { return random_mix(path ^ (uintptr_t)next); }
@@ -278,7 +296,10 @@ void hit_finish(const ClusterSet *set, Found *found, const Ray *ray, bool places
     out->leaving = vec3_dot(flat, ray->direction) > 0;
     out->flat = out->leaving ? vec3_negate(flat) : flat;
     out->normal = vec3_dot(normal, ray->direction) > 0 ? vec3_negate(normal) : normal;
-    find_look(set, found, ray, places, out);
+    size_t parts = 0;
+    bool parted = !found->cluster && found->body.leaf->kind == OBJECT_SOLID && object_textured_parts(found->body.leaf, &parts);
+    find_look(set, found, ray, places || parted, out);
+    if (parted) share_parts(set, found, out);
     if (places || out->share_count || !out->look->even) out->uv = hit_uv(found, vec3_madd(ray->origin, ray->direction, found->t));
     find_filling(found, out);
     out->both_sides = out->solid->double_illuminate;

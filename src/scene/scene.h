@@ -418,6 +418,8 @@ struct Object {
 /* ---- scene_object.c ---- */
 
 bool object_has_group(const Object *object);
+/* The parts of a blob, *count of them, where some have textures of their own; else NULL. */
+const BlobPart *object_textured_parts(const Object *object, size_t *count);
 /* Object space → parent's space, with its inverse. */
 Transform object_transform(const Object *object);
 /* The keyword that makes such objects. */

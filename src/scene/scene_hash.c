@@ -329,6 +329,9 @@ Hash128 object_hash(const Object *o) {
             hash_add(&h, o->as.mesh->corner_textures, o->as.mesh->triangle_count * sizeof *o->as.mesh->corner_textures);
         for (size_t i = 0; i < o->as.mesh->texture_count; i++) add_texture(&h, o->as.mesh->textures[i]);
     }
+    size_t count;
+    const BlobPart *parts = object_textured_parts(o, &count);
+    for (size_t i = 0; i < count; i++) add_texture(&h, parts[i].texture);
     return h;
 }
 

@@ -105,3 +105,10 @@ const Object *object_keep(Arena *arena, const Object *object, const Transform *t
     }
     return kept;
 }
+
+const BlobPart *object_textured_parts(const Object *object, size_t *count) {
+    *count = 0;
+    if (object->kind != OBJECT_SOLID || object->as.solid->kind != SOLID_BLOB || !object->as.solid->as.blob.textured) return NULL;
+    *count = object->as.solid->as.blob.count;
+    return object->as.solid->as.blob.parts;
+}

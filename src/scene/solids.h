@@ -42,6 +42,7 @@ typedef struct BlobPart {
     Vec3 base, cap; /* equal: a sphere */
     double radius, strength;
     Transform transform; /* of the part alone */
+    const struct Texture *texture; /* in the part's space; NULL: the blob's */
 } BlobPart;
 
 typedef struct SweepSphere {
@@ -109,6 +110,7 @@ typedef struct Solid {
             double threshold;
             const BlobPart *parts;
             size_t count;
+            bool textured; /* some part has a texture */
         } blob;
         struct {
             CurveKind curve;

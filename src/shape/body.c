@@ -183,6 +183,12 @@ static Vec3 moved_normal(const Transform *place, Vec3 normal) {
     return place ? vec3_normalize(transform_normal(place, normal)) : normal;
 }
 
+static void place_leaf(const Trail *trail, BodyHit *hit) {
+    hit->leaf_place = transform_identity();
+    for (; trail; trail = trail->outer)
+        if (trail->place) hit->leaf_place = transform_then(&hit->leaf_place, trail->place);
+}
+
 /* What the objects around the surface add, from the inside out. */
 static void walk_trail(const Trail *trail, BodyHit *hit) {
     hit->looked = hit->filled = hit->cut_object = NULL;
@@ -231,6 +237,8 @@ static bool visit_leaf(const Visit *visit, const Body *body, const Ray *ray) {
         hit->flat = vec3_negate(hit->flat);
     }
     walk_trail(visit->trail, hit);
+    size_t count;
+    if (object_textured_parts(hit->leaf, &count)) place_leaf(visit->trail, hit);
     return true;
 }
 

@@ -18,6 +18,7 @@ typedef struct BodyHit {
     const void *data;     /* what its kind prepared */
     Vec3 place;           /* the point in the leaf's own space */
     SolidTag tag;
+    Transform leaf_place; /* of blobs whose parts have textures: from the leaf's own space to the space of the ray; of others unset */
     const Object *looked; /* the innermost object around it that has a texture; NULL: none */
     Transform looked_place; /* from that one's space to the space of the ray */
     const Object *filled; /* the innermost that has an interior; NULL: none */

@@ -1,6 +1,7 @@
 /* blob: where the sum of the parts' densities is the threshold. */
 #include "shape/roots.h"
 #include "shape/solid.h"
+#include "shape/solid_parts.h"
 
 #include <stdlib.h>
 
@@ -170,6 +171,32 @@ static double density_at(const Solid *s, Vec3 p, Vec3 *downhill) {
         *downhill = vec3_madd(*downhill, n, 4 * part->strength * rest / r2);
     }
     return sum;
+}
+
+/* Insertion into the `count` heaviest. */
+static size_t add_share(BlobShare *out, size_t count, size_t most, BlobShare share) {
+    size_t at = count < most ? count++ : most;
+    for (; at > 0 && out[at - 1].weight < share.weight; at--)
+        if (at < most) out[at] = out[at - 1];
+    if (at < most) out[at] = share;
+    return count;
+}
+
+size_t solid_blob_shares(const Solid *s, Vec3 p, BlobShare *out, size_t most) {
+    double plain = 0, sum = 0;
+    size_t count = 0;
+    for (size_t i = 0; i < s->as.blob.count; i++) {
+        const BlobPart *part = &s->as.blob.parts[i];
+        Vec3 off = offset_from(part, transform_point_back(&part->transform, p));
+        double rest = 1 - vec3_length_squared(off) / (part->radius * part->radius), weight = fabs(part->strength) * rest * rest;
+        if (!(rest > 0 && weight > 0)) continue;
+        if (part->texture) count = add_share(out, count, most - 1, (BlobShare){(int)i, weight});
+        else plain += weight;
+    }
+    if (plain > 0 || count == 0) out[count++] = (BlobShare){-1, plain > 0 ? plain : 1};
+    for (size_t i = 0; i < count; i++) sum += out[i].weight;
+    for (size_t i = 0; i < count; i++) out[i].weight /= sum;
+    return count;
 }
 
 static Vec3 normal(const void *data, Vec3 p, const SolidTag *tag) {

@@ -24,6 +24,14 @@ bool solid_text_letter(const void *data, size_t index, PlanarOutline *out, doubl
 /* bicubic_patch, parametric: a place (u and v from 0 to 1 over all of it) and its unit normal, or zero. */
 void solid_sheet_at(const void *data, double u, double v, Vec3 *p, Vec3 *normal);
 
+/* blob: the strongest parts at a place of its surface, at most `most`, with shares that add up to 1, and how many. Those without a texture
+ * are one, with `part` -1, which comes last. */
+typedef struct BlobShare {
+    int part;
+    double weight;
+} BlobShare;
+size_t solid_blob_shares(const Solid *solid, Vec3 p, BlobShare *out, size_t most);
+
 /* mesh: u and v where a triangle is met, by the shares of its second and third corner; zero without uv_vectors. */
 TexCoord solid_mesh_uv(const MeshData *mesh, uint32_t triangle, double u, double v);
 

@@ -264,7 +264,7 @@ static void rare_solids_have_their_volume(void **state) {
     static const Point2 square[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}, {0.25, 0.25}, {0.75, 0.25}, {0.75, 0.75}, {0.25, 0.75}, {0.25, 0.25}};
     static const Point2 cone[] = {{0, 0}, {1, 0}, {0, 1}};
     static const double ball[] = {1, 0, 0, 0, 1, 0, 0, 1, 0, -1};
-    const BlobPart part = {{0, 0, 0}, {0, 0, 0}, 1, 1, transform_identity()};
+    const BlobPart part = {{0, 0, 0}, {0, 0, 0}, 1, 1, transform_identity(), NULL};
     double r = sqrt(1 - sqrt(0.25)); /* where (1 - r²)² is the threshold */
     check_body(rare((Solid){.kind = SOLID_SUPERELLIPSOID, .as.superellipsoid = {1, 1}}), 4 * VTS_PI / 3, 4 * VTS_PI);
     check_body(rare((Solid){.kind = SOLID_SWEEP, .as.sweep = {CURVE_LINEAR, capsule, 2}}), VTS_PI * 0.16 * (1 + 1.6 / 3),

@@ -97,9 +97,9 @@ static Object blob_of(const BlobPart *parts, size_t count, double threshold) {
 
 static Object some_blob(void) {
     const BlobPart parts[] = {
-        {{0, 0, 0}, {0, 0, 0}, 1, 1, transform_scale(vec3(1, 1.3, 0.8))},
-        {{0.2, 0.1, 0}, {1, 0.5, 0.4}, 0.6, 1.2, transform_identity()},
-        {{-0.3, 0.4, 0.1}, {-0.3, 0.4, 0.1}, 0.7, -0.9, transform_identity()},
+        {{0, 0, 0}, {0, 0, 0}, 1, 1, transform_scale(vec3(1, 1.3, 0.8)), NULL},
+        {{0.2, 0.1, 0}, {1, 0.5, 0.4}, 0.6, 1.2, transform_identity(), NULL},
+        {{-0.3, 0.4, 0.1}, {-0.3, 0.4, 0.1}, 0.7, -0.9, transform_identity(), NULL},
     };
     return blob_of(parts, 3, 0.4);
 }
@@ -380,7 +380,7 @@ static void same_hits(Object a, Object b, double error, const char *name) {
 static void test_spheres(void **context) {
     (void)context;
     Object ball = sphere(vec3(0, 0, 0), 1);
-    const BlobPart part = {{0, 0, 0}, {0, 0, 0}, 2, 16.0 / 9, transform_identity()}; /* (1 - 1/4)²·16/9 = 1 */
+    const BlobPart part = {{0, 0, 0}, {0, 0, 0}, 2, 16.0 / 9, transform_identity(), NULL}; /* (1 - 1/4)²·16/9 = 1 */
     same_hits(ball, unit_quadric(), 1e-12, "quadric");
     same_hits(ball, unit_poly(), 1e-10, "poly");
     same_hits(ball, super(1, 1), 1e-10, "superellipsoid");

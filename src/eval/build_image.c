@@ -146,12 +146,8 @@ static const float (*sample(const UserFunction *function, Arena *arena))[4] {
 
 static void make_picture(Reader *reader, ImageDraft *draft) {
     const UserFunction *f = draft->made;
-    if (f->columns < 1 || f->rows < 1 || f->columns > LARGEST_SIDE || f->rows > LARGEST_SIDE || (int64_t)f->columns * f->rows > MOST_PIXELS) {
+    if (f->parameter_count != 3 || f->columns < 1 || f->rows < 1 || f->columns > LARGEST_SIDE || f->rows > LARGEST_SIDE || (int64_t)f->columns * f->rows > MOST_PIXELS) {
         reader_error(reader, draft->made_span, "the function of a picture needs its size before it: 'function 300, 200 {…}', at most %d pixels", MOST_PIXELS);
-        return;
-    }
-    if (f->parameter_count != 3) {
-        reader_error(reader, draft->made_span, "the function of a picture takes x, y and z");
         return;
     }
     Arena scratch; /* of no budget: whoever runs out of that never comes back to destroy it */

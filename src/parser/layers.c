@@ -27,6 +27,7 @@ static Node *layers(Parser *p, Node *first, Token word) {
     return n;
 }
 
+/* layers = expression { block } */
 Node *parser_layers(Parser *p) {
     Token first = *ahead(p, 0);
     Node *value = parser_expression(p);

@@ -14,7 +14,7 @@ rules() {
     function finish() { sub(/ *\*\/$/, "", text); sub(/: [a-z].*|, at most .*/, "", text); print text; on = 0 }
     /^\/\* [a-z_]+ = / { text = substr($0, 4); on = 1; if ($0 ~ /\*\/$/) finish(); next }
     on { line = $0; sub(/^ \* */, "", line); if (line ~ /^\|/) text = text " " line; if ($0 ~ /\*\/$/) finish() }' \
-    src/parser/{parser,item,directive,expression,function,color}.c
+    src/parser/{parser,item,directive,expression,function,color,layers}.c
 }
 
 {

@@ -51,7 +51,7 @@ static void every_operation(void **state) {
             double value = at(tape, p);
             assert_true(got.value == value || (isnan(got.value) && isnan(value)));
             for (int k = 0; k < 3 && isfinite(value); k++) {
-                double off, slope = slope_by_steps(tape, p, k, 1e-3, &off);
+                double off, slope = slope_by_steps(tape, p, k, 1e-4, &off);
                 if (!(off < 1e-7 * (1 + fabs(slope)))) continue; /* a kink, a jump or a border is near */
                 compared++;
                 if (fabs(got.by[k] - slope) <= 1e-6 * (1 + fabs(slope)) + 10 * off) continue;

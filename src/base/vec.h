@@ -46,6 +46,12 @@ typedef struct Ray {
     Vec3 origin, direction; /* direction need not be of unit length unless said */
 } Ray;
 
+/* The width of the bundle that a ray stands for is start + spread·t, in lengths of its direction: whatever space the ray is seen in, it
+ * has the same. Zeros: a line. */
+typedef struct RayWidth {
+    double start, spread;
+} RayWidth;
+
 static inline Vec3 vec3(double x, double y, double z) { return (Vec3){x, y, z}; }
 static inline Vec3 vec3_splat(double s) { return (Vec3){s, s, s}; }
 static inline Vec3 vec3_add(Vec3 a, Vec3 b) { return (Vec3){a.x + b.x, a.y + b.y, a.z + b.z}; }

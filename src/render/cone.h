@@ -12,6 +12,7 @@ typedef struct Cone {
 } Cone;
 
 static inline Vec3 cone_point(const Cone *cone, double t) { return vec3_madd(cone->origin, cone->direction, t); }
+static inline RayWidth cone_width(const Cone *cone) { return (RayWidth){cone->width, cone->spread}; }
 static inline double cone_diameter(const Cone *cone, double t) { return cone->width + cone->spread * t; }
 
 #endif

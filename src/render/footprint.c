@@ -38,7 +38,7 @@ double footprint_curvature(const Hierarchy *hierarchy, RayPurpose purpose, const
         Vec3 target = vec3_madd(here, across[k], off);
         Ray ray = {cone->origin, vec3_normalize(vec3_sub(target, cone->origin))};
         SurfaceHit beside;
-        if (!hierarchy_glimpse(hierarchy, purpose, &ray, 0, 2 * hit->t + off, &beside)) continue;
+        if (!hierarchy_meet_wide(hierarchy, purpose, &ray, cone_width(cone), 0, 2 * hit->t + off, false, &beside)) continue;
         if (beside.solid != hit->solid || beside.leaving != hit->leaving || vec3_dot(beside.normal, hit->normal) < 0.5) continue;
         Vec3 step = vec3_sub(vec3_madd(ray.origin, ray.direction, beside.t), here), turn = vec3_sub(beside.normal, hit->normal);
         double length = vec3_length_squared(step);

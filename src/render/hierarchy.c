@@ -26,6 +26,7 @@ typedef struct Query {
     Ray ray;          /* in the cluster */
     double t_min, shift; /* Embree's t counts from shift */
     RayPurpose purpose;
+    RayWidth width;   /* as t, the same in all clusters */
     bool any;         /* whatever is met will do */
     Found *found;
 } Query;
@@ -57,7 +58,7 @@ static bool cluster_meet(Query *query);
 
 static bool meet_copy(const Query *outer, const Item *item) {
     Query query = {.cluster = item->cluster, .outer = outer, .copy = item, .ray = item_ray(item, &outer->ray), .t_min = outer->t_min,
-                   .purpose = outer->purpose, .any = outer->any, .found = outer->found};
+                   .purpose = outer->purpose, .width = outer->width, .any = outer->any, .found = outer->found};
     return cluster_meet(&query);
 }
 
@@ -68,10 +69,10 @@ static bool meet_item(const Query *query, const Item *item) {
     if (item->cluster) return meet_copy(query, item);
     const Ray ray = item_ray(item, &query->ray);
     if (query->any)
-        return item->body ? body_crosses(item->body, item->object, &ray, query->t_min, found->t)
+        return item->body ? body_crosses_wide(item->body, item->object, &ray, query->width, query->t_min, found->t)
                           : shape_crosses(item->object, &ray, query->t_min, found->t);
     BodyHit *hit = &found->body;
-    bool met = item->body ? body_meet(item->body, item->object, &ray, query->t_min, found->t, hit)
+    bool met = item->body ? body_meet_wide(item->body, item->object, &ray, query->width, query->t_min, found->t, hit)
                           : meet_plain(item->object, &ray, query->t_min, found->t, hit);
     if (!met) return false;
     found->t = hit->t;
@@ -332,34 +333,41 @@ static bool cluster_meet(Query *query) {
     return met || rayhit.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
-static bool meet(const Hierarchy *h, RayPurpose purpose, bool any, const Ray *ray, double t_min, double t_max, Found *found) {
+static bool meet(const Hierarchy *h, RayPurpose purpose, bool any, const Ray *ray, RayWidth width, double t_min, double t_max, Found *found) {
     if (!vec3_is_finite(ray->origin) || !vec3_is_finite(ray->direction)) return false;
     found->t = t_max;
-    Query query = {.cluster = h->all, .ray = *ray, .t_min = t_min, .purpose = purpose, .any = any, .found = found};
+    Query query = {.cluster = h->all, .ray = *ray, .t_min = t_min, .purpose = purpose, .width = width, .any = any, .found = found};
     return cluster_meet(&query);
 }
 
-bool hierarchy_meet(const Hierarchy *h, RayPurpose purpose, const Ray *ray, double t_min, double t_max, SurfaceHit *hit) {
+static const RayWidth LINE = {0, 0};
+
+bool hierarchy_meet_wide(const Hierarchy *h, RayPurpose purpose, const Ray *ray, RayWidth width, double t_min, double t_max, bool places, SurfaceHit *hit) {
     Found found;
-    if (!meet(h, purpose, false, ray, t_min, t_max, &found)) return false;
-    hit_finish(&h->set, &found, ray, true, hit);
+    if (!meet(h, purpose, false, ray, width, t_min, t_max, &found)) return false;
+    hit_finish(&h->set, &found, ray, places, hit);
     return true;
 }
 
+bool hierarchy_meet(const Hierarchy *h, RayPurpose purpose, const Ray *ray, double t_min, double t_max, SurfaceHit *hit) {
+    return hierarchy_meet_wide(h, purpose, ray, LINE, t_min, t_max, true, hit);
+}
+
 bool hierarchy_glimpse(const Hierarchy *h, RayPurpose purpose, const Ray *ray, double t_min, double t_max, SurfaceHit *hit) {
-    Found found;
-    if (!meet(h, purpose, false, ray, t_min, t_max, &found)) return false;
-    hit_finish(&h->set, &found, ray, false, hit);
-    return true;
+    return hierarchy_meet_wide(h, purpose, ray, LINE, t_min, t_max, false, hit);
 }
 
 bool hierarchy_intersect(const Hierarchy *h, const Ray *ray, double t_min, double t_max, SurfaceHit *hit) {
     return hierarchy_meet(h, RAY_SEES, ray, t_min, t_max, hit);
 }
 
-bool hierarchy_occluded(const Hierarchy *h, const Ray *ray, double t_min, double t_max) {
+bool hierarchy_occluded_wide(const Hierarchy *h, const Ray *ray, RayWidth width, double t_min, double t_max) {
     Found found;
-    return meet(h, RAY_SHADOWS, true, ray, t_min, t_max, &found);
+    return meet(h, RAY_SHADOWS, true, ray, width, t_min, t_max, &found);
+}
+
+bool hierarchy_occluded(const Hierarchy *h, const Ray *ray, double t_min, double t_max) {
+    return hierarchy_occluded_wide(h, ray, LINE, t_min, t_max);
 }
 
 size_t hierarchy_inside(const Hierarchy *h, Vec3 point, Filling *out, size_t most) {

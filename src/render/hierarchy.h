@@ -71,6 +71,10 @@ bool hierarchy_intersect(const Hierarchy *hierarchy, const Ray *ray, double t_mi
 bool hierarchy_meet(const Hierarchy *hierarchy, RayPurpose purpose, const Ray *ray, double t_min, double t_max, SurfaceHit *hit);
 /* The same, but where the look is the same everywhere `space` and `uv` are not told. */
 bool hierarchy_glimpse(const Hierarchy *hierarchy, RayPurpose purpose, const Ray *ray, double t_min, double t_max, SurfaceHit *hit);
+/* Both of these for bundles of rays; `places`: as hierarchy_meet(). */
+bool hierarchy_meet_wide(const Hierarchy *hierarchy, RayPurpose purpose, const Ray *ray, RayWidth width, double t_min, double t_max, bool places,
+                         SurfaceHit *hit);
+bool hierarchy_occluded_wide(const Hierarchy *hierarchy, const Ray *ray, RayWidth width, double t_min, double t_max);
 /* Whether anything that casts shadows lies between. */
 bool hierarchy_occluded(const Hierarchy *hierarchy, const Ray *ray, double t_min, double t_max);
 /* The interiors that the point lies in: at most `most`, each once; meshes are not asked. Returns how many. */

@@ -90,7 +90,7 @@ static bool stopped(const Sampler *sp) { return sp->plan.interrupted && *sp->pla
 /* `places`: also where on the surface, whatever it looks like. */
 static bool find_surface(const CompiledScene *compiled, const Cone *cone, bool places, SurfaceHit *hit) {
     Ray ray = {cone->origin, cone->direction};
-    return (places ? hierarchy_meet : hierarchy_glimpse)(compiled->hierarchy, RAY_SEES, &ray, 1e-9, VTS_INFINITY, hit);
+    return hierarchy_meet_wide(compiled->hierarchy, RAY_SEES, &ray, cone_width(cone), 1e-9, VTS_INFINITY, places, hit);
 }
 
 /* Whether explicit surfaces look the same all over the pixel: same part, much the same direction and depth. */

@@ -320,7 +320,7 @@ static Vec3f follow(SurfaceTracer *tracer, Leg *leg, const SurfaceHit *first, bo
             hit = &met;
             if (leg->level >= deepest || leg->weight < (float)settings->adc_bailout) return sum;
             const Ray ray = {leg->cone.origin, leg->cone.direction};
-            bool found = hierarchy_glimpse(compiled->hierarchy, leg->purpose, &ray, leg->clear, VTS_INFINITY, &met);
+            bool found = hierarchy_meet_wide(compiled->hierarchy, leg->purpose, &ray, cone_width(&leg->cone), leg->clear, VTS_INFINITY, false, &met);
             tracer->counters->camera_rays++;
             if (i == 0) leg->level++; /* but where it goes on straight */
             if (!gather_before(tracer, leg, found ? met.t : VTS_INFINITY, &sum, &through)) return sum;

@@ -80,6 +80,11 @@ enum { MOST_CLEAR = 1000 };
 /* POV-Ray's bright spot in the shadow of what is clear: cos^(45 caustics) is added to 1 (measured). */
 static const double CAUSTICS = 45;
 
+/* What casts shadows is as fine as what they fall on: a surface seen without its finest parts must not lie in the shadow of these. */
+static RayWidth width_at(const Leg *leg, Vec3 point) {
+    return (RayWidth){cone_diameter(&leg->cone, vec3_length(vec3_sub(point, leg->cone.origin))), 0};
+}
+
 static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from, double distance, const Leg *leg) {
     const CompiledScene *compiled = tracer->compiled;
     Vec3f through = {1, 1, 1};
@@ -90,7 +95,7 @@ static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from,
     if (count) memcpy(enclosures, leg->enclosures, (size_t)count * sizeof *enclosures);
     for (int i = 0; i < MOST_CLEAR; i++) {
         SurfaceHit hit;
-        bool met = hierarchy_glimpse(compiled->hierarchy, RAY_SHADOWS, ray, from, distance, &hit);
+        bool met = hierarchy_meet_wide(compiled->hierarchy, RAY_SHADOWS, ray, width_at(leg, ray->origin), from, distance, false, &hit);
         if (met && hit.look->opaque) break;
         if (media) through = vec3f_mul(through, media_passing(compiled, enclosures, count, ray, begun, met ? hit.t : distance));
         if (!met) return through;
@@ -111,7 +116,7 @@ static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from,
 static Vec3f open_way(SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, double clear, bool air) {
     const CompiledScene *compiled = tracer->compiled;
     tracer->counters->shadow_rays++;
-    if (!compiled->clear_shadows) return hierarchy_occluded(compiled->hierarchy, ray, clear, distance) ? vec3f(0, 0, 0) : vec3f(1, 1, 1);
+    if (!compiled->clear_shadows) return hierarchy_occluded_wide(compiled->hierarchy, ray, width_at(leg, ray->origin), clear, distance) ? vec3f(0, 0, 0) : vec3f(1, 1, 1);
     Vec3f through = clear_way(tracer, ray, clear, distance, leg);
     if (air && compiled->scene->media.count && most_of(through) > 0) through = vec3f_mul(through, media_air_passing(compiled, ray, distance));
     if (!compiled->volumes || tracer->no_volumes || most_of(through) <= 0) return through;

@@ -140,6 +140,7 @@ typedef struct Search {
     double t_min;
     BodyHit *hit; /* the nearest so far: its t */
     bool any;     /* whatever is met will do, and nothing is asked about it */
+    RayWidth width;
     uint64_t budget;
 } Search;
 
@@ -222,7 +223,7 @@ static void walk_trail(const Trail *trail, BodyHit *hit) {
 static bool visit_leaf(const Visit *visit, const Body *body, const Ray *ray) {
     BodyHit *hit = visit->search->hit;
     if (!body->data) return false;
-    LeafSink sink = {.base = {visit->search->t_min, hit->t, take_crossing}, .filters = visit->filters, .budget = &visit->search->budget};
+    LeafSink sink = {.base = {visit->search->t_min, hit->t, visit->search->width, take_crossing}, .filters = visit->filters, .budget = &visit->search->budget};
     body->ops->cross(body->data, ray, &sink.base);
     if (!sink.taken || visit->search->any) return sink.taken;
     hit->t = sink.base.t_max;
@@ -326,17 +327,25 @@ static bool visit_place(const Visit *visit, const BodyPlace *placed, const Objec
     return visit_body(visit, placed->body, object, &placed->transform, &local);
 }
 
-bool body_meet(const Body *body, const Object *object, const Ray *ray, double t_min, double t_max, BodyHit *hit) {
+bool body_meet_wide(const Body *body, const Object *object, const Ray *ray, RayWidth width, double t_min, double t_max, BodyHit *hit) {
     hit->t = t_max;
-    Search search = {.t_min = t_min, .hit = hit, .budget = MOST_VISITS};
+    Search search = {.t_min = t_min, .hit = hit, .width = width, .budget = MOST_VISITS};
     const Visit visit = {.search = &search};
     return visit_body(&visit, body, object, NULL, ray);
 }
 
-bool body_crosses(const Body *body, const Object *object, const Ray *ray, double t_min, double t_max) {
+bool body_crosses_wide(const Body *body, const Object *object, const Ray *ray, RayWidth width, double t_min, double t_max) {
     BodyHit nearest;
     nearest.t = t_max;
-    Search search = {.t_min = t_min, .hit = &nearest, .any = true, .budget = MOST_VISITS};
+    Search search = {.t_min = t_min, .hit = &nearest, .any = true, .width = width, .budget = MOST_VISITS};
     const Visit visit = {.search = &search};
     return visit_body(&visit, body, object, NULL, ray);
+}
+
+bool body_meet(const Body *body, const Object *object, const Ray *ray, double t_min, double t_max, BodyHit *hit) {
+    return body_meet_wide(body, object, ray, (RayWidth){0, 0}, t_min, t_max, hit);
+}
+
+bool body_crosses(const Body *body, const Object *object, const Ray *ray, double t_min, double t_max) {
+    return body_crosses_wide(body, object, ray, (RayWidth){0, 0}, t_min, t_max);
 }

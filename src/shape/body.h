@@ -42,6 +42,9 @@ const void *body_data(const Body *body);
 bool body_meet(const Body *body, const Object *object, const Ray *ray, double t_min, double t_max, BodyHit *hit);
 /* Whether there is one. */
 bool body_crosses(const Body *body, const Object *object, const Ray *ray, double t_min, double t_max);
+/* The same for bundles of rays: surfaces may leave out what is finer. */
+bool body_meet_wide(const Body *body, const Object *object, const Ray *ray, RayWidth width, double t_min, double t_max, BodyHit *hit);
+bool body_crosses_wide(const Body *body, const Object *object, const Ray *ray, RayWidth width, double t_min, double t_max);
 /* A texture of something that holds a place, and the space it stands in. */
 typedef struct BodyTexture {
     const Texture *texture;

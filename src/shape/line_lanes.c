@@ -16,7 +16,7 @@ typedef struct Lanes {
     int count;
 } Lanes;
 
-static void place_lanes(const Line *line, const LinePiece *pieces, AffineLanes in[3]) {
+static void place_lanes(const Line *line, const LinePiece *pieces, AffineLanes in[3], AffineLanes *width) {
     const double origin[3] = {line->origin.x, line->origin.y, line->origin.z},
                  along[3] = {line->direction.x, line->direction.y, line->direction.z};
     for (int k = 0; k < 3; k++) AFFINE_EACH_LANE {
@@ -26,6 +26,12 @@ static void place_lanes(const Line *line, const LinePiece *pieces, AffineLanes i
             in[k].centre[l] = origin[k] + middle * along[k], in[k].slope[l] = half * along[k],
             in[k].error[l] = affine_lane_error(0, size);
         }
+    AFFINE_EACH_LANE {
+        double middle = pieces[l].a / 2 + pieces[l].b / 2, half = (pieces[l].b - pieces[l].a) / 2 * (1 + 0x1p-50);
+        double size = line->width.start + (fabs(middle) + half) * line->width.spread;
+        width->centre[l] = line->width.start + middle * line->width.spread, width->slope[l] = half * line->width.spread;
+        width->error[l] = affine_lane_error(0, size);
+    }
 }
 
 /* A bit for each lane that may be 0 or is unknown. */
@@ -60,7 +66,8 @@ static void push_rest(Lanes *lanes, const LinePiece *pieces, const AffineLanes *
 /* The first pieces of the stack, taken together: each is divided into as many parts as there are lanes for it. */
 static void divide(Lanes *lanes, const LinePiece *wholes, int count) {
     LinePiece pieces[AFFINE_LANES];
-    AffineLanes bounds;
+    AffineLanes bounds, width;
+    const Line *line = lanes->search->line;
     int shares = AFFINE_LANES / count, used = 0;
     for (int k = 0; k < count; k++) {
         double a = wholes[k].a, b = wholes[k].b, step = (b - a) / shares;
@@ -68,8 +75,8 @@ static void divide(Lanes *lanes, const LinePiece *wholes, int count) {
             pieces[used++] = (LinePiece){l ? a + step * l : a, l < shares - 1 ? a + step * (l + 1) : b};
     }
     for (int l = used; l < AFFINE_LANES; l++) pieces[l] = pieces[used - 1];
-    place_lanes(lanes->search->line, pieces, lanes->scratch);
-    tape_sum_lanes(lanes->search->line->sum, lanes->search->line->level, &bounds, lanes->scratch);
+    place_lanes(line, pieces, lanes->scratch, &width);
+    tape_sum_lanes(line->sum, line->level, line_is_wide(line) ? &width : NULL, &bounds, lanes->scratch);
     lanes->search->work.bounds += (uint64_t)used;
     push_rest(lanes, pieces, &bounds, used);
 }

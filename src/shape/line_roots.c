@@ -2,6 +2,7 @@
 
 #include "shape/line_parts.h"
 #include "shape/roots.h"
+#include "tape/tape_detail.h"
 #include "tape/tape_interval.h"
 
 #include <stdlib.h>
@@ -15,8 +16,11 @@ double line_value(LineSearch *s, double t) {
     const Line *line = s->line;
     Vec3 p = vec3_madd(line->origin, line->direction, t);
     double in[3] = {p.x, p.y, p.z}, out;
-    tape_eval(line->tape, in, &out, s->values);
     s->work.values++;
+    if (line_is_wide(line))
+        out = tape_sum_value(line->sum, p, line->width.start + line->width.spread * t, s->values);
+    else
+        tape_eval(line->tape, in, &out, s->values);
     out -= line->level;
     return out == out ? out : HUGE_VAL;
 }
@@ -35,6 +39,10 @@ AffineForm line_bounds(LineSearch *s, double a, double b) {
                         line_place(line->origin.z, line->direction.z, middle, half)};
     AffineForm out = affine_unknown(true);
     s->work.bounds++;
+    if (line_is_wide(line)) {
+        AffineForm width = line_place(line->width.start, line->width.spread, middle, half);
+        return affine_SUB(tape_sum_form(line->sum, in, width, s->forms), affine_point(line->level));
+    }
     if (line->method != LINE_INTERVAL) tape_eval_affine(line->tape, in, &out, s->forms);
     /* What may be no number may be none at all, which counts as above: intervals know. */
     if (line->method == LINE_INTERVAL || out.nan) {
@@ -126,7 +134,7 @@ bool line_first_root(const Line *line, double from, double to, double *t, bool *
     AffineForm few_forms[FEW_SLOTS];
     Interval few_intervals[FEW_SLOTS];
     double few_values[FEW_SLOTS];
-    size_t slots = tape_scratch_size(line->tape);
+    size_t slots = size_max(tape_scratch_size(line->tape), line->sum ? line->sum->scratch_size : 0);
     LineSearch s = {line, few_forms, few_intervals, few_values, {0, 0}};
     bool more = slots > FEW_SLOTS, found = false;
     if (more) {

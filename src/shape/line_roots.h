@@ -18,6 +18,8 @@ typedef struct Line {
     Vec3 origin, direction;
     LineMethod method;
     const TapeSum *sum; /* of the tape, over a box that the line does not leave: bounds of many pieces at once, by LINE_AFFINE_OPTIMISED; or NULL */
+    /* With a sum that has levels of detail (tape_detail.h): the function is that of width.start + width.spread·t, in the tape's space. */
+    RayWidth width;
 } Line;
 
 typedef struct LineWork {

@@ -17,6 +17,7 @@ typedef struct SolidTag {
 typedef struct SolidSink SolidSink;
 struct SolidSink {
     double t_min, t_max;
+    RayWidth width; /* what is finer need not be met as it is */
     void (*take)(SolidSink *sink, double t, const SolidTag *tag);
 };
 

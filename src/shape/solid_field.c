@@ -5,7 +5,7 @@
 #include "shape/roots.h"
 #include "shape/solid.h"
 #include "shape/solid_field.h"
-#include "tape/tape_gradient.h"
+#include "tape/tape_detail.h"
 #include "tape/tape_interval.h"
 
 #include <stdlib.h>
@@ -15,7 +15,7 @@ enum { PART_SURFACE, PART_CONTAINER, MOST_STEPS = 200000, LEAST_STEPS = 32, MOST
 typedef struct Field {
     const Solid *solid;
     Line line; /* but for the ray */
-    bool bounded;
+    bool bounded, detailed; /* detailed: the line's sum has terms that are left out where they are fine */
     const Body *container; /* NULL: it is a sphere or box */
     Transform place;       /* of the container */
     Box3 bounds;
@@ -33,6 +33,7 @@ static void prepare_sum(Field *f, Arena *arena) {
     const Interval box[3] = {interval(low.x, high.x), interval(low.y, high.y), interval(low.z, high.z)};
     *sum = tape_sum_of(f->line.tape, box, arena);
     f->line.sum = sum;
+    f->detailed = !f->solid->as.isosurface.full_detail && tape_sum_measure(sum, box, arena);
 }
 
 static const void *prepare(const Object *object, Arena *arena) {
@@ -51,7 +52,8 @@ static const void *prepare(const Object *object, Arena *arena) {
     if (box3_is_empty(bounds) || !vec3_is_finite(bounds.min) || !vec3_is_finite(bounds.max)) return NULL;
     f->bounds = box3_transform(&f->place, bounds);
     f->bounded = tape_input_count(tape) == 3 && tape_output_count(tape) == 1 && tape_is_bounded(tape);
-    if (f->bounded && s->as.isosurface.method == ISOSURFACE_AUTO) prepare_sum(f, arena);
+    if (f->bounded && f->line.method == LINE_AFFINE_OPTIMISED) prepare_sum(f, arena);
+    if (s->as.isosurface.method == ISOSURFACE_OPTIMISED && !f->detailed) f->line.sum = NULL; /* one piece at a time, as the paper has it */
     return f;
 }
 
@@ -115,15 +117,30 @@ static void march(const Solid *s, const Ray *ray, double from, double to, SolidS
     }
 }
 
+static const RayWidth LINE_ALONE = {0, 0};
+
+/* In the lengths of the function's space. */
+static RayWidth width_of(const Field *f, const Ray *ray, RayWidth width) {
+    double length = vec3_length(ray->direction);
+    return f->detailed ? (RayWidth){width.start * length, width.spread * length} : LINE_ALONE;
+}
+
+/* The function as it is seen with a width: less its threshold, infinite for what is no number. */
+static double seen_value(const Field *f, Vec3 p, double width) {
+    double few[FEW_SLOTS];
+    if (!(width > 0) || f->line.sum->scratch_size > FEW_SLOTS) return solid_isosurface_value(f->solid, p);
+    return counted(f->solid, tape_sum_value(f->line.sum, p, width, few));
+}
+
 /* Every change of sign in turn. Behind one the search goes on where doubles can tell its place from it. */
 static void search(const Field *f, const Ray *ray, double from, double to, SolidSink *sink) {
     Line line = f->line;
-    line.origin = ray->origin, line.direction = ray->direction;
+    line.origin = ray->origin, line.direction = ray->direction, line.width = width_of(f, ray, sink->width);
     double t;
     bool falling;
     for (int k = 0; k < MOST_CHANGES && from < double_min(to, sink->t_max); k++) {
         if (!line_first_root(&line, from, double_min(to, sink->t_max), &t, &falling, NULL)) return;
-        solid_offer(sink, t, (SolidTag){PART_SURFACE, 0, 0});
+        solid_offer(sink, t, (SolidTag){PART_SURFACE, line.width.start + line.width.spread * t, 0});
         from = line_behind(&line, t);
     }
 }
@@ -165,10 +182,11 @@ static bool within(const Field *f, const Ends *ends, int k) {
 static void cross(const void *data, const Ray *ray, SolidSink *sink) {
     const Field *f = data;
     Ends ends;
+    RayWidth width = width_of(f, ray, sink->width);
     find_ends(f, ray, &ends);
     if (!f->solid->as.isosurface.open)
         for (int i = 0; i < ends.count; i++)
-            if (ends.t[i] > sink->t_min && ends.t[i] < sink->t_max && value_on(f->solid, ray, ends.t[i]) < 0)
+            if (ends.t[i] > sink->t_min && ends.t[i] < sink->t_max && seen_value(f, vec3_madd(ray->origin, ray->direction, ends.t[i]), width.start + width.spread * ends.t[i]) < 0)
                 solid_offer(sink, ends.t[i], ends.tags[i]);
     for (int i = 0; i + 1 < ends.count; i++) {
         double from = double_max(ends.t[i], sink->t_min), to = double_min(ends.t[i + 1], sink->t_max);
@@ -205,13 +223,13 @@ static Vec3 container_normal(const Field *f, Vec3 p, const SolidTag *tag) {
     return vec3_normalize(transform_normal(&f->place, out));
 }
 
-static Vec3 gradient(const Solid *s, Vec3 p) {
-    const Tape *tape = s->as.isosurface.function;
+static Vec3 gradient(const Field *f, Vec3 p, double width) {
+    const Tape *tape = f->solid->as.isosurface.function;
     Dual few[FEW_SLOTS];
-    size_t slots = tape_scratch_size(tape);
+    size_t slots = size_max(tape_scratch_size(tape), f->line.sum ? f->line.sum->scratch_size : 0);
     if (tape_input_count(tape) != 3 || tape_output_count(tape) != 1) return vec3(0, 0, 0);
     Dual *scratch = slots > FEW_SLOTS ? malloc(slots * sizeof *scratch) : few, out = {0};
-    if (scratch) out = tape_eval_gradient(tape, p, scratch);
+    if (scratch) out = width > 0 ? tape_sum_gradient(f->line.sum, p, width, scratch) : tape_eval_gradient(tape, p, scratch);
     if (scratch != few) free(scratch);
     return vec3(out.by[0], out.by[1], out.by[2]);
 }
@@ -219,7 +237,7 @@ static Vec3 gradient(const Solid *s, Vec3 p) {
 static Vec3 normal(const void *data, Vec3 p, const SolidTag *tag) {
     const Field *f = data;
     if (tag->part != PART_SURFACE) return container_normal(f, p, tag);
-    Vec3 exact = gradient(f->solid, p);
+    Vec3 exact = gradient(f, p, tag->u);
     if (vec3_is_finite(exact) && vec3_length_squared(exact) > 0) return vec3_normalize(exact);
     double h = 1e-6 * double_max(1, double_max(fabs(p.x), double_max(fabs(p.y), fabs(p.z))));
     Vec3 g = {difference(f->solid, p, vec3(1, 0, 0), h), difference(f->solid, p, vec3(0, 1, 0), h),

@@ -114,7 +114,7 @@ static bool inside(const void *data, Vec3 point) {
     const MeshSolid *solid = data;
     const Ray ray = {point, solid->mesh->inside_vector};
     if (vec3_length_squared(ray.direction) == 0) return false;
-    CountSink sink = {.base = {0, VTS_INFINITY, count_crossing}};
+    CountSink sink = {.base = {.t_max = VTS_INFINITY, .take = count_crossing}};
     cross(data, &ray, &sink.base);
     return sink.count & 1;
 }

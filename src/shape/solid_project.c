@@ -57,7 +57,7 @@ static void take_nearest(SolidSink *base, double t, const SolidTag *tag) {
 }
 
 bool solid_project(const ExactSurface *surface, Vec3 p, Vec3 direction, double reach, double *t, Vec3 *normal) {
-    NearestSink sink = {.base = {-reach, reach, take_nearest}, .t = VTS_INFINITY};
+    NearestSink sink = {.base = {.t_min = -reach, .t_max = reach, .take = take_nearest}, .t = VTS_INFINITY};
     const Ray ray = {p, direction};
     if (!surface->data || !surface->ops->cross || !(vec3_length_squared(direction) > 0) || !vec3_is_finite(p)) return false;
     if (is_asked_inside(surface->object)) {

@@ -183,21 +183,20 @@ static void add_spans(NodeCell cell, const Ball *b, int count, double *low, doub
     }
 }
 
+static const double LONGEST_BOX = 0.9; /* half of its diagonal */
+
 Interval interval_sparse_convolution(const Interval box[3], int count) {
-    enum { MOST_CELLS = 125 };
     count = int_clamp(count, 1, SPARSE_IMPULSES);
     Ball b = ball_around(box);
     double whole = SPARSE_MOST * sqrt(count), low = 0, high = 0;
-    if (!b.near) return (Interval){-whole, whole, b.nan};
+    /* Over larger boxes what each impulse may do adds up to more than all can. */
+    if (!b.near || !(b.radius < LONGEST_BOX)) return (Interval){-whole, whole, b.nan};
     NodeCell first = node_cell_of(vec3(box[0].low - 1, box[1].low - 1, box[2].low - 1)),
              last = node_cell_of(vec3(box[0].high + 1, box[1].high + 1, box[2].high + 1));
-    double cells =
-        (double)(last.x - first.x + 1) * (double)(last.y - first.y + 1) * (double)(last.z - first.z + 1);
-    if (!(cells <= MOST_CELLS)) return (Interval){-whole, whole, b.nan};
     for (int64_t i = first.x; i <= last.x; i++)
         for (int64_t j = first.y; j <= last.y; j++)
             for (int64_t k = first.z; k <= last.z; k++)
                 add_spans((NodeCell){i, j, k}, &b, count, &low, &high);
     double root = sqrt(count), slack = 0x1p-40 * root;
-    return (Interval){low / root - slack, high / root + slack, b.nan};
+    return (Interval){bound_max(low / root - slack, -whole), bound_min(high / root + slack, whole), b.nan};
 }

@@ -18,10 +18,13 @@ typedef struct TapeTerm {
     double scale;
     double low, high; /* of scale times the function, over the box; the widest come first */
     double rounding;  /* if it is a sum itself: the size of what it adds, over the box */
+    /* What stands for it where it is finer than the width of what looks (tape_detail.h): from one width on less of it, from the other
+     * on only its mean. Infinite: it stays. */
+    double mean, full, gone;
 } TapeTerm;
 
 typedef struct TapeSum {
-    const TapeTerm *terms;
+    TapeTerm *terms;
     size_t count, scratch_size; /* of the largest term */
     double constant;
     /* The terms from k on are within rest_half of rest_middle, their absolute values at most rest_size; [count] is 0. */
@@ -33,8 +36,8 @@ struct Interval;
 TapeSum tape_sum_of(const Tape *tape, const struct Interval *box, Arena *arena);
 
 /* Bounds of the sum less `level` in all lanes; terms that the answer to "may it be 0?" does not need count as their ranges. What is
- * unknown in a lane is so in the sum. The scratch has scratch_size lanes, the inputs first. Returns how many terms were evaluated. */
-size_t tape_sum_lanes(const TapeSum *sum, double level, AffineLanes *restrict out,
-                      AffineLanes *restrict scratch);
+ * unknown in a lane is so in the sum. `width`: of what looks, along the same pieces; NULL: 0. The scratch has scratch_size lanes, the inputs
+ * first. Returns how many terms were evaluated. */
+size_t tape_sum_lanes(const TapeSum *sum, double level, const AffineLanes *width, AffineLanes *restrict out, AffineLanes *restrict scratch);
 
 #endif

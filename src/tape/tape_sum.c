@@ -1,5 +1,6 @@
 /* Functions as sums: fractal surfaces are, and most of their terms matter only near the surface. */
 #include "tape/tape_builder.h"
+#include "tape/tape_detail.h"
 #include "tape/tape_interval.h"
 #include "tape/tape_lanes.h"
 
@@ -177,13 +178,13 @@ TapeSum tape_sum_of(const Tape *tape, const Interval *box, Arena *arena) {
     for (size_t k = 0; k < s.count && !s.failed; k++) {
         if (group[k] != k) continue;
         TapeTerm *term = &terms[count++];
-        *term = (TapeTerm){.rounding = rounding_of(&s, group, k, box, arena)};
+        *term = (TapeTerm){.rounding = rounding_of(&s, group, k, box, arena), .full = HUGE_VAL, .gone = HUGE_VAL};
         term->tape = tape_of(&s, group, k, &term->scale, arena);
         work += tape_work(term->tape);
     }
     /* Terms that have much in common are quicker together. */
     if (s.failed || !isfinite(s.constant) || work > 1.5 * tape_work(tape) + 8 * (double)count) {
-        terms[0] = (TapeTerm){.tape = tape, .scale = 1};
+        terms[0] = (TapeTerm){.tape = tape, .scale = 1, .full = HUGE_VAL, .gone = HUGE_VAL};
         count = 1, s.constant = 0;
     }
     s.count = count;
@@ -231,8 +232,39 @@ static bool all_decided(const Total *restrict total, double middle, double half)
     return open == 0;
 }
 
-size_t tape_sum_lanes(const TapeSum *sum, double level, AffineLanes *restrict out,
-                      AffineLanes *restrict scratch) {
+/* What looks, and the narrowest and the widest of it in all lanes. */
+typedef struct Look {
+    const AffineLanes *width;
+    double narrowest, widest;
+} Look;
+
+static Look look_of(const AffineLanes *width) {
+    Look look = {width, 0, 0};
+    for (int l = 0; l < AFFINE_LANES && width; l++) {
+        Interval range = affine_range(affine_lane(width, l));
+        look.narrowest = l ? bound_min(look.narrowest, range.low) : range.low;
+        look.widest = l ? bound_max(look.widest, range.high) : range.high;
+    }
+    return look;
+}
+
+/* What remains of a term, before its scale: mean + share·(term − mean). */
+static const AffineLanes *seen_term(const TapeTerm *term, const Look *look, AffineLanes *scratch, AffineLanes *filled) {
+    if (!(look->widest > term->full)) return tape_eval_lanes_again(term->tape, scratch, filled);
+    AffineForm mean = affine_point(term->mean / term->scale);
+    affine_fill_lanes(filled, mean.centre);
+    if (look->narrowest >= term->gone) return filled;
+    AffineLanes constant;
+    const AffineLanes *whole = tape_eval_lanes_again(term->tape, scratch, &constant);
+    AFFINE_EACH_LANE {
+        AffineForm part = affine_MUL(tape_term_share(term, affine_lane(look->width, l)), affine_SUB(affine_lane(whole, l), mean));
+        affine_set_lane(filled, l, affine_ADD(mean, part));
+    }
+    return filled;
+}
+
+size_t tape_sum_lanes(const TapeSum *sum, double level, const AffineLanes *width, AffineLanes *restrict out, AffineLanes *restrict scratch) {
+    const Look look = look_of(width);
     Total total;
     AffineLanes filled;
     double n = (double)sum->count + 2, constant = sum->constant - level,
@@ -243,9 +275,9 @@ size_t tape_sum_lanes(const TapeSum *sum, double level, AffineLanes *restrict ou
         return 0;
     }
     const TapeTerm *term = sum->terms, *end = term + sum->count;
-    begin(&total, tape_eval_lanes_again(term->tape, scratch, &filled), term->scale, constant, size + term->rounding);
+    begin(&total, seen_term(term, &look, scratch, &filled), term->scale, constant, size + term->rounding);
     for (term++; term < end && !all_decided(&total, sum->rest_middle[term - sum->terms], sum->rest_half[term - sum->terms]); term++)
-        add_scaled(&total, tape_eval_lanes_again(term->tape, scratch, &filled), term->scale, term->rounding);
+        add_scaled(&total, seen_term(term, &look, scratch, &filled), term->scale, term->rounding);
     size_t k = (size_t)(term - sum->terms);
     double middle = sum->rest_middle[k], half = sum->rest_half[k], rest = sum->rest_size[k];
     /* The tape adds in another order, with coefficients multiplied in another: a rounding of each partial sum and of each product,

@@ -37,7 +37,7 @@ static const Tape *rough_ball(Arena *arena, double radius, TapeOp noise) {
 enum { ONE, MANY };
 
 static Line line_of(Arena *arena, const Tape *tape, double level, Vec3 origin, Vec3 direction, LineMethod method, int lanes, double reach) {
-    Line line = {tape, level, origin, direction, method, NULL};
+    Line line = {.tape = tape, .level = level, .origin = origin, .direction = direction, .method = method};
     const Interval box[3] = {interval(-reach, reach), interval(-reach, reach), interval(-reach, reach)};
     TapeSum *sum = arena_new(arena, TapeSum);
     if (lanes == ONE) return line;

@@ -136,7 +136,7 @@ static void sums_hold_their_values(void **state) {
                 affine_set_lane(&scratch[k], (int)l, with_rounding(line));
             }
         AffineLanes in[3] = {scratch[0], scratch[1], scratch[2]};
-        early += tape_sum_lanes(&parts, level, &out, scratch) < parts.count;
+        early += tape_sum_lanes(&parts, level, NULL, &out, scratch) < parts.count;
         for (uint32_t l = 0; l < AFFINE_LANES; l++) {
             double s = 2 * unit(i, l) - 1, x[3], value;
             for (int k = 0; k < 3; k++) x[k] = in[k].centre[l] + in[k].slope[l] * s;

@@ -1,5 +1,5 @@
-/* gamito SCENE STDLIB [STEP]: tables 1 to 3 of Gamito & Maddock 2007: bounds a ray and time of their four methods for equation 17 with
- * three noises, seen 800 × 600 as in gamito.vts, of every STEP-th row and column (16); and of isosurface's own method on the same rays.
+/* gamito SCENE STDLIB [STEP [NOISE [METHODS]]]: tables 1 to 3 of Gamito & Maddock 2007: bounds a ray and time of their four methods for equation 17 with
+ * three noises (or one: 0 to 2; or some methods: sum of 1, 2, 4, 8, 16), seen 800 × 600 as in gamito.vts, of every STEP-th row and column (16); and of isosurface's own method on the same rays.
  * gamito check SPANS: whether bounds of random pieces hold the function's values. Exit status 1: those of a sound arithmetic do not.
  *
  * Sound: equations 7 and 13 with absolute values, and a piece that equation 16 made short is bounded again before it counts. "as printed":
@@ -16,7 +16,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 800, HEIGHT = 600, OCTAVES = 4, IMPULSES = 2, MOST_PERLIN = 216, MOST_CELLS = 216, MOST_STACK = 512 };
+enum {
+    WIDTH = 800,
+    HEIGHT = 600,
+    OCTAVES = 4,
+    IMPULSES = 2,
+    MOST_PERLIN = 216,
+    MOST_CELLS = 216,
+    MOST_STACK = 512
+};
 
 typedef enum GamitoNoise { PERLIN, SPARSE, WORLEY } GamitoNoise;
 
@@ -52,7 +60,8 @@ static double chord(Curve *curve, Range r, bool slopes) {
 }
 
 static Linear line_between(Curve *curve, Range r, double alpha, const double *places, int count) {
-    double a = curve(r.low) - alpha * r.low, b = curve(r.high) - alpha * r.high, least = fmin(a, b), most = fmax(a, b);
+    double a = curve(r.low) - alpha * r.low, b = curve(r.high) - alpha * r.high, least = fmin(a, b),
+           most = fmax(a, b);
     for (int k = 0; k < count; k++)
         if (places[k] > r.low && places[k] < r.high) {
             double rest = curve(places[k]) - alpha * places[k];
@@ -67,7 +76,8 @@ static double fade(double t) {
 }
 
 static Linear fade_line(Range r, bool slopes) {
-    double alpha = chord(fade, r, slopes), q = 1 - 4 * sqrt(fabs(alpha) / 30), s = sqrt(fmax(q, 0)), side = alpha > 0 ? -0.5 : 0.5;
+    double alpha = chord(fade, r, slopes), q = 1 - 4 * sqrt(fabs(alpha) / 30), s = sqrt(fmax(q, 0)),
+           side = alpha > 0 ? -0.5 : 0.5;
     return line_between(fade, r, alpha, (double[]){-1, 0, 1, side * (1 - s), side * (1 + s)}, 5);
 }
 
@@ -90,7 +100,9 @@ static Linear root_line(Range r, bool slopes) {
     return line_between(root, r, alpha, (double[]){alpha > 0 ? 1 / (4 * alpha * alpha) : 0}, 1);
 }
 
-static Linear absolute_line(Range r, bool slopes) { return line_between(fabs, r, chord(fabs, r, slopes), (double[]){0}, 1); }
+static Linear absolute_line(Range r, bool slopes) {
+    return line_between(fabs, r, chord(fabs, r, slopes), (double[]){0}, 1);
+}
 
 /* ---- lattices ---- */
 
@@ -111,14 +123,18 @@ static Nodes nodes_around(Range x, Range y, Range z, double before, double behin
 static void ia_begin(void) {}
 static Range ia_along(double a, double b) { return (Range){a, b}; }
 static Range ia_constant(double c) { return (Range){c, c}; }
-static Range ia_scale(Range a, double k) { return k < 0 ? (Range){a.high * k, a.low * k} : (Range){a.low * k, a.high * k}; }
+static Range ia_scale(Range a, double k) {
+    return k < 0 ? (Range){a.high * k, a.low * k} : (Range){a.low * k, a.high * k};
+}
 static Range ia_shift(Range a, double c) { return (Range){a.low + c, a.high + c}; }
 static Range ia_add(Range a, Range b) { return (Range){a.low + b.low, a.high + b.high}; }
 static Range ia_mul(Range a, Range b) {
     double p = a.low * b.low, q = a.low * b.high, r = a.high * b.low, s = a.high * b.high;
     return (Range){fmin(fmin(p, q), fmin(r, s)), fmax(fmax(p, q), fmax(r, s))};
 }
-static Range ia_line(Range a, Linear l) { return ia_add(ia_scale(a, l.alpha), (Range){l.beta - l.delta, l.beta + l.delta}); }
+static Range ia_line(Range a, Linear l) {
+    return ia_add(ia_scale(a, l.alpha), (Range){l.beta - l.delta, l.beta + l.delta});
+}
 static Range ia_range(Range a) { return a; }
 /* The lesser of two. */
 static Range ia_either(Range a, Range b) { return (Range){fmin(a.low, b.low), fmin(a.high, b.high)}; }
@@ -140,14 +156,20 @@ static Range ra_range(Bounds a) {
     double radius = fabs(a.slope) + fabs(a.error);
     return (Range){a.centre - radius, a.centre + radius};
 }
-static Bounds ra_line(Bounds a, Linear l) { return (Bounds){l.alpha * a.centre + l.beta, l.alpha * a.slope, fabs(l.alpha * a.error) + l.delta}; }
-static double ra_square(Bounds a, Bounds b) { return (fabs(a.slope) + fabs(a.error)) * (fabs(b.slope) + fabs(b.error)); }
+static Bounds ra_line(Bounds a, Linear l) {
+    return (Bounds){l.alpha * a.centre + l.beta, l.alpha * a.slope, fabs(l.alpha * a.error) + l.delta};
+}
+static double ra_square(Bounds a, Bounds b) {
+    return (fabs(a.slope) + fabs(a.error)) * (fabs(b.slope) + fabs(b.error));
+}
 
 static Bounds ra_either(Bounds a, Bounds b) { return (void)b, a; } /* not used: it has slopes */
 
 static void ra_begin(void) {}
 static Bounds ra_scale(Bounds a, double k) { return (Bounds){a.centre * k, a.slope * k, a.error * fabs(k)}; }
-static Bounds ra_add(Bounds a, Bounds b) { return (Bounds){a.centre + b.centre, a.slope + b.slope, a.error + b.error}; }
+static Bounds ra_add(Bounds a, Bounds b) {
+    return (Bounds){a.centre + b.centre, a.slope + b.slope, a.error + b.error};
+}
 static Bounds ra_mul(Bounds a, Bounds b) {
     return (Bounds){a.centre * b.centre, a.centre * b.slope + b.centre * a.slope,
                     fabs(a.centre * b.error) + fabs(b.centre * a.error) + ra_square(a, b)};
@@ -170,9 +192,12 @@ enum { ra_slopes = 1 };
 #define pr_either   ra_either
 #define pr_slopes   ra_slopes
 static Bounds pr_scale(Bounds a, double k) { return (Bounds){a.centre * k, a.slope * k, a.error * k}; }
-static Bounds pr_add(Bounds a, Bounds b) { return (Bounds){a.centre + b.centre, a.slope + b.slope, a.error + b.error}; }
+static Bounds pr_add(Bounds a, Bounds b) {
+    return (Bounds){a.centre + b.centre, a.slope + b.slope, a.error + b.error};
+}
 static Bounds pr_mul(Bounds a, Bounds b) {
-    return (Bounds){a.centre * b.centre, a.centre * b.slope + b.centre * a.slope, fabs(a.centre * b.error + b.centre * a.error) + ra_square(a, b)};
+    return (Bounds){a.centre * b.centre, a.centre * b.slope + b.centre * a.slope,
+                    fabs(a.centre * b.error + b.centre * a.error) + ra_square(a, b)};
 }
 static Bounds pr_bounds(Bounds a) { return (Bounds){a.centre, a.slope, fabs(a.error)}; }
 
@@ -236,7 +261,8 @@ static Standard aa_combine(Standard a, double x, Standard b, double y, double re
         bool left = j == b.count || (i < a.count && a.symbols[i].number <= b.symbols[j].number);
         bool right = i == a.count || (j < b.count && b.symbols[j].number <= a.symbols[i].number);
         uint32_t number = left ? a.symbols[i].number : b.symbols[j].number;
-        out.symbols[out.count++] = (Symbol){number, (left ? x * a.symbols[i].value : 0) + (right ? y * b.symbols[j].value : 0)};
+        out.symbols[out.count++] =
+            (Symbol){number, (left ? x * a.symbols[i].value : 0) + (right ? y * b.symbols[j].value : 0)};
         i += left, j += right;
     }
     if (rest > 0) out.symbols[out.count++] = (Symbol){pool.next++, rest};
@@ -258,7 +284,9 @@ static Standard aa_mul(Standard a, Standard b) {
     out.centre = a.centre * b.centre;
     return out;
 }
-static Standard aa_line(Standard a, Linear l) { return aa_shift(aa_combine(a, l.alpha, aa_constant(0), 0, l.delta), l.beta); }
+static Standard aa_line(Standard a, Linear l) {
+    return aa_shift(aa_combine(a, l.alpha, aa_constant(0), 0, l.delta), l.beta);
+}
 static Range aa_range(Standard a) {
     double radius = aa_radius(a);
     return (Range){a.centre - radius, a.centre + radius};
@@ -308,7 +336,8 @@ static void optimise(Piece *piece) {
     piece->a = fmax(piece->a, at - off), piece->b = fmin(piece->b, at + off);
 }
 
-static bool find(const Method *method, const GamitoRay *ray, GamitoNoise noise, double from, double to, double *t, uint64_t *count) {
+static bool find(const Method *method, const GamitoRay *ray, GamitoNoise noise, double from, double to,
+                 double *t, uint64_t *count) {
     Piece stack[MOST_STACK] = {{from, to, method->extension(ray, from, to, noise)}};
     int used = 1;
     ++*count;
@@ -326,7 +355,8 @@ static bool find(const Method *method, const GamitoRay *ray, GamitoNoise noise, 
             if (piece.b - piece.a < EPSILON) return *t = piece.a, true;
         }
         double middle = (piece.a + piece.b) / 2;
-        Piece halves[2] = {{middle, piece.b, method->extension(ray, middle, piece.b, noise)}, {piece.a, middle, method->extension(ray, piece.a, middle, noise)}};
+        Piece halves[2] = {{middle, piece.b, method->extension(ray, middle, piece.b, noise)},
+                           {piece.a, middle, method->extension(ray, piece.a, middle, noise)}};
         *count += 2;
         for (int k = 0; k < 2; k++)
             if (may_hold(halves[k].g)) stack[used++] = halves[k];
@@ -337,7 +367,8 @@ static bool find(const Method *method, const GamitoRay *ray, GamitoNoise noise, 
 /* ---- rays ---- */
 
 static bool ray_at(int x, int y, GamitoRay *ray, double *from, double *to) {
-    Vec3 o = vec3(0, -5, 0), d = vec3_normalize(vec3(((x + 0.5) / WIDTH - 0.5) * 0.88, 1, (0.5 - (y + 0.5) / HEIGHT) * 0.66));
+    Vec3 o = vec3(0, -5, 0),
+         d = vec3_normalize(vec3(((x + 0.5) / WIDTH - 0.5) * 0.88, 1, (0.5 - (y + 0.5) / HEIGHT) * 0.66));
     double b = vec3_dot(o, d), disc = b * b - (vec3_dot(o, o) - RADIUS * RADIUS);
     *ray = (GamitoRay){{o.x, o.y, o.z}, {d.x, d.y, d.z}};
     if (disc <= 0) return false;
@@ -351,7 +382,8 @@ typedef struct Sum {
 } Sum;
 
 static void print_sum(const char *name, const Sum *s, double printed, double seconds) {
-    printf("| %-24s | %7.2f | %10.0f | %8.1f s |", name, (double)s->bounds / s->rays, s->rays / s->seconds, s->seconds / s->rays * WIDTH * HEIGHT);
+    printf("| %-24s | %7.2f | %10.0f | %8.1f s |", name, (double)s->bounds / s->rays, s->rays / s->seconds,
+           s->seconds / s->rays * WIDTH * HEIGHT);
     printf(printed > 0 ? " %6.2f | %8.1f s |" : "        |            |", printed, seconds);
     printf(" %5.0f | %5.0f |\n", s->hits, s->differ);
     fflush(stdout);
@@ -375,7 +407,8 @@ static Sum own(const Tape *tape, int step, double *distances) {
             size_t at = (size_t)s.rays++;
             distances[at] = -1;
             if (!ray_at(x, y, &ray, &from, &to)) continue;
-            line.origin = vec3(ray.from[0], ray.from[1], ray.from[2]), line.direction = vec3(ray.way[0], ray.way[1], ray.way[2]);
+            line.origin = vec3(ray.from[0], ray.from[1], ray.from[2]),
+            line.direction = vec3(ray.way[0], ray.way[1], ray.way[2]);
             if (line_first_root(&line, from, to, &t, &falling, &work)) s.hits++, distances[at] = t;
             s.bounds += work.bounds;
         }
@@ -401,12 +434,16 @@ static Sum theirs(const Method *method, GamitoNoise noise, int step, const doubl
 
 static const char *const noises[] = {"perlin", "sparse_convolution, K = 2", "worley, F1"};
 
-static void tables(const Scene *scene, int step) {
+static void tables(const Scene *scene, int step, int noise, int which) {
     double *distances = malloc(sizeof *distances * WIDTH * HEIGHT);
     for (int n = 0; n < 3 && distances; n++) {
-        printf("\n%s\n| method | bounds a ray | rays/s | 800 x 600 | paper: bounds | paper: time | hits | differ |\n", noises[n]);
+        if (noise >= 0 && n != noise) continue;
+        printf("\n%s\n| method | bounds a ray | rays/s | 800 x 600 | paper: bounds | paper: time | hits | "
+               "differ |\n",
+               noises[n]);
         Sum ours = own(scene->objects[n]->as.solid->as.isosurface.function, step, distances);
         for (int m = 0; m < METHODS; m++) {
+            if (!(which >> m & 1)) continue;
             Sum s = theirs(&methods[m], (GamitoNoise)n, step, distances);
             print_sum(methods[m].name, &s, methods[m].printed[n], methods[m].seconds[n]);
         }
@@ -420,11 +457,14 @@ static void tables(const Scene *scene, int step) {
 static double unit(uint64_t i, uint32_t k) { return random_unit(random_hash(0x67616D69, i, k, 0)); }
 
 static double value(const GamitoRay *ray, double t, GamitoNoise noise) {
-    Vec3 p = vec3(ray->from[0] + t * ray->way[0], ray->from[1] + t * ray->way[1], ray->from[2] + t * ray->way[2]);
+    Vec3 p =
+        vec3(ray->from[0] + t * ray->way[0], ray->from[1] + t * ray->way[1], ray->from[2] + t * ray->way[2]);
     double sum = vec3_length(p) - 1;
     for (int k = 0; k < OCTAVES; k++) {
         Vec3 at = vec3_scale(p, ldexp(4, k));
-        double n = noise == PERLIN ? noise_perlin(at) : noise == SPARSE ? noise_sparse_convolution(at, IMPULSES) : noise_worley(at, 0);
+        double n = noise == PERLIN   ? noise_perlin(at)
+                   : noise == SPARSE ? noise_sparse_convolution(at, IMPULSES)
+                                     : noise_worley(at, 0);
         sum += 0.6 * pow(2, -0.8 * k) * n;
     }
     return sum;
@@ -454,28 +494,38 @@ static int check(uint64_t spans) {
     for (int n = 0; n < 3; n++)
         for (int m = 0; m < METHODS; m++) {
             if (methods[m].verified) continue; /* the same arithmetic as the one before */
-            uint64_t count = methods[m].extension == aa_equation_17 ? spans / 50 : spans, missed = misses(&methods[m], (GamitoNoise)n, count);
+            uint64_t count = methods[m].extension == aa_equation_17 ? spans / 50 : spans,
+                     missed = misses(&methods[m], (GamitoNoise)n, count);
             bool printed = methods[m].extension == pr_equation_17;
-            printf("%-26s %-24s %llu of %llu pieces not held\n", noises[n], methods[m].name, (unsigned long long)missed, (unsigned long long)count);
+            printf("%-26s %-24s %llu of %llu pieces not held\n", noises[n], methods[m].name,
+                   (unsigned long long)missed, (unsigned long long)count);
             fflush(stdout);
             sound &= printed || !missed;
         }
     return sound ? 0 : 1;
 }
 
-static const Scene *load(const char *path, const char *stdlib, Arena arenas[3], DiagList *diags, SourceSet *sources, Interner *names) {
+static const Scene *load(const char *path, const char *stdlib, Arena arenas[3], DiagList *diags,
+                         SourceSet *sources, Interner *names) {
     for (int k = 0; k < 3; k++) arena_init(&arenas[k], NULL, 0);
     EvalGeometry geometry = hooks_geometry(&arenas[0], NULL);
-    EvalOptions options = {.stdlib_dir = stdlib, .image_width = WIDTH, .image_height = HEIGHT, .limits = eval_limits_default(), .geometry = &geometry};
+    EvalOptions options = {.stdlib_dir = stdlib,
+                           .image_width = WIDTH,
+                           .image_height = HEIGHT,
+                           .limits = eval_limits_default(),
+                           .geometry = &geometry};
     const Scene *scene = NULL;
     source_set_init(sources, &arenas[0]);
     diag_init(diags, &arenas[0], sources);
     interner_init(names, &arenas[0]);
-    return eval_file(path, &options, sources, diags, names, &arenas[1], &arenas[2], &scene) == EVAL_OK ? scene : NULL;
+    return eval_file(path, &options, sources, diags, names, &arenas[1], &arenas[2], &scene) == EVAL_OK ? scene
+                                                                                                       : NULL;
 }
 
 int main(int argc, char **argv) {
-    if (argc < 3) return fprintf(stderr, "usage: gamito SCENE STDLIB [STEP] | gamito check SPANS\n"), 2;
+    if (argc < 3)
+        return fprintf(stderr, "usage: gamito SCENE STDLIB [STEP [NOISE [METHODS]]] | gamito check SPANS\n"),
+               2;
     if (strcmp(argv[1], "check") == 0) return check(strtoull(argv[2], NULL, 10));
     Arena arenas[3];
     DiagList diags;
@@ -483,7 +533,8 @@ int main(int argc, char **argv) {
     Interner names;
     const Scene *scene = load(argv[1], argv[2], arenas, &diags, &sources, &names);
     int step = argc > 3 ? atoi(argv[3]) : 16;
-    if (!scene || scene->object_count < 3 || step < 1) return fprintf(stderr, "gamito: no three isosurfaces in %s\n", argv[1]), 1;
-    tables(scene, step);
+    if (!scene || scene->object_count < 3 || step < 1)
+        return fprintf(stderr, "gamito: no three isosurfaces in %s\n", argv[1]), 1;
+    tables(scene, step, argc > 4 ? atoi(argv[4]) : -1, argc > 5 ? atoi(argv[5]) : 31);
     return 0;
 }

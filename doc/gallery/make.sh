@@ -26,7 +26,7 @@ size_of() {
     tree) echo 400x320 ;;
     still_life) echo 400x300 ;;
     contents | deformed | forest | kinds | jitter | larches | superimposed) echo 640x360 ;;
-    cloud | orchard) echo 480x300 ;;
+    cloud | glade | orchard) echo 480x300 ;;
     *) echo 480x360 ;;
   esac
 }

@@ -41,6 +41,7 @@ static double piece_of(double length, const double extinction[3], const double s
     double half = length * (5 * extinction[0] + 8 * extinction[1] - extinction[2]) / 24;
     *depth = whole;
     if (source[0] == 0 && source[1] == 0 && source[2] == 0) return 0;
+    if (extinction[0] == 0 && extinction[1] == 0 && extinction[2] == 0) return length * (source[0] + 4 * source[1] + source[2]) / 6;
     if (whole < -60) whole = -60; /* what amplifies light has limits */
     if (whole >= 0) half = double_clamp(half, 0, whole);
     double middle = source[1] * exp(double_clamp(whole / 2 - half, -60, 60));
@@ -53,6 +54,7 @@ static double piece_of(double length, const double extinction[3], const double s
 typedef struct Place {
     double t;
     Vec3 extinction, source;
+    double amount;          /* of a lamp's light, what is turned into the ray for each unit of length */
     bool known;             /* light was asked for */
     Vec3 lamps[KEPT_LAMPS]; /* that arrives */
 } Place;
@@ -102,7 +104,9 @@ static void shine_on(Way *way, const Vec3 *densities, bool between, Place *place
         if (between && k < KEPT_LAMPS) arrives = place->lamps[k];
         else if (ray.color.x != 0 || ray.color.y != 0 || ray.color.z != 0) arrives = lamp_at(way, light, &ray, point);
         if (k < KEPT_LAMPS) place->lamps[k] = arrives;
-        if (most_of(arrives) > 0) place->source = vec3_add(place->source, vec3_mul(turned(way, densities, ray.direction), arrives));
+        Vec3 part = turned(way, densities, ray.direction);
+        place->amount = double_max(place->amount, most_of(part));
+        place->source = vec3_add(place->source, vec3_mul(part, arrives));
     }
 }
 
@@ -110,6 +114,7 @@ static void see_place(Way *way, double t, bool between, Place *place) {
     Vec3 densities[MEDIA_MOST_SITES];
     bool any = false;
     place->t = t;
+    place->amount = 0;
     place->extinction = place->source = vec3(0, 0, 0);
     way->places_left--;
     for (int i = 0; i < way->matter->count; i++) {
@@ -125,9 +130,17 @@ static void see_place(Way *way, double t, bool between, Place *place) {
 
 /* ---- pieces ---- */
 
+static bool is_grey(Vec3 v) { return v.x == v.y && v.x == v.z; }
+static bool place_is_grey(const Place *p) { return is_grey(p->extinction) && is_grey(p->source); }
+
 static Vec3 integrate(const Place *a, const Place *m, const Place *b, Vec3 *depth) {
     double out[3], d[3];
+    bool grey = place_is_grey(a) && place_is_grey(m) && place_is_grey(b);
     for (int c = 0; c < 3; c++) {
+        if (c && grey) {
+            out[c] = out[0], d[c] = d[0];
+            continue;
+        }
         const double extinction[3] = {vec3_get(a->extinction, c), vec3_get(m->extinction, c), vec3_get(b->extinction, c)};
         const double source[3] = {vec3_get(a->source, c), vec3_get(m->source, c), vec3_get(b->source, c)};
         out[c] = piece_of(b->t - a->t, extinction, source, &d[c]);
@@ -137,6 +150,8 @@ static Vec3 integrate(const Place *a, const Place *m, const Place *b, Vec3 *dept
 }
 
 static Vec3 passing(Vec3 depth) {
+    if (depth.x == 0 && depth.y == 0 && depth.z == 0) return vec3(1, 1, 1);
+    if (is_grey(depth)) return vec3_splat(exp(-double_max(depth.x, -60)));
     return vec3(exp(-double_max(depth.x, -60)), exp(-double_max(depth.y, -60)), exp(-double_max(depth.z, -60)));
 }
 
@@ -181,7 +196,8 @@ static void go(Way *way, const Place *a, const Place *m, const Place *b, bool sm
     if (!smooth && a->known && m->known && b->known && left.known && right.known) {
         Place guess0, guess1;
         between_lamps(a, m, b, true, &guess0), between_lamps(a, m, b, false, &guess1);
-        double enough = 0.02;
+        double amount = double_max(m->amount, double_max(left.amount, right.amount));
+        double enough = way->tolerance / double_max(worth * amount * (b->t - a->t), 1e-12);
         smooth = lamps_agree(&guess0, &left, enough) && lamps_agree(&guess1, &right, enough);
     }
     go(way, a, &left, m, smooth, halvings + 1);
@@ -227,12 +243,15 @@ static void stop_for_light(const Light *light, const Ray *ray, double *extra, in
 }
 
 static int find_extra(const Way *way, double t0, double t1, double *extra) {
-    enum { PIECES = 6, POWERS = 18 };
+    enum { LEAST_PIECES = 4, MOST_PIECES = 48, PLACES = 5, POWERS = 18 };
     const Scene *scene = way->tracer->compiled->scene;
     int count = 0;
     for (size_t i = 0; i < scene->light_count && way->scatters; i++)
         if (shines_on_media(&scene->lights[i])) stop_for_light(&scene->lights[i], &way->ray, extra, &count);
-    for (int i = 1; i < PIECES && way->lit && t1 < FAR; i++) add_extra(extra, &count, t0 + (t1 - t0) * i / PIECES);
+    double samples = 0;
+    for (int i = 0; i < way->matter->count; i++) samples = double_max(samples, way->matter->sites[i].medium->samples);
+    int pieces = (int)double_clamp(samples / PLACES, way->lit ? LEAST_PIECES : 1, MOST_PIECES);
+    for (int i = 1; i < pieces && t1 < FAR; i++) add_extra(extra, &count, t0 + (t1 - t0) * i / pieces);
     double power = 1e-3;
     for (int i = 0; i < POWERS && t1 >= FAR; i++, power *= 6) add_extra(extra, &count, power);
     return count;

@@ -128,7 +128,6 @@ void media_matter_add(MediaMatter *matter, const MediaList *media, const Affine 
             clip_to_pattern(&m->densities[k], &site);
             site.stride = double_min(site.stride, density_stride(&m->densities[k], &site.ray));
         }
-        if (m->samples > 0) site.stride = double_min(site.stride, (site.t1 - site.t0) * 4 / m->samples);
         if (site.t0 < site.t1) matter->sites[matter->count++] = site;
     }
 }

@@ -217,9 +217,10 @@ static void check_frame(Reader *reader, const Camera *c) {
 }
 
 static bool on_value(Reader *reader, const Argument *value, void *target) {
+    (void)reader;
     CameraDraft *draft = target;
     if (value->value.kind != VALUE_NORMAL) return take_transform(value, &draft->transform);
-    inert_add(reader->context, &draft->camera.inert, "normal", value->span);
+    draft->camera.normal = value->value.as.normal;
     return true;
 }
 

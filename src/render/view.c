@@ -2,6 +2,8 @@
  * lens's), and cones around them. */
 #include "render/view.h"
 
+#include "pattern/bump.h"
+
 /* A line of sight; `direction` of any length. */
 typedef struct Line {
     Vec3 origin, direction;
@@ -69,8 +71,16 @@ static Line cylinder_line(const Camera *c, const Frame *f, double s, double t) {
     return (Line){vec3_madd(c->location, axis, length), round};
 }
 
-/* Through the middle of the lens; false where the picture shows nothing. */
-static bool line_at(const Camera *c, double s, double t, Line *out) {
+/* As a normal of the picture's plane would be: measured. */
+static void bend(const Normal *normal, double s, double t, Vec3 *direction) {
+    const Spot spot = spot_make(vec3(s, t, 0), vec3(0, 0, 0), 0);
+    const BumpPlace place = {.spot = &spot};
+    Vec3 bent = bump_normal(normal, &place, vec3_normalize(*direction));
+    if (vec3_is_finite(bent) && vec3_length_squared(bent) > 0) *direction = bent;
+}
+
+/* Without the camera's normal. */
+static bool straight_line_at(const Camera *c, double s, double t, Line *out) {
     Frame f = frame_of(c);
     *out = (Line){.origin = c->location};
     switch (c->kind) {
@@ -90,6 +100,13 @@ static bool line_at(const Camera *c, double s, double t, Line *out) {
     }
     out->direction = vec3_madd(vec3_madd(c->direction, c->right, s), c->up, t);
     return true;
+}
+
+/* Through the middle of the lens; false where the picture shows nothing. */
+static bool line_at(const Camera *c, double s, double t, Line *out) {
+    bool shown = straight_line_at(c, s, t, out);
+    if (shown && c->normal) bend(c->normal, s, t, &out->direction);
+    return shown;
 }
 
 void view_prepare(View *view) {
@@ -167,7 +184,7 @@ bool view_ray(const View *view, double x, double y, double u, double v, double w
 
 bool view_misses(const View *view, Box3 box) {
     const Camera *c = &view->camera;
-    if (c->kind != CAMERA_PERSPECTIVE) return false;
+    if (c->kind != CAMERA_PERSPECTIVE || c->normal) return false;
     Vec3 r = vec3_scale(c->right, 0.5), u = vec3_scale(c->up, 0.5);
     Vec3 corner[4] = {vec3_sub(vec3_sub(c->direction, r), u), vec3_sub(vec3_add(c->direction, r), u),
                       vec3_add(vec3_add(c->direction, r), u), vec3_add(vec3_sub(c->direction, r), u)};

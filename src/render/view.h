@@ -29,6 +29,7 @@ bool view_ray(const View *view, double x, double y, double u, double v, double w
 static inline bool view_has_lens(const View *view) { return view->camera.aperture > 0 && view->camera.focal_distance > 0; }
 /* Whether the picture is a plane seen from a point or along one direction. */
 static inline bool view_is_flat(const View *view) {
+    if (view->camera.normal) return false;
     return view->camera.kind == CAMERA_PERSPECTIVE || view->camera.kind == CAMERA_ORTHOGRAPHIC;
 }
 /* Whether the box certainly is out of a perspective picture. */

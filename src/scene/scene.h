@@ -616,6 +616,7 @@ typedef struct Camera {
     double aperture;              /* of the lens: four times its radius; 0: a point */
     double focal_distance;        /* 0: none */
     int least_blur_samples, most_blur_samples; /* 0: not given */
+    const Normal *normal;         /* bends lines of sight, at the image position <s, t, 0>; or NULL */
     double confidence, variance;  /* when blur is smooth enough; 0: not given */
     const InertNote *inert;
 } Camera;

@@ -501,6 +501,7 @@ static void print_camera(Printer *p, const Camera *c) {
     add_vector(p, "up", c->up);
     if (c->kind > CAMERA_ORTHOGRAPHIC) add_number(p, "angle", c->angle);
     if (c->kind == CAMERA_SPHERICAL) add_number(p, "angle_v", c->angle_v);
+    if (c->normal) strbuf_adds(p->out, " normal");
     if (c->aperture > 0) strbuf_addf(p->out, " aperture %g focus %g", c->aperture, c->focal_distance);
     end_line(p);
 }

@@ -2,6 +2,7 @@
 #include "shape/roots.h"
 #include "shape/solid.h"
 #include "shape/solid_parts.h"
+#include "shape/tessellate.h"
 
 #include <stdlib.h>
 
@@ -82,16 +83,52 @@ static int by_value(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
+enum { FEW_PLACES = 24 };
+
+static void sort_places(double *places, size_t count) {
+    if (count > FEW_PLACES) {
+        qsort(places, count, sizeof *places, by_value);
+        return;
+    }
+    for (size_t i = 1; i < count; i++) {
+        double place = places[i];
+        size_t at = i;
+        for (; at > 0 && places[at - 1] > place; at--) places[at] = places[at - 1];
+        places[at] = place;
+    }
+}
+
 static Box3 part_bounds(const BlobPart *part) {
     Vec3 r = vec3_splat(fabs(part->radius));
     Box3 box = {vec3_sub(vec3_min(part->base, part->cap), r), vec3_add(vec3_max(part->base, part->cap), r)};
     return box3_transform(&part->transform, box);
 }
 
+/* A ball of the blob's space that a part does not reach out of. */
+typedef struct PartBall {
+    Vec3 center;
+    double square; /* of its radius */
+} PartBall;
+
 typedef struct Blob {
     const Solid *solid;
     Box3 reach; /* of all parts */
+    const PartBall *balls;
 } Blob;
+
+static PartBall part_ball(const BlobPart *part) {
+    Vec3 middle = vec3_lerp(part->base, part->cap, 0.5);
+    double radius = vec3_length(vec3_sub(part->cap, middle)) + fabs(part->radius);
+    radius *= (1 + 1e-9) * tessellate_stretch(&part->transform.linear);
+    return (PartBall){transform_point(&part->transform, middle), radius * radius};
+}
+
+/* `d` is of unit length. */
+static bool line_misses(const PartBall *ball, Vec3 o, Vec3 d) {
+    Vec3 to = vec3_sub(ball->center, o);
+    double along = vec3_dot(to, d);
+    return vec3_length_squared(vec3_madd(to, d, -along)) > ball->square;
+}
 
 /* Parts of negative strength only take away. */
 static Box3 bounds(const void *data) {
@@ -105,7 +142,7 @@ static Box3 bounds(const void *data) {
 
 static void solve(const StageList *list, double threshold, double *places, size_t count, double shift,
                   double length, SolidSink *sink) {
-    qsort(places, count, sizeof *places, by_value);
+    sort_places(places, count);
     for (size_t i = 0; i + 1 < count; i++) {
         double sum[5] = {-threshold}, t[4], middle = (places[i] + places[i + 1]) / 2;
         bool any = false;
@@ -124,7 +161,12 @@ static const void *prepare(const Object *object, Arena *arena) {
     Blob *blob = arena_new(arena, Blob);
     const Solid *s = blob->solid = object->as.solid;
     blob->reach = box3_empty();
-    for (size_t i = 0; i < s->as.blob.count; i++) blob->reach = box3_union(blob->reach, part_bounds(&s->as.blob.parts[i]));
+    PartBall *balls = arena_new_array(arena, PartBall, s->as.blob.count);
+    for (size_t i = 0; i < s->as.blob.count; i++) {
+        blob->reach = box3_union(blob->reach, part_bounds(&s->as.blob.parts[i]));
+        balls[i] = part_ball(&s->as.blob.parts[i]);
+    }
+    blob->balls = balls;
     return blob;
 }
 
@@ -142,7 +184,7 @@ static void cross(const void *data, const Ray *ray, SolidSink *sink) {
     double few_places[2 * FEW_STAGES];
     StageList list = {few, 0, FEW_STAGES};
     for (size_t i = 0; i < s->as.blob.count; i++)
-        add_part(&scratch, &list, &s->as.blob.parts[i], o, d, reach);
+        if (!line_misses(&blob->balls[i], o, d)) add_part(&scratch, &list, &s->as.blob.parts[i], o, d, reach);
     double *places = list.count <= FEW_STAGES ? few_places : arena_new_array(&scratch, double, 2 * list.count);
     for (size_t i = 0; i < list.count; i++)
         places[2 * i] = list.items[i].begin, places[2 * i + 1] = list.items[i].end;
@@ -158,11 +200,13 @@ static Vec3 offset_from(const BlobPart *part, Vec3 p) {
     return vec3_sub(p, vec3_madd(part->base, axis, z));
 }
 
-static double density_at(const Solid *s, Vec3 p, Vec3 *downhill) {
+static double density_at(const Blob *blob, Vec3 p, Vec3 *downhill) {
+    const Solid *s = blob->solid;
     double sum = 0;
     *downhill = vec3_splat(0);
     for (size_t i = 0; i < s->as.blob.count; i++) {
         const BlobPart *part = &s->as.blob.parts[i];
+        if (vec3_length_squared(vec3_sub(p, blob->balls[i].center)) > blob->balls[i].square) continue;
         Vec3 off = offset_from(part, transform_point_back(&part->transform, p));
         double r2 = part->radius * part->radius, rest = 1 - vec3_length_squared(off) / r2;
         if (!(rest > 0)) continue;
@@ -202,14 +246,14 @@ size_t solid_blob_shares(const Solid *s, Vec3 p, BlobShare *out, size_t most) {
 static Vec3 normal(const void *data, Vec3 p, const SolidTag *tag) {
     Vec3 n;
     (void)tag;
-    density_at(((const Blob *)data)->solid, p, &n);
+    density_at(data, p, &n);
     return vec3_normalize(n);
 }
 
 static bool inside(const void *data, Vec3 p) {
     Vec3 n;
-    const Solid *s = ((const Blob *)data)->solid;
-    return density_at(s, p, &n) > s->as.blob.threshold;
+    const Blob *blob = data;
+    return density_at(blob, p, &n) > blob->solid->as.blob.threshold;
 }
 
 const SolidOps solid_blob_ops = {

@@ -420,7 +420,7 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
     if (status == VTS_OK) status = session_spare_sources(session, output_path);
     if (status != VTS_OK) return status;
     double parsed = stopwatch_wall();
-    if ((status = session_compile(session, exact, 0)) != VTS_OK) return status;
+    if ((status = session_compile_frame(session, scene_path, exact)) != VTS_OK) return status;
     double built = stopwatch_wall();
     RenderStats stats;
     session_keep_tiles(session, output_path, exact);

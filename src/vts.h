@@ -57,6 +57,7 @@ typedef struct VtsOptions {
     double clock_delta;              /* from one frame to the next; default 1 */
     double time;                     /* in seconds, what winds run by, if time_set; else it is the clock */
     bool time_set;
+    double fps;                      /* by which `time` follows from the frame, counted from the first one; default 0: it does not */
     double shutter_clock, shutter_time; /* how far clock and time go while the picture is exposed; default 0: not at all */
     double cycle;                    /* seconds after which a film begins again; default 0: it does not */
     unsigned long long seed;         /* for sampling */

@@ -42,6 +42,11 @@ struct VtsSession {
     Image picture;
     Image blurred, between; /* the mean over moments so far, and the sum over those between them */
     PilotResult pilot;
+    struct FilmPilot {
+        bool told;            /* by this frame */
+        int frame;
+        PilotResult result;   /* not known where nothing of it was needed */
+    } film_pilot;
     struct ClothStates *cloths; /* followed so far; NULL: none */
     TileFile *kept; /* what is done of the picture that is being drawn; or NULL */
     double started_wall, started_cpu;
@@ -73,6 +78,11 @@ VtsStatus session_draw(VtsSession *session, bool exact, const MomentPlan *plan, 
 /* vts_shutter.c: the same over the time that the picture is exposed. Leaves scene and compiled scene of some moment of it. */
 VtsStatus session_expose(VtsSession *session, const char *scene_path, bool exact, RenderStats *stats);
 struct Preview *session_connect_preview(VtsSession *session);
+/* vts_film.c: session_compile() of what is evaluated, with trial pixels told by one frame of each second for all of it. */
+VtsStatus session_compile_frame(VtsSession *session, const char *scene_path, bool exact);
+/* vts_shutter.c: evaluates once more, silently, and compiles. */
+VtsStatus session_repeat(VtsSession *session, const char *scene_path, bool exact);
+
 /* vts_cloth.c: states of cloths, kept in memory as long as each frame asks for them, and in the session's cache folder. */
 EvalClothStates session_cloth_states(VtsSession *session);
 /* Before a frame: lets go what the last one did not ask for; all of it. */

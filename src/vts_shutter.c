@@ -34,20 +34,26 @@ static int intervals_of_reference(int samples) {
 
 /* ---- moments ---- */
 
-/* Leaves the scene as it is at this moment, silently. */
-static VtsStatus go_to(Exposure *e, double moment) {
-    VtsSession *session = e->session;
-    if (session->moment == moment) return VTS_OK;
+VtsStatus session_repeat(VtsSession *session, const char *scene_path, bool exact) {
+    bool silent = session->silent;
     compiled_scene_destroy(&session->compiled);
     arena_destroy(&session->compiled_arena);
     arena_destroy(&session->scene_arena);
     arena_init(&session->parse, &session->memory, 0);
     arena_init(&session->scene_arena, &session->memory, 0);
     arena_init(&session->compiled_arena, &session->memory, 0);
-    session->moment = moment;
     session->silent = true;
-    VtsStatus status = session_evaluate(session, e->scene_path, (EvalMode){.writes_in_memory = true});
-    return status == VTS_OK ? session_compile(session, e->exact, 0) : status;
+    VtsStatus status = session_evaluate(session, scene_path, (EvalMode){.writes_in_memory = true});
+    if (status == VTS_OK) status = session_compile(session, exact, 0);
+    session->silent = silent;
+    return status;
+}
+
+/* Leaves the scene as it is at this moment. */
+static VtsStatus go_to(Exposure *e, double moment) {
+    if (e->session->moment == moment) return VTS_OK;
+    e->session->moment = moment;
+    return session_repeat(e->session, e->scene_path, e->exact);
 }
 
 /* session->picture is then what is seen at that moment, one of `count` new ones. */

@@ -26,8 +26,16 @@ size_of() {
     tree) echo 400x320 ;;
     still_life) echo 400x300 ;;
     contents | deformed | forest | kinds | jitter | larches | superimposed) echo 640x360 ;;
+    pinwheels) echo 560x350 ;;
     cloud | glade | orchard) echo 480x300 ;;
     *) echo 480x360 ;;
+  esac
+}
+
+# Of films one moment.
+clock_of() {
+  case $1 in
+    pinwheels) echo '--clock 0.1667' ;;
   esac
 }
 
@@ -37,7 +45,7 @@ program=${1:-$(find_program)}
 for scene in "$root"/examples/*.vts "$gallery"/*.vts; do
   name=$(basename "$scene" .vts)
   picture=$gallery/$name.jpg
-  "$program" render "$scene" --size "$(size_of "$name")" --output "$picture" --progress none
+  "$program" render "$scene" --size "$(size_of "$name")" --output "$picture" --progress none $(clock_of "$name")
   bytes=$(wc -c <"$picture")
   [ "$bytes" -lt 200000 ] || { echo "make.sh: $name.jpg has $bytes bytes; a picture of the gallery has less than 200000" >&2; exit 1; }
   echo "$name.jpg $bytes bytes"

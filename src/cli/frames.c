@@ -132,7 +132,10 @@ VtsStatus film_join(VtsSession *session, Settings *settings, const char *scene, 
     if (!a->on && a->asked.count)
         return (VtsStatus)complain_usage(settings, "--frames: '%s' has no animation { … } that says how many there are", scene);
     a->first_only = use == FILM_FIRST && !a->frames_given && !a->asked.count && a->subset_first <= 0 && a->subset_last <= 0;
-    if (film.exists && picture) leave_film(settings);
+    if (film.exists && picture) {
+        leave_film(settings);
+        vts_set_frame(session, &settings->options);
+    }
     return check_asked(settings);
 }
 
@@ -186,6 +189,7 @@ static void set_options(Settings *settings, int frame) {
     o->clock = a->first_clock + passed * o->clock_delta;
     o->clock_set = o->clock_set || film;
     o->time_set = a->timed;
+    o->fps = a->timed ? a->fps : 0;
     o->time = a->timed ? passed / a->fps : 0;
     o->cycle = cycle_of(a);
     open_shutter(settings);

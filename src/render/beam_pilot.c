@@ -88,10 +88,11 @@ static double noise_of(const Block *blocks, int count) {
 }
 
 static PilotResult draw_trials(CompiledScene *compiled) {
-    PilotResult result = {true, 1, -1};
+    PilotResult result = {.known = true, .factor = 1, .voxel_error = -1};
     Block *blocks = arena_new_array(&compiled->scratch, Block, BLOCKS);
     int count = choose_blocks(compiled, blocks);
     if (count < LEAST_BLOCKS) return result;
+    compiled->trials = count;
     for (int way = 0; way < 3; way++) draw_blocks(compiled, way < 2, way < 2 ? EXACT_SAMPLES : VOXEL_SAMPLES, way, blocks, count);
     double error = fmax(error_of_voxels(blocks, count), LEAST_ERROR * compiled->max_error), noise = noise_of(blocks, count);
     double least_noise = noise * pow((double)EXACT_SAMPLES / compiled->most_samples, NOISE_POWER);
@@ -103,14 +104,52 @@ static PilotResult draw_trials(CompiledScene *compiled) {
     return result;
 }
 
+/* ---- scenes that hardly differ ---- */
+
+/* What was told holds while planned distances, light and its direction stay so near, relative to what they were. */
+static const double SAME_DISTANCE = 1.25, SAME_LIGHT = 0.25;
+
+static void describe(const CompiledScene *compiled, PilotResult *out) {
+    const Scene *scene = compiled->scene;
+    Vec3 middle = vec3_scale(vec3_add(compiled->exact_bounds.min, compiled->exact_bounds.max), 0.5);
+    out->planned = compiled->all_exact_to;
+    out->bright = 0, out->lamps = vec3(0, 0, 0);
+    for (size_t i = 0; i < scene->light_count; i++) {
+        const Light *light = &scene->lights[i];
+        double bright = fabs(light->color.red) + fabs(light->color.green) + fabs(light->color.blue);
+        Vec3 to = light->parallel ? light->to_light : vec3_sub(light->location, middle);
+        double length = vec3_length(to);
+        out->bright += bright;
+        if (length > 0 && isfinite(length)) out->lamps = vec3_add(out->lamps, vec3_scale(to, bright / length));
+    }
+}
+
+static bool are_alike(const PilotResult *a, const PilotResult *b) {
+    return a->planned < SAME_DISTANCE * b->planned && b->planned < SAME_DISTANCE * a->planned &&
+           fabs(a->bright - b->bright) <= SAME_LIGHT * b->bright && vec3_length(vec3_sub(a->lamps, b->lamps)) <= SAME_LIGHT * b->bright;
+}
+
+static PilotResult tell(CompiledScene *compiled) {
+    ArenaMark mark = arena_mark(&compiled->scratch);
+    PilotResult result = draw_trials(compiled);
+    arena_reset_to(&compiled->scratch, mark);
+    return result;
+}
+
 void beam_pilot(CompiledScene *compiled) {
     compiled->voxel_error = -1;
     if (!(compiled->all_exact_to > 0) || isinf(compiled->all_exact_to)) return;
-    PilotResult *kept = compiled->options->pilot, result = kept ? *kept : (PilotResult){.known = false};
-    ArenaMark mark = arena_mark(&compiled->scratch);
-    if (!result.known) result = draw_trials(compiled);
-    if (kept) *kept = result;
+    PilotResult *kept = compiled->options->pilot, here = {.known = false};
+    if (kept && kept->elsewhere && !kept->known) {
+        kept->asked = true;
+        return;
+    }
+    describe(compiled, &here);
+    PilotResult result = kept && kept->known && are_alike(&here, kept) ? *kept : tell(compiled);
+    if (kept && !kept->known) {
+        *kept = here;
+        kept->known = true, kept->factor = result.factor, kept->voxel_error = result.voxel_error;
+    }
     beam_reach_set(compiled, result.factor);
     compiled->voxel_error = result.voxel_error;
-    arena_reset_to(&compiled->scratch, mark);
 }

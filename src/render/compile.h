@@ -16,6 +16,11 @@
 typedef struct PilotResult {
     bool known;
     double factor, voxel_error; /* of the planned distances; of CompiledScene */
+    double planned;             /* what they were told at: the least of these distances, and */
+    Vec3 lamps;                 /* the lamps' sum, by brightness and direction (those at a place: towards it from the middle of what is exact), and */
+    double bright;              /* the sum of their brightness */
+    bool elsewhere; /* they are to be told by another scene: nothing is drawn for it, and */
+    bool asked;     /* if the scene needs them, this becomes true */
 } PilotResult;
 
 typedef struct CompileOptions {
@@ -64,6 +69,7 @@ typedef struct CompiledScene {
     int most_samples;     /* a pixel, to keep it */
     int samples;          /* a pixel, of the first pass of what is drawn by beams */
     int split;            /* cones per pixel side where explicit edges cross the pixel */
+    int trials;           /* blocks of trial pixels drawn for this picture */
     double build_seconds;
     Box3 exact_bounds;    /* of the skins that beams draw, those of `rigid` not counted */
     double all_exact_to;  /* the least exact_to of all skins, 0 of those that are voxels alone */

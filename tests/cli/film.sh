@@ -216,6 +216,29 @@ S
   cmp -s b35.ppm c35.ppm || fail "blurred, a frame alone is another"
 }
 
+# A picture at a clock is exposed as the frame that has it.
+case_shutter() {
+  film 'shutter 0.5'
+  run film.vts -s 32x24 -o a.ppm -f 2-3; want_status 0; want_said '> 2 0.333 > 3 0.667 '
+  run film.vts -s 32x24 -o b.ppm --clock 1/3; [ "$status" = 0 ] || run film.vts -s 32x24 -o b.ppm --clock 0.333333333333333; want_status 0
+  run compare a2.ppm b.ppm; grep -q 'rmse 0$\|rmse [0-9.]*e-\|rmse 0.000' out || fail "frame 2 is another picture by its clock: $(cat out)"
+  run film.vts -s 32x24 -o c.ppm -f 2 --shutter 0; cmp -s a2.ppm c2.ppm && fail "nothing is blurred"
+  run film.vts -s 32x24 -o d.ppm -f 2 --shutter 0.5; cmp -s a2.ppm d2.ppm || fail "the same shutter is another picture"
+  refused render film.vts --shutter 1.5; refused render film.vts --shutter=-1; refused render film.vts --shutter nan
+}
+
+# Trial pixels are drawn for the first of 24 frames, and each of them is the same picture with others or alone.
+case_trials() {
+  sed '/^#include/d' "${BASH_SOURCE%/*}/../../examples/jitter.vts" >turf.vts
+  run turf.vts -s 64x48 +KFF30 -f 1-2 -o a.ppm --max-error 0.02 --report -; want_status 0
+  [ "$(grep -o '"trials":[0-9]*' out | tr '\n' ' ' | sed 's/"trials":[1-9][0-9]* /yes /; s/"trials":0/no/')" = 'yes no ' ] ||
+    fail "trial pixels: $(grep -o '"trials":[0-9]*' out)"
+  run turf.vts -s 64x48 +KFF30 -f 26,2 -o b.ppm --max-error 0.02; want_status 0
+  cmp -s a02.ppm b02.ppm || fail "frame 2 is another picture after frame 26"
+  run turf.vts -s 64x48 +KFF30 -f 2 -o c.ppm --max-error 0.02; want_status 0
+  cmp -s a02.ppm c02.ppm || fail "frame 2 is another picture alone"
+}
+
 # A stand-in for ffmpeg: keeps what it is called with, and makes of its input the file that its last argument names.
 encoder() {
   mkdir -p bin

@@ -27,7 +27,7 @@ size_of() {
     still_life) echo 400x300 ;;
     contents | deformed | forest | kinds | jitter | larches | superimposed) echo 640x360 ;;
     pinwheels) echo 560x350 ;;
-    cloud | glade | orchard) echo 480x300 ;;
+    cloud | glade | orchard | planet) echo 480x300 ;;
     *) echo 480x360 ;;
   esac
 }

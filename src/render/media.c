@@ -5,7 +5,7 @@
 #include "volume/phase.h"
 
 /* Light comes from so many lamps whose share is carried from place to place; that of others is asked for everywhere. */
-enum { KEPT_LAMPS = 8, MOST_HALVINGS = 18, MOST_PLACES = 6000 };
+enum { KEPT_LAMPS = 8, MOST_HALVINGS = 18, MOST_PLACES = 1500, MOST_SHADOW_PLACES = 300 };
 /* Of the error that a picture may have, what one piece may add; and of a reference. */
 static const double SHARE = 0.25, EXACT_SHARE = 0.02;
 /* What is behind so much is not seen. */
@@ -354,7 +354,7 @@ static bool is_even(const MediaMatter *matter) {
 }
 
 static Vec3f what_passes(const CompiledScene *compiled, const MediaMatter *matter) {
-    Passing p = {.matter = matter, .tolerance = compiled->max_error * (compiled->exact_paths ? EXACT_SHARE : SHARE), .places_left = MOST_PLACES};
+    Passing p = {.matter = matter, .tolerance = compiled->max_error * (compiled->exact_paths ? EXACT_SHARE : SHARE), .places_left = MOST_SHADOW_PLACES};
     double stops[MEDIA_MOST_STOPS];
     if (!matter->count) return vec3f(1, 1, 1);
     if (is_even(matter)) return to_floats(passing(vec3_scale(media_extinction(matter, matter->t0), matter->t1 - matter->t0)));

@@ -6,6 +6,7 @@
 #include "render/preview.h"
 #include "render/reference.h"
 #include "render/report.h"
+#include "render/volume_memo.h"
 #include "scene/knobs.h"
 
 #include <errno.h>
@@ -131,6 +132,7 @@ void vts_session_destroy(VtsSession *session) {
     if (!session) return;
     end_call(session);
     session_trim_cloths(session, true);
+    volume_memo_destroy(session->volume_memo);
     texel_cache_destroy(session->texels);
     pool_destroy(session->pool);
     arena_destroy(&session->arena);
@@ -308,7 +310,7 @@ VtsStatus session_compile(VtsSession *session, bool exact, int texel_resolution)
     CompileOptions options = {.pool = session->pool, .memory = &session->memory, .texels = session->texels, .progress = &session->progress,
                               .width = session->options.width, .height = session->options.height,
                               .texel_resolution = texel_resolution,
-                              .interrupted = &session->interrupted, .exact = exact, .pilot = &session->pilot, .film = session_is_film(&session->options)};
+                              .interrupted = &session->interrupted, .exact = exact, .pilot = &session->pilot, .volume_memo = session->volume_memo, .film = session_is_film(&session->options)};
     CompileStatus result = compile_scene(session->scene, &options, &session->compiled_arena, &session->diags, &session->compiled);
     session_print_diagnostics(session);
     return result == COMPILE_OK ? VTS_OK : result == COMPILE_INTERRUPTED ? VTS_INTERRUPTED : VTS_ERROR_SCENE;

@@ -2,6 +2,7 @@
 #include "vts_session.h"
 
 #include "image/film_file.h"
+#include "render/volume_memo.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -125,4 +126,5 @@ void vts_set_frame(VtsSession *session, const VtsOptions *frame) {
     o->fps = frame->fps, o->time = frame->time, o->time_set = frame->time_set, o->cycle = frame->cycle;
     o->shutter_clock = frame->shutter_clock, o->shutter_time = frame->shutter_time;
     session->in_film = session->renew = true;
+    if (!session->volume_memo) session->volume_memo = volume_memo_create();
 }

@@ -41,6 +41,7 @@ struct VtsSession {
     CompiledScene compiled;
     Image picture;
     Image blurred, between; /* the mean over moments so far, and the sum over those between them */
+    struct VolumeMemo *volume_memo; /* of films */
     PilotResult pilot;
     struct FilmPilot {
         bool told;            /* by this frame */

@@ -4,7 +4,8 @@
 #include "render/beam_rigid.h"
 #include "render/exact_skin.h"
 #include "render/terrain_view.h"
-#include "render/volume_light.h"
+#include "render/volume_memo.h"
+#include "render/volume_set.h"
 
 #include <string.h>
 
@@ -199,7 +200,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     CompileStatus status = build_texels(options, detail, diags, out);
     if (status != COMPILE_OK) return status;
     out->skin_tree = tree_over_skins(out);
-    if (out->volumes && !options->exact && !volumes_light(out)) return COMPILE_INTERRUPTED;
+    if (out->volumes && !options->exact && !volumes_light_kept(out)) return COMPILE_INTERRUPTED;
     beam_pilot(out);
     if (options->exact && out->skin_count) out->exact = exact_skins_build(out->skins, out->skin_count, hierarchy_device(out->hierarchy));
     if (options->exact && out->skin_count && !out->exact) memory_budget_fail(options->memory);

@@ -32,6 +32,7 @@ typedef struct CompileOptions {
     int texel_resolution; /* to build texels at, as far as they allow it; 0: what the view can see */
     const atomic_bool *interrupted;
     bool exact; /* for the reference: texels and skins keep their geometry, no voxels are built */
+    struct VolumeMemo *volume_memo; /* NULL: nothing is kept of volumes */
     PilotResult *pilot; /* is used if it is known, else becomes known; NULL: trial pixels are drawn, and forgotten */
     bool film;  /* one of several pictures in a row: skins are drawn so much better that what changes between two is right to max_error */
 } CompileOptions;
@@ -69,6 +70,7 @@ typedef struct CompiledScene {
     int most_samples;     /* a pixel, to keep it */
     int samples;          /* a pixel, of the first pass of what is drawn by beams */
     int split;            /* cones per pixel side where explicit edges cross the pixel */
+    bool volume_light_kept; /* from the frame before */
     int trials;           /* blocks of trial pixels drawn for this picture */
     double build_seconds;
     Box3 exact_bounds;    /* of the skins that beams draw, those of `rigid` not counted */

@@ -227,6 +227,22 @@ case_shutter() {
   refused render film.vts --shutter 1.5; refused render film.vts --shutter=-1; refused render film.vts --shutter nan
 }
 
+# Where the camera alone moves, the light in clouds is kept; where a lamp moves it is not; and frames are the same either way.
+case_cloud() {
+  cat >cloud.vts <<S
+animation { frames 3 }
+camera { location <clock, 1, -6> look_at 0 }
+light_source { <5, 10, -5 + Lamp*clock> rgb 2 }
+background { rgb <0.3, 0.5, 0.8> }
+volume { density { function { max(0, 1 - x*x - y*y - z*z) } } box { -1, 1 } scattering rgb 4 rays 20000 }
+S
+  run cloud.vts -D Lamp=0 -s 32x24 -o a.ppm --max-error 0.05 --report -; want_status 0
+  [ "$(grep -o '"volume_light_kept":[a-z]*' out | sed 's/.*://' | tr '\n' ' ')" = 'false true true ' ] || fail "light of clouds: $(cat out)"
+  run cloud.vts -D Lamp=0 -s 32x24 -o b.ppm --max-error 0.05 -f 2; cmp -s a2.ppm b2.ppm || fail "frame 2 is another picture alone"
+  run cloud.vts -D Lamp=3 -s 32x24 -o c.ppm --max-error 0.05 --report -
+  grep -q '"volume_light_kept":true' out && fail "kept although a lamp moves"
+}
+
 # Trial pixels are drawn for the first of 24 frames, and each of them is the same picture with others or alone.
 case_trials() {
   sed '/^#include/d' "${BASH_SOURCE%/*}/../../examples/jitter.vts" >turf.vts

@@ -4,6 +4,7 @@ find_package(Threads REQUIRED)
 find_package(embree 3 REQUIRED)
 pkg_check_modules(CMOCKA IMPORTED_TARGET cmocka)
 pkg_check_modules(FREETYPE REQUIRED IMPORTED_TARGET freetype2)
+pkg_check_modules(ZLIB REQUIRED IMPORTED_TARGET zlib) # which FreeType needs, too
 pkg_check_modules(ASSIMP REQUIRED IMPORTED_TARGET assimp)
 
 # GeographicLib: newer packages bring a config file, Debian 12 only a .pc file.

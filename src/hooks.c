@@ -8,6 +8,7 @@
 #include "terrain/drape.h"
 #include "terrain/ground.h"
 #include "volume/grid_file.h"
+#include "volume/nanovdb.h"
 
 #include <string.h>
 
@@ -127,6 +128,7 @@ static bool picture_made(void *context, Arena *arena, int columns, int rows, con
 static bool density_grid(void *context, Arena *arena, const char *path, const EvalDensityRequest *request, DensityGrid *out, StrBuf *error) {
     (void)context;
     if (request->fractal) return grid_fractal(request->size, request->dimension, request->threshold, request->seed, request->interrupted, arena, out);
+    if (request->nanovdb) return nanovdb_load(path, request->grid, arena, out, error);
     GridRaw raw = {.sample = request->bytes == 1 ? GRID_UINT8 : request->bytes == 2 ? GRID_UINT16 : GRID_FLOAT, .big = request->big};
     memcpy(raw.size, request->size, sizeof raw.size);
     return grid_load(path, request->raw ? &raw : NULL, arena, out, error);

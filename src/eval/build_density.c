@@ -8,8 +8,9 @@ typedef struct DensityDraft {
     DensityField field;
     Span source; /* the word that says where the numbers come from; begin = end: none yet */
     EvalDensityRequest raw;
-    const char *raw_name;
-    Span raw_span;
+    const char *name; /* of a file that is read at the end of the block */
+    Span name_span;
+    Span grid_span;
 } DensityDraft;
 
 static bool begin_source(Reader *reader, DensityDraft *draft, Span span) {
@@ -21,10 +22,14 @@ static bool begin_source(Reader *reader, DensityDraft *draft, Span span) {
     return true;
 }
 
+/* What says where it lies is not laid into the block's bounds. */
 static void use_grid(DensityDraft *draft, const DensityGrid *grid) {
     draft->pattern.pigment.kind = PATTERN_DENSITY;
     draft->pattern.pigment.density = grid;
-    draft->field.in_bounds = true;
+    draft->field.in_bounds = !grid->placed;
+    if (!grid->placed) return;
+    Transform place = transform_of(&grid->place);
+    draft->pattern.pigment.transform = transform_then(&place, &draft->pattern.pigment.transform);
 }
 
 static void read_df3(Reader *reader, const Word *word, void *target) {
@@ -40,10 +45,10 @@ static void read_df3(Reader *reader, const Word *word, void *target) {
 static void read_raw(Reader *reader, const Word *word, void *target) {
     DensityDraft *draft = target;
     Vec3 size;
-    if (!begin_source(reader, draft, word->span) || !word_arguments(reader, word, 2, 2) || !word_string(reader, word, 0, &draft->raw_name) ||
+    if (!begin_source(reader, draft, word->span) || !word_arguments(reader, word, 2, 2) || !word_string(reader, word, 0, &draft->name) ||
         !word_vector(reader, word, 1, &size))
         return;
-    draft->raw_span = word->arguments[0].span;
+    draft->name_span = word->arguments[0].span;
     draft->raw.raw = true;
     for (int k = 0; k < 3; k++) {
         double side = vec3_get(size, k);
@@ -65,10 +70,16 @@ static void read_kind(Reader *reader, const Word *word, void *target) {
     }
 }
 
-static void read_unmodelled(Reader *reader, const Word *word, void *target) {
+static void read_nanovdb(Reader *reader, const Word *word, void *target) {
     DensityDraft *draft = target;
-    begin_source(reader, draft, word->span);
-    draft->field.unmodelled = word->text;
+    if (!begin_source(reader, draft, word->span) || !word_arguments(reader, word, 1, 1) || !word_string(reader, word, 0, &draft->name)) return;
+    draft->name_span = word->arguments[0].span;
+    draft->raw.nanovdb = true;
+}
+
+static void read_grid_name(Reader *reader, const Word *word, void *target) {
+    DensityDraft *draft = target;
+    if (word_arguments(reader, word, 1, 1) && word_string(reader, word, 0, &draft->raw.grid)) draft->grid_span = word->span;
 }
 
 /* ---- fractal { … } ---- */
@@ -134,8 +145,8 @@ static const WordRule rules[] = {
     {"float", WORD_CUSTOM, 0, read_kind, false},
     {"little", WORD_CUSTOM, 0, read_kind, false},
     {"big", WORD_CUSTOM, 0, read_kind, false},
-    {"nanovdb", WORD_CUSTOM, 0, read_unmodelled, false},
-    {"grid", WORD_IGNORED, 0, NULL, false},
+    {"nanovdb", WORD_CUSTOM, 0, read_nanovdb, false},
+    {"grid", WORD_CUSTOM, 0, read_grid_name, true},
     {"fractal", WORD_CUSTOM, 0, read_fractal, false},
     {"threshold", WORD_CUSTOM, 0, read_threshold, true},
     {"extinction", WORD_POSITIVE, offsetof(DensityDraft, field.extinction), NULL, true},
@@ -179,8 +190,9 @@ const DensityField *density_read(Reader *parent, const EvalBlock *block) {
     reader.value_target = draft;
     reader_run(&reader);
     if (!reader.failed && !has_source(draft)) reader_error(&reader, block->word_span, "this density has no numbers: it needs a file, a function or a pattern");
-    if (!reader.failed && draft->raw_name) {
-        const DensityGrid *grid = density_grid_load(context, draft->raw_name, draft->raw_span, &draft->raw);
+    if (!reader.failed && draft->raw.grid && !draft->raw.nanovdb) reader_error(&reader, draft->grid_span, "'grid' names a grid of a 'nanovdb' file");
+    if (!reader.failed && draft->name) {
+        const DensityGrid *grid = density_grid_load(context, draft->name, draft->name_span, &draft->raw);
         reader.failed |= !grid;
         if (grid) use_grid(draft, grid);
     }

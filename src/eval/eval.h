@@ -26,7 +26,8 @@ typedef struct EvalMeshRequest {
 
 /* A grid of densities: a file (df3, or `raw` as the rest says), or a fractal. */
 typedef struct EvalDensityRequest {
-    bool raw, fractal;
+    bool raw, fractal, nanovdb;
+    const char *grid; /* of a NanoVDB file; NULL: the first */
     const atomic_bool *interrupted; /* polled; may be NULL */
     int size[3];
     int bytes; /* of a number: 1, 2, 4 (a float) */

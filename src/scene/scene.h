@@ -97,6 +97,8 @@ typedef struct DensityGrid {
     Hash128 hash;
     int size[3];
     const float *values;
+    bool placed;  /* the file says where it lies: */
+    Affine place; /* the unit cube → there */
     size_t bad; /* 1 + the index of the first number of the file that is negative or none, and counts as 0; 0: there is no such */
 } DensityGrid;
 

@@ -111,11 +111,16 @@ static bool skip_block(LatticeWalk *w) {
     }
     if (axis < 0) return false;
     int wall = w->cell[axis] / BLOCK * BLOCK + (w->step[axis] > 0 ? BLOCK : -1);
+    int before[3] = {w->cell[0], w->cell[1], w->cell[2]};
+    before[axis] = int_clamp(wall, 0, w->lattice->size[axis]);
     w->t = double_max(w->t, out);
     settle(w);
-    w->cell[axis] = int_clamp(wall, 0, w->lattice->size[axis]); /* whatever rounding says */
-    double o = vec3_get(w->ray.origin, axis), d = vec3_get(w->ray.direction, axis);
-    w->next[axis] = (w->cell[axis] + (d > 0) - o) / d;
+    for (int k = 0; k < 3; k++) { /* never back, whatever rounding says: where two walls meet the ray would go to and fro between empty blocks */
+        if (k != axis && (w->step[k] > 0 ? w->cell[k] >= before[k] : w->cell[k] <= before[k])) continue;
+        double o = vec3_get(w->ray.origin, k), d = vec3_get(w->ray.direction, k);
+        w->cell[k] = before[k];
+        w->next[k] = d != 0 ? (w->cell[k] + (d > 0) - o) / d : VTS_INFINITY;
+    }
     return wall == w->cell[axis];
 }
 

@@ -136,8 +136,6 @@ static const Case warnings[] = {
     {"sphere { 0, 1 texture { pigment { image_map { \"a.png\" } } } }",
      "1:35: 'image_map' is not modelled yet: it has no effect", NULL},
     {"lsystem { axiom \"A\" }", "1:1: this L-system draws nothing: its word has no F and no symbol with an object", NULL},
-    {"object { texel { layer { density { nanovdb \"a.nvdb\" } } } }",
-     "1:26: 'nanovdb' is not modelled yet: it has no effect", NULL},
     {"fog { rgb 1 }", "1:1: this fog has no distance greater than 0: it has no effect", NULL},
     {"global_settings { radiosity { count 3 } }",
      "1:19: 'radiosity' is not modelled yet: it has no effect", NULL},

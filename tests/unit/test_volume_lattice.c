@@ -2,6 +2,8 @@
 #include "base/random.h"
 #include "volume/lattice.h"
 
+#include <unistd.h>
+
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -126,9 +128,30 @@ static void inversion_is_exact(void **state) {
     }
 }
 
+/* Where walls of two empty blocks meet, rounding says either that the ray is in the one or in the other: it must not go to and fro for ever. */
+static void rays_through_edges_of_empty_blocks_end(void **state) {
+    (void)state;
+    Lattice l = make(40, 40, 40, 0.0005, 11);
+    RandomStream random = {6};
+    alarm(60); /* by which it would be found */
+    for (int i = 0; i < 200000; i++) {
+        Vec3 way = vec3(random_next_unit(&random) - 0.5, random_next_unit(&random) - 0.5, random_next_unit(&random) - 0.5);
+        double far = 100 * random_next_unit(&random), t0 = 0, t1 = 200;
+        Vec3 edge = vec3(4 * floor(10 * random_next_unit(&random)), 4 * floor(10 * random_next_unit(&random)), 40 * random_next_unit(&random));
+        Ray ray = {vec3_madd(edge, way, -far), way};
+        LatticeWalk walk;
+        LatticePiece piece;
+        if (!box3_clip_ray((Box3){vec3_splat(0.5), vec3_splat(40.5)}, &ray, &t0, &t1)) continue;
+        double last = t0;
+        lattice_walk_begin(&walk, &l, &ray, t0, t1);
+        for (; lattice_walk_next(&walk, &piece); last = piece.t1) assert_true(piece.t0 >= last && piece.t1 <= t1);
+    }
+    alarm(0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(integrals_are_exact), cmocka_unit_test(one_cell_is_even), cmocka_unit_test(empty_has_no_pieces),
-                                       cmocka_unit_test(inversion_is_exact)};
+                                       cmocka_unit_test(inversion_is_exact), cmocka_unit_test(rays_through_edges_of_empty_blocks_end)};
     arena_init(&arena, NULL, 0);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     arena_destroy(&arena);

@@ -22,12 +22,12 @@ static bool begin_source(Reader *reader, DensityDraft *draft, Span span) {
     return true;
 }
 
-/* What says where it lies is not laid into the block's bounds. */
+/* NULL: it was refused. What says where it lies is not laid into the block's bounds. */
 static void use_grid(DensityDraft *draft, const DensityGrid *grid) {
     draft->pattern.pigment.kind = PATTERN_DENSITY;
     draft->pattern.pigment.density = grid;
-    draft->field.in_bounds = !grid->placed;
-    if (!grid->placed) return;
+    draft->field.in_bounds = !(grid && grid->placed);
+    if (draft->field.in_bounds) return;
     Transform place = transform_of(&grid->place);
     draft->pattern.pigment.transform = transform_then(&place, &draft->pattern.pigment.transform);
 }

@@ -93,6 +93,7 @@ typedef struct BuildContext {
     bool has_terrain;     /* a terrain was made: it decided whether the scene's earth is round */
     int wave_count;      /* number_of_waves of global_settings; 0: not given */
     bool names_missing;  /* an include was not found: what it declares is missing, without a word */
+    double time, cycle;  /* of the frame in seconds, and after how many a film begins again; 0: it does not */
     void *eval;          /* for the evaluator itself */
 } BuildContext;
 

@@ -1,14 +1,21 @@
 #include "eval/build_parts.h"
 #include "scene/scene_bounds.h"
 
+#include <math.h>
 #include <string.h>
+
+typedef struct LayerList {
+    TexelLayer *items;
+    size_t count, capacity;
+} LayerList;
 
 typedef struct TexelDraft {
     TexelDef texel;
-    struct {
-        TexelLayer *items;
-        size_t count, capacity;
-    } layers;
+    LayerList layers;
+    LayerList *phases; /* texel.phase_count of them, */
+    int phases_read;   /* so many of which are read */
+    double period;     /* in seconds; 0: not given */
+    Span period_span;
     struct {
         const TexelDef **items;
         size_t count, capacity;
@@ -181,17 +188,6 @@ static void read_choose(Reader *reader, const Word *word, void *target) {
         reader_error(reader, word->span, "'choose' needs texels to choose from");
 }
 
-static void read_phases(Reader *reader, const Word *word, void *target) {
-    inert_add(reader->context, &((TexelDraft *)target)->texel.inert, "phases", word->span);
-}
-
-static const WordRule rules[] = {
-    {"bounds", WORD_CUSTOM, 0, read_bounds, true}, {"resolution", WORD_CUSTOM, 0, read_resolution, true},
-    {"cyclic", WORD_CUSTOM, 0, read_cyclic, true}, {"layer", WORD_CUSTOM, 0, read_layer, false},
-    {"choose", WORD_CUSTOM, 0, read_choose, true}, {"phases", WORD_CUSTOM, 0, read_phases, true},
-    {"period", WORD_IGNORED, 0, NULL, true},
-};
-
 static bool on_value(Reader *reader, const Argument *value, void *target) {
     (void)target;
     if (value->value.kind == VALUE_STRING) {
@@ -204,15 +200,83 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
     return true;
 }
 
+/* ---- phases N { layer {…} … } ---- */
+
+/* One of them, as the evaluator has them: N, and its number from 0. Its layers take the place of the texel's. */
+static void read_phases(Reader *reader, const Word *word, void *target) {
+    static const WordRule phase_rules[] = {{"layer", WORD_CUSTOM, 0, read_layer, false}};
+    TexelDraft *draft = target;
+    double count, number;
+    if (!word->body) {
+        reader_error(reader, word->span, "'%s' needs its block { … }", word->text);
+        return;
+    }
+    if (!word_arguments(reader, word, 2, 2) || !word_float(reader, word, 0, &count) || !word_float(reader, word, 1, &number)) return;
+    if (number == 0 && draft->phases) {
+        reader_error(reader, word->span, "'%s' stands twice in '%s'", word->text, "texel");
+        return;
+    }
+    if (!draft->phases) {
+        draft->texel.phase_count = (int)count;
+        draft->phases = arena_new_array(reader->context->arena, LayerList, (size_t)count);
+    }
+    LayerList outside = draft->layers;
+    draft->layers = (LayerList){0};
+    Reader body = reader_nested(reader, word->body);
+    reader_add_table(&body, phase_rules, VTS_ARRAY_COUNT(phase_rules), draft);
+    body.on_value = on_value;
+    body.value_target = draft;
+    reader_run(&body);
+    if (reader_end_nested(reader, &body) && draft->phases_read < draft->texel.phase_count) draft->phases[draft->phases_read++] = draft->layers;
+    draft->layers = outside;
+}
+
+static void read_period(Reader *reader, const Word *word, void *target) {
+    TexelDraft *draft = target;
+    if (!word_arguments(reader, word, 1, 1) || !word_float(reader, word, 0, &draft->period)) return;
+    draft->period_span = word->arguments[0].span;
+    if (!(draft->period > 0 && isfinite(draft->period))) reader_error(reader, draft->period_span, "'period' must be above 0, found %g", draft->period);
+}
+
+/* A film that goes round wants whole periods. */
+static double period_of(Reader *reader, const TexelDraft *draft) {
+    double cycle = reader->context->cycle, period = draft->period;
+    if (period == 0) return cycle > 0 ? cycle : 1;
+    if (!(cycle > 0)) return period;
+    double periods = fmax(floor(cycle / period + 0.5), 1);
+    if (fabs(cycle / periods - period) > 1e-9 * period)
+        diag_warning(reader->context->diags, draft->period_span, "the film goes round in %g seconds, which are no whole periods of %g: 'period' is taken as %g", cycle,
+                       period, cycle / periods);
+    return cycle / periods;
+}
+
+/* The layers of the phase that is played at the frame's time. A frame that should begin a phase does so, whatever rounding says. */
+static void choose_phase(Reader *reader, TexelDraft *draft) {
+    TexelDef *texel = &draft->texel;
+    double turns = reader->context->time / period_of(reader, draft), share = turns - floor(turns);
+    if (!(share >= 0 && share < 1)) share = 0; /* times that are no numbers, or too large to have a share */
+    texel->phase = (int)floor(share * texel->phase_count + 1e-6) % texel->phase_count;
+    draft->layers = draft->phases[texel->phase];
+}
+
+static const WordRule rules[] = {
+    {"bounds", WORD_CUSTOM, 0, read_bounds, true}, {"resolution", WORD_CUSTOM, 0, read_resolution, true},
+    {"cyclic", WORD_CUSTOM, 0, read_cyclic, true}, {"layer", WORD_CUSTOM, 0, read_layer, false},
+    {"choose", WORD_CUSTOM, 0, read_choose, true}, {"phases", WORD_CUSTOM, 0, read_phases, false},
+    {"period", WORD_CUSTOM, 0, read_period, true},
+};
+
 /* `texel { Flower density 0.05 texture { Red } }` belongs to the skin around it: it stays a block. */
 static bool is_reference(const EvalBlock *block) {
     return block->count && block->items[0].kind == ITEM_VALUE && block->items[0].value.kind == VALUE_TEXEL;
 }
 
 static bool check_content(Reader *reader, const TexelDraft *draft) {
-    if (draft->choices.count && draft->layers.count)
-        reader_error(reader, reader->block->word_span, "a texel has layers or choices, not both");
-    else if (!draft->layers.count && !draft->choices.count && !draft->texel.inert)
+    if ((draft->choices.count > 0) + (draft->layers.count > 0) + (draft->phases != NULL) > 1)
+        reader_error(reader, reader->block->word_span, "a texel has layers, phases or choices: one of them");
+    else if (draft->period > 0 && !draft->phases)
+        reader_error(reader, draft->period_span, "'period' is that of phases, which this texel has none of");
+    else if (!draft->layers.count && !draft->choices.count && !draft->phases && !draft->texel.inert)
         reader_error(reader, reader->block->word_span, "this texel has no content: it needs a layer { … }");
     return !reader->failed;
 }
@@ -254,6 +318,11 @@ bool build_texel(BuildContext *context, const EvalBlock *block, Value *out) {
     reader.on_value = on_value;
     reader.value_target = draft;
     if (!reader_run(&reader) || !check_content(&reader, draft)) return false;
+    if (draft->phases) choose_phase(&reader, draft);
+    if (draft->phases && !draft->layers.count && !texel->inert) {
+        reader_error(&reader, block->word_span, "phase %d of this texel has no content: it needs a layer { … }", texel->phase);
+        return false;
+    }
     texel->layers = draft->layers.items;
     texel->layer_count = draft->layers.count;
     texel->choices = draft->choices.items;

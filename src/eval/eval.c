@@ -196,6 +196,8 @@ static void init(Eval *ev, const EvalOptions *options, SourceSet *sources, DiagL
     ev->build = (BuildContext){.arena = scene, .names = names, .diags = diags, .eval = ev};
     ev->build.is_program = options->is_program;
     ev->build.most_vertices = options->limits.mesh_vertices;
+    ev->build.time = options->time;
+    ev->build.cycle = options->cycle;
     ev->build.image_aspect = options->image_width > 0 && options->image_height > 0
                                  ? (double)options->image_width / options->image_height
                                  : 4.0 / 3;

@@ -172,7 +172,7 @@ static void add_particles(Eval *ev, Sink *sink, const Node *node, BlockItem item
     scope_leave(ev, &scope);
 }
 
-/* phases N { … } of a texel: read once for each phase, with `phase` = 0, 1/N … What is modelled is the first. */
+/* phases N { … } of a texel: one item for each phase, its number behind N, with `phase` = 0, 1/N … */
 static void add_phases(Eval *ev, Sink *sink, const Node *node, BlockItem item) {
     enum { MOST_PHASES = 1024 };
     double count = item.argument_count == 1 && item.arguments[0].value.kind == VALUE_FLOAT
@@ -190,14 +190,19 @@ static void add_phases(Eval *ev, Sink *sink, const Node *node, BlockItem item) {
     for (double i = 0; i < count && !ev->stopped && errors == ev->diags->failures; i++) {
         ArenaMark mark = arena_mark(&ev->temp);
         ev->phase = i / count;
-        const EvalBlock *body = eval_block_items(ev, item.word, item.word_span, item.span, node->as.word.body);
-        if (i == 0) item.body = body;
+        Argument *arguments = arena_new_array(&ev->blocks, Argument, 2);
+        arguments[0] = item.arguments[0];
+        arguments[1] = (Argument){value_float(i), item.word_span};
+        BlockItem one = item;
+        one.arguments = arguments;
+        one.argument_count = 2;
+        one.body = eval_block_items(ev, item.word, item.word_span, item.span, node->as.word.body);
         arena_reset_to(&ev->temp, mark);
+        *list_push(&ev->blocks, sink->items) = one;
     }
     ev->phase = outer;
     ev->has_phase = had;
     ev->repeats = repeats;
-    *list_push(&ev->blocks, sink->items) = item;
     sink->word_body = ev->body;
 }
 

@@ -128,6 +128,8 @@ static void find_or_build_sky(BuiltTexel *texel, const CompileOptions *options, 
 
 static bool build_matter(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
     const TexelDef *def = texel->def;
+    /* Phases come again. */
+    if (options->texels) texel_cache_patience(options->texels, 2 * (uint64_t)def->phase_count * (def->layer_count + 1));
     double start = stopwatch_wall();
     texel->cached = def->layer_count > 0;
     for (size_t i = 0; i < def->layer_count; i++) {

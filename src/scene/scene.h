@@ -475,7 +475,8 @@ struct TexelDef {
     size_t choice_count;
     const char *file;             /* texel { "forest.vtx" }: its path; the layers then have looks and no contents; else NULL */
     Hash128 file_content;
-    const InertNote *inert;       /* phases: no layers then either */
+    int phase, phase_count;       /* whose layers these are, from 0; count 0: it has none */
+    const InertNote *inert;
 };
 
 /* A landscape from maps of heights. Its points stand in the scene's frame, or in that of the object that it is. */

@@ -348,6 +348,7 @@ static void print_texel(Printer *p, const TexelDef *texel) {
         strbuf_addf(p->out, " cyclic %s%s%s", texel->cyclic & 1 ? "x" : "", texel->cyclic & 2 ? "y" : "",
                     texel->cyclic & 4 ? "z" : "");
     if (texel->file) strbuf_adds(p->out, " from a file");
+    if (texel->phase_count) strbuf_addf(p->out, " phase %d/%d", texel->phase, texel->phase_count);
     add_inert(p, texel->inert);
     end_line(p);
     p->depth++;

@@ -15,6 +15,7 @@ typedef struct CacheEntry {
     TexelSky *sky;
     TexelFile file;
     bool used; /* since the last trim */
+    uint64_t patience, seen; /* texel_cache_patience(), and how many patient ones had been added when it was last used */
     struct CacheEntry *next;
 } CacheEntry;
 
@@ -23,6 +24,7 @@ struct TexelCache {
     CacheEntry *entries;
     MemoryBudget *memory;
     char *folder; /* NULL: memory only */
+    uint64_t patience, added; /* what is asked for now; entries that were added with any */
 };
 
 TexelCache *texel_cache_create(const char *folder, MemoryBudget *memory) {
@@ -59,10 +61,13 @@ void texel_cache_destroy(TexelCache *cache) {
     free(cache);
 }
 
+void texel_cache_patience(TexelCache *cache, uint64_t patience) { cache->patience = patience; }
+
 void texel_cache_trim(TexelCache *cache) {
     for (CacheEntry **place = &cache->entries; *place;) {
-        bool used = (*place)->used;
-        (*place)->used = false;
+        CacheEntry *entry = *place;
+        bool used = entry->used || (entry->patience && cache->added - entry->seen <= entry->patience);
+        entry->used = false;
         if (used)
             place = &(*place)->next;
         else
@@ -92,7 +97,8 @@ Hash128 texel_layer_key(const TexelDef *def, const TexelLayer *layer, int resolu
 static CacheEntry *add_entry(TexelCache *cache, Hash128 key, EntryKind kind) {
     CacheEntry *entry = calloc(1, sizeof *entry);
     if (!entry) return NULL;
-    *entry = (CacheEntry){.key = key, .kind = kind, .used = true, .next = cache->entries};
+    if (cache->patience) cache->added++;
+    *entry = (CacheEntry){.key = key, .kind = kind, .used = true, .patience = cache->patience, .seen = cache->added, .next = cache->entries};
     return cache->entries = entry;
 }
 
@@ -100,6 +106,7 @@ static CacheEntry *find_entry(TexelCache *cache, Hash128 key, EntryKind kind) {
     for (CacheEntry *e = cache->entries; e; e = e->next) {
         if (!hash_equal(e->key, key) || e->kind != kind) continue;
         e->used = true;
+        e->patience = cache->patience, e->seen = cache->added;
         return e;
     }
     return NULL;

@@ -34,6 +34,10 @@ const TexelFile *texel_cache_opened(TexelCache *cache, Hash128 content);
 TexelSky *texel_cache_find_sky(TexelCache *cache, Hash128 key);
 bool texel_cache_add_sky(TexelCache *cache, Hash128 key, TexelSky *sky);
 
+/* What is added or found from now on comes back in a while: it is kept until so many more such things were added after its last use, though
+ * frames go by without it. 0: what is not used is let go. */
+void texel_cache_patience(TexelCache *cache, uint64_t patience);
+
 /* Lets go in memory what was neither found nor added since the last time; all of it. */
 void texel_cache_trim(TexelCache *cache);
 void texel_cache_clear(TexelCache *cache);

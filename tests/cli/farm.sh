@@ -33,14 +33,15 @@ case_regions() {
   scene
   local suffix
   for suffix in exr jpg; do
-    rm -f a.*; run scene.vts -s 100x70 -o w.$suffix
+    run scene.vts -s 100x70 -o w.$suffix
     run farm list scene.vts -s 100x70 -o a.$suffix --regions 3x2; want_status 0
     [ "$(wc -l <out)" = 7 ] || fail "jobs: $(cat out)"
     cp out jobs
     head -n 6 jobs | tac | sh; tail -n 1 jobs | sh || fail "the last job fails"
     run compare w.$suffix a.$suffix --metric rmse,max; want_status 0; [ "$(head -n 1 out)" = 'rmse 0' ] || fail "joined regions are not the whole $suffix: $(cat out)"
+    [ $suffix = jpg ] || cmp -s w.$suffix a.$suffix || fail "joined regions are not the file of the whole"
+    rm a.*
   done
-  cmp -s w.exr a.exr || fail "joined regions are not the file of the whole"
   # Regions of a film, whose last job waits for the others.
   film film.vts
   run film.vts -s 40x30 -o w.png

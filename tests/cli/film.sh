@@ -152,6 +152,29 @@ S
   [ "$cached" = 'Ball false Drop false Ball true Drop false Ball true Drop false ' ] || fail "built: $cached"
 }
 
+# Each phase is built once, and played as long as its share of the period.
+case_phases() {
+  cat >phases.vts <<'S'
+animation { frames 12 fps 6 cyclic on }
+camera { location <0, 3, -6> look_at 0 }
+light_source { <5, 10, -5> rgb 1 }
+global_settings { detail voxels }
+#declare Ball = texel { resolution 32 phases 3 { layer { sphere { <0.5, 0.3 + 0.4*phase, 0.5>, 0.3 } texture { pigment { rgb 1 } } } } period 1 }
+skin { surface { patch_grid 1, 1 function(u, v) { <4*u - 2, 0, 4*v - 2> } } texel { Ball } mapping { repeat <4, 4> height 1 } }
+S
+  run phases.vts -s 32x24 -o a.ppm --report r.json; want_status 0
+  local cached n
+  cached=$(grep -o '"cached":[a-z]*' r.json | sed 's/.*://' | tr '\n' ' ')
+  [ "$cached" = 'false true false true false true true true true true true true ' ] || fail "built: $cached"
+  for n in 02 07 08; do cmp -s a01.ppm a$n.ppm || fail "frame $n is of another phase than the first"; done
+  for n in 03 05 09 12; do cmp -s a01.ppm a$n.ppm && fail "frame $n is of the first phase"; done
+  cmp -s a03.ppm a10.ppm && cmp -s a05.ppm a12.ppm && ! cmp -s a03.ppm a05.ppm || fail "the second and the third phase"
+  # As the texel would be that is written so.
+  sed 's/phases 3 { layer {\(.*\)0.4\*phase\(.*\) } period 1/layer {\10.4*2\/3\2/; 1d' phases.vts >plain.vts
+  run plain.vts -s 32x24 -o p.ppm; want_status 0; cmp -s p.ppm a05.ppm || fail "the third phase is not that texel"
+  sed -i 's/period 1/period 0.9/' phases.vts; run check phases.vts; want_status 0; want_in err "phases.vts:5:"; want_in err "'period' is taken as 1"
+}
+
 case_warned_once() {
   film; echo 'sphere { <0, -9, 0>, 1 uv_mapping }' >>film.vts
   run film.vts -s 8x6; want_status 0

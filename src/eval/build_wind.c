@@ -4,6 +4,8 @@
 #include "grow/wind.h"
 #include "scene/scene_hash.h"
 
+#include <math.h>
+
 /* An octave halves the wave: more have nothing left of it. */
 enum { MOST_OCTAVES = 32 };
 
@@ -79,6 +81,15 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
     return argument_function(reader, value, "'wind_field'", 4, 3, &wind->function);
 }
 
+/* In a film that goes round. A wind that was declared before has been told of then. */
+static void make_cyclic(BuildContext *context, WindField *wind) {
+    if (!(context->cycle > 0)) return;
+    double speed = wind->speed, waves = wind_make_cyclic(wind, context->cycle);
+    if (waves > 0 && fabs(wind->speed - speed) > 1e-9 * fabs(speed))
+        diag_warning(context->diags, wind->span, "the film goes round in %g seconds: the wind's speed of %g is taken as %g, so that whole waves pass (%g of them)",
+                     context->cycle, speed, wind->speed, waves);
+}
+
 bool build_wind_field(BuildContext *context, const EvalBlock *block, Value *out) {
     WindField *wind = arena_new(context->arena, WindField);
     *wind = (WindField){.direction = {1, 0, 0}, .strength = 1, .gust_wavelength = 1, .gust_sharpness = 1, .turbulence_scale = 1,
@@ -89,6 +100,7 @@ bool build_wind_field(BuildContext *context, const EvalBlock *block, Value *out)
     reader.value_target = wind;
     if (!reader_run(&reader)) return false;
     wind->span = block->span;
+    make_cyclic(context, wind);
     wind_rehash(wind);
     *out = (Value){.kind = VALUE_WIND_FIELD, .as.wind_field = wind};
     return true;

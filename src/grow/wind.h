@@ -3,11 +3,18 @@
  * With d the unit direction and s = p·d − speed·t the force is
  *     F = strength·[ d·(1 + a·(2·((1 + sin(2π·s/λ))/2)^sharpness − 1)) + a_t·fbm3((p − d·speed·t)/scale) ] + function(p, t):
  * a moving periodic function and a stochastic flow that the wind carries along (Neyret 1998, section VII). Forces have no
- * unit: one of 1 bends a vector of length 1 and stiffness 1 by 45 degrees if it blows across. */
+ * unit: one of 1 bends a vector of length 1 and stiffness 1 by 45 degrees if it blows across.
+ *
+ * Where a cycle T is set, gusts and turbulence have it as their period in time: speed·T is a whole number of wavelengths (wind_make_cyclic),
+ * and while the flow goes by, the one that came T earlier takes over from it. */
 #ifndef VTS_GROW_WIND_H
 #define VTS_GROW_WIND_H
 
 #include "scene/scene.h"
+
+/* Sets the cycle, and rounds the speed to the nearest whole number of wavelengths in it, of gusts that move at least one. Returns that number; 0:
+ * nothing was to be rounded. */
+double wind_make_cyclic(WindField *wind, double cycle);
 
 /* `time` in seconds. A function that yields no finite number adds nothing there. */
 Vec3 wind_force(const WindField *wind, Vec3 p, double time);

@@ -584,6 +584,7 @@ typedef struct WindField {
     int turbulence_octaves;
     uint32_t turbulence_seed;
     double stiffness;            /* of what is blown at; 1 */
+    double cycle;                /* seconds after which gusts and turbulence come again; 0: never */
     const Tape *function;        /* (x, y, z, t) → 3; NULL */
 } WindField;
 

@@ -460,6 +460,7 @@ static void print_wind(Printer *p, const WindField *w) {
         strbuf_addf(p->out, " turbulence amplitude %g scale %g octaves %d seed %u", w->turbulence_amplitude, w->turbulence_scale,
                     w->turbulence_octaves, w->turbulence_seed);
     add_number(p, "stiffness", w->stiffness);
+    if (w->cycle > 0) add_number(p, "cycle", w->cycle);
     add_flag(p, "function", w->function != NULL);
     end_line(p);
 }

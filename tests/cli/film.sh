@@ -175,6 +175,20 @@ S
   sed -i 's/period 1/period 0.9/' phases.vts; run check phases.vts; want_status 0; want_in err "phases.vts:5:"; want_in err "'period' is taken as 1"
 }
 
+# A wind of a film that goes round: at the end it is as at the beginning.
+case_cyclic_wind() {
+  cat >wind.vts <<'S'
+animation { frames 16 fps 8 cyclic on }
+#declare W = wind_field { direction <1, 0, 0.3> speed 4 gust { wavelength 3 amplitude 0.6 sharpness 2 } turbulence { amplitude 0.25 scale 3 octaves 3 seed 2 } }
+#declare F = wind_at(W, <1, 2, 3>, 2) - wind_at(W, <1, 2, 3>, 0);
+#debug concat("> ", str(vlength(F), 0, 9), " ", str(vlength(wind_at(W, <1, 2, 3>, 1) - wind_at(W, <1, 2, 3>, 0)) > 0.01, 0, 0), "\n")
+sphere { 0, 1 }
+S
+  run check wind.vts; want_status 0; want_said '> 0.000000000 1 '; want_in err 'speed of 4 is taken as 4.5, so that whole waves pass (3 of them)'
+  sed -i 's/speed 4 /speed 4.5 /' wind.vts; run check wind.vts; want_status 0; grep -q warning err && fail "a warning without need"
+  sed -i 's/ cyclic on//; s/speed 4.5/speed 4/' wind.vts; run check wind.vts; want_status 0; grep -q warning err && fail "a warning without a cycle"
+}
+
 case_warned_once() {
   film; echo 'sphere { <0, -9, 0>, 1 uv_mapping }' >>film.vts
   run film.vts -s 8x6; want_status 0

@@ -37,6 +37,43 @@ static void gusts_follow_the_formula(void **state) {
     }
 }
 
+/* The end of a round is its beginning: force, and how fast it changes. */
+static void a_cyclic_wind_comes_again(void **state) {
+    (void)state;
+    for (uint64_t i = 0; i < 2000; i++) {
+        WindField w = some_wind(i);
+        double cycle = draw(i, 40, 0.5, 20), speed = w.speed, waves = wind_make_cyclic(&w, cycle), e = 1e-5 * cycle;
+        assert_true(waves >= 1 && fabs(fabs(w.speed) * cycle / w.gust_wavelength - waves) < 1e-9 * waves && speed * w.speed > 0);
+        assert_true(fabs(w.speed - speed) * cycle <= w.gust_wavelength * (waves > 1 ? 0.5 + 1e-9 : 1));
+        Vec3 p = some_place(i, 20), first = wind_force(&w, p, 0);
+        assert_true(vec3_length(vec3_sub(wind_force(&w, p, cycle), first)) < 1e-9);
+        assert_true(vec3_length(vec3_sub(wind_force(&w, p, 3 * cycle), first)) < 1e-9);
+        Vec3 before = wind_force(&w, p, cycle - e), after = wind_force(&w, p, e);
+        double fastest = w.strength * (w.gust_amplitude * 2 * w.gust_sharpness * VTS_PI / w.gust_wavelength + 20 * w.turbulence_amplitude * w.turbulence_octaves / w.turbulence_scale) * fabs(w.speed);
+        if (w.gust_sharpness >= 1) assert_true(vec3_length(vec3_sub(before, first)) < 2 * fastest * e + 1e-6);
+        /* No kink: the two halves of the step are the same, but for what bends within it. */
+        if (w.gust_sharpness >= 2 && fastest * e < 1e-3)
+            assert_true(vec3_length(vec3_sub(vec3_add(before, after), vec3_scale(first, 2))) < 0.3 * fastest * e + 1e-6);
+    }
+}
+
+/* Turbulence alone keeps its strength all the way round, and wind that stands still stays as it is. */
+static void a_cyclic_flow_is_as_strong_in_the_middle(void **state) {
+    (void)state;
+    WindField w = {.direction = {1, 0, 0}, .speed = 5, .strength = 1, .gust_wavelength = 1, .turbulence_amplitude = 1, .turbulence_scale = 1,
+                   .turbulence_octaves = 2, .turbulence_seed = 9};
+    assert_true(wind_make_cyclic(&w, 4) == 0 && w.speed == 5);
+    double sums[4] = {0};
+    for (uint64_t i = 0; i < 20000; i++)
+        for (int k = 0; k < 4; k++) {
+            Vec3 f = vec3_sub(wind_force(&w, some_place(i, 20), k), w.direction);
+            sums[k] += vec3_dot(f, f);
+        }
+    for (int k = 1; k < 4; k++) assert_true(fabs(sqrt(sums[k] / sums[0]) - 1) < 0.03);
+    w.speed = 0;
+    assert_true(vec3_length(vec3_sub(wind_force(&w, vec3(0.3, 0.2, 0.7), 2), wind_force(&w, vec3(0.3, 0.2, 0.7), 0))) < 1e-12);
+}
+
 static void turbulence_is_a_sum_of_octaves_that_the_wind_carries(void **state) {
     (void)state;
     for (uint64_t i = 0; i < 2000; i++) {
@@ -102,6 +139,7 @@ static void the_shortest_wave_is_known(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gusts_follow_the_formula),
+        cmocka_unit_test(a_cyclic_wind_comes_again), cmocka_unit_test(a_cyclic_flow_is_as_strong_in_the_middle),
         cmocka_unit_test(turbulence_is_a_sum_of_octaves_that_the_wind_carries),
         cmocka_unit_test(bending_keeps_the_length_and_turns_towards_the_force),
         cmocka_unit_test(force_is_continuous_in_time),

@@ -15,6 +15,7 @@
  *   run       as `vts run` does it, else as `vts check`
  *   compiled  and prepared for rendering
  *   all       without the limit of 20 errors
+ *   --cycle SECONDS, of a film that goes round
  *   --limit NAME=N, --set KNOB=VALUE, --declare NAME=VALUE, --allow-read DIR, --allow-write DIR */
 #include "vts.c" /* for its list of diagnostics, whose formats the public interface does not show */
 
@@ -54,6 +55,7 @@ static void read_how(How *how, char *words) {
         char *value = strtok_r(NULL, " \n", &rest);
         if (!value) return;
         if (strcmp(w, "--clock") == 0) o->clock = atof(value);
+        if (strcmp(w, "--cycle") == 0) o->cycle = atof(value);
         if (strcmp(w, "--limit") == 0) how->limits[o->limit_count++] = pair_of(value);
         if (strcmp(w, "--set") == 0) how->settings[o->setting_count++] = pair_of(value);
         if (strcmp(w, "--declare") == 0) how->declares[o->declare_count++] = pair_of(value);

@@ -32,20 +32,11 @@ size_of() {
   esac
 }
 
-<<<<<<< HEAD
 # Of films one moment.
 clock_of() {
   case $1 in
     pinwheels) echo '--clock 0.1667' ;;
-  esac
-}
-
-=======
-# Of films, one moment.
-clock_of() {
-  case $1 in
-    wind) echo 0.3 ;;
-    *) echo 0 ;;
+    wind) echo '--clock 0.3' ;;
   esac
 }
 
@@ -65,21 +56,15 @@ draw_sheet() { # SCENE PICTURE FRAMES…
   rm -r "$folder"
 }
 
->>>>>>> 03549a3 (examples/flag.vts, a lattice on a cloth; examples/wind.vts as a film that goes round)
 program=${1:-$(find_program)}
 [ -n "$program" ] || { echo "make.sh: no vts found; build it, or name it: make.sh path/to/vts" >&2; exit 2; }
 
 for scene in "$root"/examples/*.vts "$gallery"/*.vts; do
   name=$(basename "$scene" .vts)
   picture=$gallery/$name.jpg
-<<<<<<< HEAD
-  "$program" render "$scene" --size "$(size_of "$name")" --output "$picture" --progress none $(clock_of "$name")
-=======
   if [ -n "$(frames_of "$name")" ]; then draw_sheet "$scene" "$picture" $(frames_of "$name")
-  elif grep -q '^animation' "$scene"; then "$program" render "$scene" --size "$(size_of "$name")" --clock "$(clock_of "$name")" --output "$picture" --progress none
-  else "$program" render "$scene" --size "$(size_of "$name")" --output "$picture" --progress none
+  else "$program" render "$scene" --size "$(size_of "$name")" --output "$picture" --progress none $(clock_of "$name")
   fi
->>>>>>> 03549a3 (examples/flag.vts, a lattice on a cloth; examples/wind.vts as a film that goes round)
   bytes=$(wc -c <"$picture")
   [ "$bytes" -lt 200000 ] || { echo "make.sh: $name.jpg has $bytes bytes; a picture of the gallery has less than 200000" >&2; exit 1; }
   echo "$name.jpg $bytes bytes"

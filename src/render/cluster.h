@@ -79,6 +79,7 @@ typedef struct ClusterSet {
     LookTable looks;
     const Look *default_look;
     size_t part_count;
+    const ShapeTracer *shapes; /* that has prepared what rays meet */
 } ClusterSet;
 
 /* Takes all memory that Embree's callbacks will need. */

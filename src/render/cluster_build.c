@@ -459,6 +459,7 @@ void clusters_build(const Scene *scene, Arena *arena, DiagList *diags, ClusterSe
     *out = (ClusterSet){0};
     Builder b = {.set = out, .scene = scene, .arena = arena, .diags = diags,
                  .tracer = shape_tracer_create(arena)};
+    out->shapes = b.tracer;
     const Transform identity = transform_identity();
     const Inherited nothing = {0};
     b.tolerance = scene_tolerance(&b);

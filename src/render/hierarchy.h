@@ -5,7 +5,7 @@
 #include "base/diag.h"
 #include "render/look.h"
 #include "scene/scene.h"
-#include "shape/soup.h"
+#include "shape/solid.h"
 
 typedef struct Hierarchy Hierarchy;
 struct Interior;
@@ -61,6 +61,8 @@ double hierarchy_coarseness(const Hierarchy *hierarchy, Vec3 point);
 bool hierarchy_is_clear(const Hierarchy *hierarchy);
 /* Whether nothing mirrors or lets light through. */
 bool hierarchy_is_plain(const Hierarchy *hierarchy);
+/* Adds what functions have cost rays so far. */
+void hierarchy_work(const Hierarchy *hierarchy, SolidWork *sum);
 void *hierarchy_device(const Hierarchy *hierarchy);
 
 /* A box around everything that is drawn, empty if nothing is; false when there is something endless. */

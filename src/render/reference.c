@@ -226,9 +226,12 @@ bool reference_picture(const CompiledScene *compiled, const RenderOptions *optio
     ArenaMark mark = arena_mark(compiled->arena);
     int workers = pool_threads(options->pool);
     Reference reference = {compiled, options, arena_new_array(compiled->arena, TraceCounters, (size_t)workers)};
+    SolidWork before = {0};
+    hierarchy_work(compiled->hierarchy, &before);
     bool done = film_expose(options, compiled->scene->settings.assumed_gamma, "reference", see_tile, &reference, memory, out, error);
     *stats = (RenderStats){.error_estimate = -1};
     for (int i = 0; i < workers; i++) trace_counters_add(&stats->counters, &reference.counters[i]);
+    stats->counters.functions = render_functions_since(compiled, &before);
     arena_reset_to(compiled->arena, mark);
     return done;
 }

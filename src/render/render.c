@@ -94,17 +94,26 @@ static void count_workers(const Frame *frame, int workers, RenderStats *stats) {
     stats->error_estimate = !known ? -1 : pixels ? sqrt(squares / (double)pixels) : 0;
 }
 
+SolidWork render_functions_since(const CompiledScene *compiled, const SolidWork *before) {
+    SolidWork now = {0};
+    hierarchy_work(compiled->hierarchy, &now);
+    return (SolidWork){now.lines - before->lines, now.evaluations - before->evaluations, now.unsettled - before->unsettled, now.sampled};
+}
+
 bool render_picture(const CompiledScene *compiled, const RenderOptions *options, MemoryBudget *memory, Image *out,
                     RenderStats *stats, StrBuf *error) {
     /* Workspace from the scene's arena: should memory run out half way, its owner releases it. */
     ArenaMark mark = arena_mark(compiled->arena);
     int workers = pool_threads(options->pool);
     Frame frame = {.compiled = compiled, .options = options};
+    SolidWork before = {0};
+    hierarchy_work(compiled->hierarchy, &before);
     make_workers(&frame, workers);
     share_middles(&frame, workers);
     bool done = film_expose(options, compiled->scene->settings.assumed_gamma, "render", see_tile, &frame, memory, out, error);
     *stats = (RenderStats){.error_estimate = -1};
     count_workers(&frame, workers, stats);
+    stats->counters.functions = render_functions_since(compiled, &before);
     middles_destroy(frame.middles);
     arena_reset_to(compiled->arena, mark);
     return done;

@@ -13,6 +13,9 @@ typedef struct RenderStats {
     double error_estimate; /* the RMSE to be expected; negative: not known, as voxels are seen */
 } RenderStats;
 
+/* What functions have cost the scene's rays since `before`, an earlier answer of hierarchy_work(). */
+SolidWork render_functions_since(const CompiledScene *compiled, const SolidWork *before);
+
 /* Renders the region into `out` (R G B, or R G B A with alpha; initialised here). The pixels do not depend on the number of
  * threads. False when cancelled or out of memory (text in `error`, which may be NULL). */
 bool render_picture(const CompiledScene *compiled, const RenderOptions *options, MemoryBudget *memory, Image *out,

@@ -20,6 +20,12 @@ static void add_texels(StrBuf *out, const CompiledScene *compiled) {
     strbuf_addc(out, ']');
 }
 
+static void add_functions(StrBuf *out, const SolidWork *w) {
+    strbuf_addf(out, "\"function_evaluations\":%llu,\"function_rays\":%llu,\"evaluations_per_ray\":%.4g,", (unsigned long long)w->evaluations,
+                (unsigned long long)w->lines, w->lines ? (double)w->evaluations / (double)w->lines : 0);
+    strbuf_addf(out, "\"missed_roots\":%llu,\"guaranteed\":%s,", (unsigned long long)w->unsettled, w->sampled ? "false" : "true");
+}
+
 void report_add_frame(StrBuf *out, const FrameReport *f) {
     const TraceCounters *c = &f->stats->counters;
     if (out->size) strbuf_addc(out, ',');
@@ -29,7 +35,7 @@ void report_add_frame(StrBuf *out, const FrameReport *f) {
                 f->parse_s, f->build_s, f->render_s);
     strbuf_addf(out, "\"peak_rss_bytes\":%zu,\"rays\":{\"camera\":%llu,\"shadow\":%llu},\"voxels_visited\":%llu,", f->peak_rss_bytes,
                 (unsigned long long)c->camera_rays, (unsigned long long)c->shadow_rays, (unsigned long long)c->voxels_visited);
-    strbuf_adds(out, "\"function_evaluations\":0,\"evaluations_per_ray\":0,");
+    add_functions(out, &c->functions);
     add_texels(out, f->compiled);
     if (f->stats->error_estimate >= 0) strbuf_addf(out, ",\"error_estimate\":%.6f", f->stats->error_estimate);
     else strbuf_adds(out, ",\"error_estimate\":null");

@@ -3,12 +3,14 @@
 #define VTS_RENDER_SKIN_MARCH_H
 
 #include "render/skin_walk.h"
+#include "shape/solid.h"
 
 enum { MOST_MATTER_HITS = 12 };
 
 typedef struct TraceCounters {
     uint64_t camera_rays, shadow_rays, steps, voxels_visited;
     uint64_t triangles; /* of texels, drawn by beams */
+    SolidWork functions; /* of isosurfaces; counted for a picture as a whole */
 } TraceCounters;
 
 static inline void trace_counters_add(TraceCounters *sum, const TraceCounters *c) {
@@ -17,6 +19,7 @@ static inline void trace_counters_add(TraceCounters *sum, const TraceCounters *c
     sum->steps += c->steps;
     sum->voxels_visited += c->voxels_visited;
     sum->triangles += c->triangles;
+    solid_work_add(&sum->functions, &c->functions);
 }
 
 /* How the way through texture space is followed (Neyret 1998, footnote 7). */

@@ -21,6 +21,13 @@ ShapeTracer *shape_tracer_create(Arena *arena) {
     return tracer;
 }
 
+void shape_tracer_work(const ShapeTracer *tracer, SolidWork *sum) {
+    for (size_t i = 0; i < tracer->slot_count; i++) {
+        const Body *body = tracer->slots[i];
+        if (body && body->data && body->ops->work) body->ops->work(body->data, sum);
+    }
+}
+
 static Body **find_slot(const ShapeTracer *tracer, Hash128 hash) {
     size_t i = hash.lo & (tracer->slot_count - 1);
     while (tracer->slots[i] && !hash_equal(tracer->slots[i]->hash, hash)) i = (i + 1) & (tracer->slot_count - 1);

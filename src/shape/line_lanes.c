@@ -92,7 +92,7 @@ static bool search(Lanes *lanes, double *t, bool *falling) {
             if (count > 0 && (full || piece.b - piece.a < 0x1p-20 * (fabs(piece.a) + fabs(piece.b)))) break;
             lanes->count--;
             if (full) {
-                if (line_place_between(s, piece.a, piece.b, t, falling)) return true;
+                if (line_give_up(s, piece, t, falling)) return true;
             } else if (piece.b - piece.a <= ALONE * line_shortest(s->line, piece.b)) {
                 if (line_search_halves(s, piece.a, piece.b, t, falling)) return true;
             } else {

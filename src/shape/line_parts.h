@@ -35,6 +35,8 @@ void line_cut(AffineForm f, double *a, double *b);
 double line_shortest(const Line *line, double t);
 /* Where the sign changes between a and b; false: it is the same at both. */
 bool line_place_between(LineSearch *s, double a, double b, double *t, bool *falling);
+/* The same for a piece that is given up before it is a place. */
+bool line_give_up(LineSearch *s, LinePiece piece, double *t, bool *falling);
 /* The search by halves, one piece at a time. */
 bool line_search_halves(LineSearch *s, double from, double to, double *t, bool *falling);
 /* The search with many pieces at once: `line->sum` is not NULL. */

@@ -89,6 +89,11 @@ bool line_place_between(LineSearch *s, double a, double b, double *t, bool *fall
     return true;
 }
 
+bool line_give_up(LineSearch *s, LinePiece piece, double *t, bool *falling) {
+    s->work.unsettled++;
+    return line_place_between(s, piece.a, piece.b, t, falling);
+}
+
 /* Where a function only touches its level, or runs along it, no halving ends. */
 static const double ROUNDING_MATTERS = 0x1p20;
 
@@ -116,7 +121,7 @@ bool line_search_halves(LineSearch *s, double from, double to, double *t, bool *
             continue;
         }
         if (count + 2 > LINE_MOST_PIECES || s->work.bounds > LINE_MOST_BOUNDS) {
-            if (line_place_between(s, piece.a, piece.b, t, falling)) return true;
+            if (line_give_up(s, piece, t, falling)) return true;
             continue;
         }
         if (b - a < 0.5 * width) {
@@ -135,7 +140,7 @@ bool line_first_root(const Line *line, double from, double to, double *t, bool *
     Interval few_intervals[FEW_SLOTS];
     double few_values[FEW_SLOTS];
     size_t slots = size_max(tape_scratch_size(line->tape), line->sum ? line->sum->scratch_size : 0);
-    LineSearch s = {line, few_forms, few_intervals, few_values, {0, 0}};
+    LineSearch s = {line, few_forms, few_intervals, few_values, {0, 0, 0}};
     bool more = slots > FEW_SLOTS, found = false;
     if (more) {
         s.forms = malloc(slots * sizeof *s.forms);
@@ -145,7 +150,7 @@ bool line_first_root(const Line *line, double from, double to, double *t, bool *
     to = fmin(to, FARTHEST);
     if (s.forms && s.intervals && s.values)
         found = from < to && (line->sum ? line_search_lanes : line_search_halves)(&s, from, to, t, falling);
-    if (work) work->bounds += s.work.bounds, work->values += s.work.values;
+    if (work) work->bounds += s.work.bounds, work->values += s.work.values, work->unsettled += s.work.unsettled;
     if (more) {
         free(s.forms);
         free(s.intervals);

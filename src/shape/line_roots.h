@@ -24,6 +24,7 @@ typedef struct Line {
 
 typedef struct LineWork {
     uint64_t bounds, values; /* evaluations of either kind; added to */
+    uint64_t unsettled;      /* pieces of which, after as many bounds as one root may cost, only the signs at their ends are known */
 } LineWork;
 
 /* The first place in (from, to) where the function passes from above `level` to not above it, or back; false: there is none. What

@@ -25,6 +25,21 @@ static inline void solid_offer(SolidSink *sink, double t, SolidTag tag) {
     if (t > sink->t_min && t < sink->t_max) sink->take(sink, t, &tag);
 }
 
+/* What functions have cost the rays that asked. */
+typedef struct SolidWork {
+    uint64_t lines;       /* that were searched for zeros */
+    uint64_t evaluations; /* of values and of bounds */
+    uint64_t unsettled;   /* pieces that bounds did not settle: a pair of zeros may be missed in each */
+    bool sampled;         /* there are functions without bounds */
+} SolidWork;
+
+static inline void solid_work_add(SolidWork *sum, const SolidWork *work) {
+    sum->lines += work->lines;
+    sum->evaluations += work->evaluations;
+    sum->unsettled += work->unsettled;
+    sum->sampled |= work->sampled;
+}
+
 typedef struct SolidOps {
     /* What the functions below get as `data`, made once, in `arena`; NULL member: the object itself. NULL: nothing to meet. */
     const void *(*prepare)(const Object *object, Arena *arena);
@@ -41,6 +56,8 @@ typedef struct SolidOps {
     TexCoord (*uv)(const void *data, Vec3 point, const SolidTag *tag);
     /* Holds all of the surface; infinite where there is no end. */
     Box3 (*bounds)(const void *data);
+    /* Adds what all rays have cost so far, those of other threads as well; NULL: nothing is counted. */
+    void (*work)(const void *data, SolidWork *sum);
     bool keeps_normal; /* `inverse` does not turn its normals, as in POV-Ray */
 } SolidOps;
 

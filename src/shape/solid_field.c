@@ -8,15 +8,23 @@
 #include "tape/tape_detail.h"
 #include "tape/tape_interval.h"
 
+#include <stdatomic.h>
 #include <stdlib.h>
 
 enum { PART_SURFACE, PART_CONTAINER, MOST_STEPS = 200000, LEAST_STEPS = 32, MOST_ENDS = 64, MOST_CHANGES = 100000, FEW_SLOTS = 256 };
+
+/* Of all threads; added to once a ray. */
+typedef struct FieldWork {
+    atomic_uint_fast64_t lines, evaluations, unsettled;
+} FieldWork;
 
 typedef struct Field {
     const Solid *solid;
     Line line; /* but for the ray */
     bool bounded, detailed; /* detailed: the line's sum has terms that are left out where they are fine */
     const Body *container; /* NULL: it is a sphere or box */
+    const ShapeTracer *shapes; /* that has prepared it */
+    FieldWork *work;
     Transform place;       /* of the container */
     Box3 bounds;
 } Field;
@@ -41,11 +49,14 @@ static const void *prepare(const Object *object, Arena *arena) {
     const Object *container = s->as.isosurface.container;
     Field *f = arena_new(arena, Field);
     const Tape *tape = s->as.isosurface.function;
-    *f = (Field){.solid = s, .place = object_transform(container)};
+    *f = (Field){.solid = s, .place = object_transform(container), .work = arena_new(arena, FieldWork)};
+    atomic_init(&f->work->lines, 0), atomic_init(&f->work->evaluations, 0), atomic_init(&f->work->unsettled, 0);
     f->line = (Line){.tape = tape, .level = s->as.isosurface.threshold, .method = methods[s->as.isosurface.method]};
     Box3 bounds = shape_bounds(container);
     if (container->kind != OBJECT_SPHERE && container->kind != OBJECT_BOX) {
-        f->container = body_of(shape_tracer_create(arena), container);
+        ShapeTracer *shapes = shape_tracer_create(arena);
+        f->shapes = shapes;
+        f->container = body_of(shapes, container);
         if (!f->container) return NULL;
         bounds = body_bounds(f->container);
     }
@@ -91,26 +102,29 @@ static double value_on(const Solid *s, const Ray *ray, double t) {
 typedef struct FieldLine {
     const Solid *solid;
     const Ray *ray;
+    LineWork *work;
 } FieldLine;
 
 static double value_along(const void *context, double t) {
     const FieldLine *line = context;
+    line->work->values++;
     return value_on(line->solid, line->ray, t);
 }
 
 /* Steps that a function of at most this gradient cannot pass a zero in; no shorter ones than the accuracy. */
-static void march(const Solid *s, const Ray *ray, double from, double to, SolidSink *sink) {
+static void march(const Solid *s, const Ray *ray, double from, double to, SolidSink *sink, LineWork *work) {
+    const FieldLine line = {s, ray, work};
     double length = vec3_length(ray->direction), span = to - from;
     double gradient = double_max(s->as.isosurface.max_gradient, 1e-9) * length;
     double shortest = double_max(s->as.isosurface.accuracy / length / 2, span / MOST_STEPS),
            longest = span / LEAST_STEPS;
-    double t = from, value = value_on(s, ray, t);
+    double t = from, value = value_along(&line, t);
     while (t < to && t < sink->t_max) {
         double next = t + double_clamp(fabs(value) / gradient, shortest, double_max(longest, shortest));
         if (!(next < to)) next = to;
-        double there = value_on(s, ray, next);
+        double there = value_along(&line, next);
         if ((value <= 0) != (there <= 0))
-            solid_offer(sink, roots_between(value_along, &(FieldLine){s, ray}, t, value, next, there, 1e-15 * (fabs(t) + fabs(next))),
+            solid_offer(sink, roots_between(value_along, &line, t, value, next, there, 1e-15 * (fabs(t) + fabs(next))),
                         (SolidTag){PART_SURFACE, 0, 0});
         t = next;
         value = there;
@@ -133,13 +147,13 @@ static double seen_value(const Field *f, Vec3 p, double width) {
 }
 
 /* Every change of sign in turn. Behind one the search goes on where doubles can tell its place from it. */
-static void search(const Field *f, const Ray *ray, double from, double to, SolidSink *sink) {
+static void search(const Field *f, const Ray *ray, double from, double to, SolidSink *sink, LineWork *work) {
     Line line = f->line;
     line.origin = ray->origin, line.direction = ray->direction, line.width = width_of(f, ray, sink->width);
     double t;
     bool falling;
     for (int k = 0; k < MOST_CHANGES && from < double_min(to, sink->t_max); k++) {
-        if (!line_first_root(&line, from, double_min(to, sink->t_max), &t, &falling, NULL)) return;
+        if (!line_first_root(&line, from, double_min(to, sink->t_max), &t, &falling, work)) return;
         solid_offer(sink, t, (SolidTag){PART_SURFACE, line.width.start + line.width.spread * t, 0});
         from = line_behind(&line, t);
     }
@@ -179,23 +193,44 @@ static bool within(const Field *f, const Ends *ends, int k) {
     return !f->container || body_inside(f->container, vec3_madd(ends->ray.origin, ends->ray.direction, middle));
 }
 
+static void keep_count(FieldWork *sum, const LineWork *work) {
+    atomic_fetch_add_explicit(&sum->lines, 1, memory_order_relaxed);
+    atomic_fetch_add_explicit(&sum->evaluations, work->bounds + work->values, memory_order_relaxed);
+    if (work->unsettled) atomic_fetch_add_explicit(&sum->unsettled, work->unsettled, memory_order_relaxed);
+}
+
 static void cross(const void *data, const Ray *ray, SolidSink *sink) {
     const Field *f = data;
     Ends ends;
     RayWidth width = width_of(f, ray, sink->width);
+    LineWork work = {0, 0, 0};
     find_ends(f, ray, &ends);
     if (!f->solid->as.isosurface.open)
-        for (int i = 0; i < ends.count; i++)
-            if (ends.t[i] > sink->t_min && ends.t[i] < sink->t_max && seen_value(f, vec3_madd(ray->origin, ray->direction, ends.t[i]), width.start + width.spread * ends.t[i]) < 0)
+        for (int i = 0; i < ends.count; i++) {
+            if (!(ends.t[i] > sink->t_min && ends.t[i] < sink->t_max)) continue;
+            work.values++;
+            if (seen_value(f, vec3_madd(ray->origin, ray->direction, ends.t[i]), width.start + width.spread * ends.t[i]) < 0)
                 solid_offer(sink, ends.t[i], ends.tags[i]);
+        }
     for (int i = 0; i + 1 < ends.count; i++) {
         double from = double_max(ends.t[i], sink->t_min), to = double_min(ends.t[i + 1], sink->t_max);
         if (!(from < to) || !within(f, &ends, i)) continue;
         if (f->bounded)
-            search(f, ray, from, to, sink);
+            search(f, ray, from, to, sink, &work);
         else
-            march(f->solid, ray, from, to, sink);
+            march(f->solid, ray, from, to, sink, &work);
     }
+    if (work.values || work.bounds) keep_count(f->work, &work);
+}
+
+static void work_of(const void *data, SolidWork *sum) {
+    const Field *f = data;
+    const SolidWork own = {.lines = atomic_load_explicit(&f->work->lines, memory_order_relaxed),
+                           .evaluations = atomic_load_explicit(&f->work->evaluations, memory_order_relaxed),
+                           .unsettled = atomic_load_explicit(&f->work->unsettled, memory_order_relaxed),
+                           .sampled = !f->bounded};
+    solid_work_add(sum, &own);
+    if (f->shapes) shape_tracer_work(f->shapes, sum);
 }
 
 /* Where the function has no gradient at the very place, neighbouring places may tell one. */
@@ -256,4 +291,4 @@ static bool inside(const void *data, Vec3 p) {
 static Box3 bounds(const void *data) { return ((const Field *)data)->bounds; }
 
 const SolidOps solid_isosurface_ops = {
-    .prepare = prepare, .cross = cross, .normal = normal, .inside = inside, .bounds = bounds};
+    .prepare = prepare, .cross = cross, .normal = normal, .inside = inside, .bounds = bounds, .work = work_of};

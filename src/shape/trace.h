@@ -24,6 +24,9 @@ ShapeTracer *shape_tracer_create(Arena *arena);
 bool shape_trace(ShapeTracer *tracer, const Object *object, const Ray *ray, double t_min, TraceHit *hit);
 /* Whether the point is inside; sheets have no inside, meshes one if they have an inside_vector. */
 bool shape_trace_inside(ShapeTracer *tracer, const Object *object, Vec3 point);
+struct SolidWork;
+/* Adds what the functions of all shapes that were prepared have cost. */
+void shape_tracer_work(const ShapeTracer *tracer, struct SolidWork *sum);
 /* What its kind prepared for the object, and its bounds, both without the object's transform; NULL and empty for nothing. */
 const void *shape_trace_data(ShapeTracer *tracer, const Object *object);
 Box3 shape_trace_bounds(ShapeTracer *tracer, const Object *object);

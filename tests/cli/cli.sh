@@ -404,6 +404,26 @@ case_progress() {
   run render scene.vts -s 8x6 -v; want_in err scene.png
 }
 
+functions_of() { grep -o '"function_evaluations":[0-9]*,"function_rays":[0-9]*\|"missed_roots":[0-9]*,"guaranteed":[a-z]*' "$1"; }
+
+case_report_functions() {
+  scene
+  printf 'camera { location <0, 0, -4> look_at 0 }\nisosurface { function { sqrt(x*x + y*y + z*z) - 1 } contained_by { sphere { 0, 2 } } }\n' >exact.vts
+  printf 'camera { location <0, 0, -4> look_at 0 }\n#declare F = function { pigment { gradient y } }\nisosurface { function { F(x, y, z).red - 0.5 } max_gradient 2 }\n' >sampled.vts
+  run render exact.vts -s 16x12 --threads 1 --report one.json; want_status 0
+  run render exact.vts -s 16x12 --threads 2 --report two.json; want_status 0
+  run reference exact.vts -s 4x3 --report exact.json; want_status 0
+  run render sampled.vts -s 16x12 --report sampled.json; want_status 0
+  functions_of one.json >one; functions_of two.json >two
+  cmp -s one two || fail "depends on threads: $(cat one two)"
+  grep -q '"missed_roots":0,"guaranteed":true' one || fail "not guaranteed: $(cat one)"
+  grep -q '"function_rays":[1-9][0-9]*$' one || fail "no rays: $(cat one)"
+  functions_of exact.json | grep -q '"function_evaluations":[1-9]' || fail "no evaluations of the reference"
+  functions_of sampled.json | grep -q '"guaranteed":false' || fail "guaranteed without bounds"
+  run render scene.vts -s 8x6 --report none.json; want_status 0
+  functions_of none.json | grep -q '"function_evaluations":0,"function_rays":0' || fail "evaluations of no function"
+}
+
 case_report() {
   scene
   run render scene.vts -s 16x12 --report report.json; want_status 0; want_empty out

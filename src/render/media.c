@@ -116,6 +116,7 @@ static void see_place(Way *way, double t, bool between, Place *place) {
     place->t = t;
     place->amount = 0;
     place->extinction = place->source = vec3(0, 0, 0);
+    for (int k = 0; k < KEPT_LAMPS && !between; k++) place->lamps[k] = vec3(0, 0, 0);
     way->places_left--;
     for (int i = 0; i < way->matter->count; i++) {
         const Medium *m = way->matter->sites[i].medium;

@@ -1,5 +1,5 @@
 /* The same pixels for any number of threads, for one scene of each kind of machinery. */
-#include "ground.h"
+#include "maps.h"
 
 enum { WIDTH = 72, HEIGHT = 40, VALUES = 3 * WIDTH * HEIGHT };
 

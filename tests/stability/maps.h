@@ -1,6 +1,6 @@
 /* Maps of heights that tests write beside their scene. */
-#ifndef VTS_TESTS_GROUND_H
-#define VTS_TESTS_GROUND_H
+#ifndef VTS_TESTS_MAPS_H
+#define VTS_TESTS_MAPS_H
 
 #include "../analytic/analytic.h"
 

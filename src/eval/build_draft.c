@@ -409,6 +409,7 @@ const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context) {
                      .skins = draft->skins.items,
                      .skin_count = draft->skins.count,
                      .sky_emission = draft->sky_emission,
+                     .old_sky = context->old_gamma,
                      .sky_layers = draft->sky.items,
                      .sky_layer_count = draft->sky.count,
                      .background = draft->background,

@@ -67,8 +67,7 @@ bool texture_mirrors(const Texture *texture);
  * layer below. */
 Color color_over(Color top, Color below);
 
-/* The sky sphere's layers, first below. `direction` is of unit length, footprint an angle in radians. No layers: black that
- * transmits everything. */
-Color sky_color(const Pigment *const *layers, size_t count, Vec3 direction, double footprint);
+/* The sky sphere's layers, first below, over the background: opaque. `direction` is of unit length, footprint an angle in radians. */
+Color sky_color(const Scene *scene, Vec3 direction, double footprint);
 
 #endif

@@ -44,11 +44,36 @@ SurfaceLook texture_look(const Texture *texture, Vec3 point, Vec3 normal, double
     return (SurfaceLook){sum, parts[heaviest].texture->finish};
 }
 
-Color sky_color(const Pigment *const *layers, size_t count, Vec3 direction, double footprint) {
-    Color color = {0, 0, 0, 0, 1};
-    for (size_t k = 0; k < count; k++) {
-        Color layer = pigment_color(layers[k], direction, direction, footprint);
-        color = k ? color_over(layer, color) : layer;
+/* Layers of the sky from the top down. What passes them is by channel what each filters and transmits; with scenes of versions below 3.7 it
+ * is what all filter, or what all transmit, and of colours only the background is tinted (measured). */
+typedef struct SkyView {
+    bool old;
+    double sum[3], through[3], tint[3];
+    double filter, transmit, passing;
+} SkyView;
+
+static void lay_sky(SkyView *view, const Color *layer, const Color *emission) {
+    double shown = view->passing * (1 - layer->filter - layer->transmit);
+    const double own[3] = {layer->red, layer->green, layer->blue}, bright[3] = {emission->red, emission->green, emission->blue};
+    for (int c = 0; c < 3; c++) {
+        double clear = view->old ? 1 : view->through[c];
+        view->sum[c] += shown * clear * own[c] * bright[c];
+        view->tint[c] *= own[c];
+        view->through[c] *= layer->transmit + layer->filter * own[c];
     }
-    return color;
+    view->filter *= layer->filter;
+    view->transmit *= layer->transmit;
+    if (view->old) view->passing = view->filter + view->transmit;
+}
+
+Color sky_color(const Scene *scene, Vec3 direction, double footprint) {
+    SkyView view = {.old = scene->old_sky, .through = {1, 1, 1}, .tint = {1, 1, 1}, .filter = 1, .transmit = 1, .passing = 1};
+    for (size_t k = scene->sky_layer_count; k-- > 0;) {
+        Color layer = pigment_color(scene->sky_layers[k], direction, direction, footprint);
+        lay_sky(&view, &layer, &scene->sky_emission);
+    }
+    const double behind[3] = {scene->background.red, scene->background.green, scene->background.blue};
+    for (int c = 0; c < 3; c++)
+        view.sum[c] += behind[c] * (view.old ? view.filter * view.tint[c] + view.transmit : view.through[c]);
+    return (Color){view.sum[0], view.sum[1], view.sum[2], 0, 0};
 }

@@ -109,8 +109,5 @@ Vec3f shade_tone(const NdfShade *shade, const Look *look, Vec3f color) {
 
 Vec3f sky_radiance(const Scene *scene, Vec3 direction, double spread) {
     if (!scene->sky_layer_count) return vec3f_from_color(scene->background);
-    Color sky = sky_color(scene->sky_layers, scene->sky_layer_count, direction, spread);
-    const Color *bright = &scene->sky_emission;
-    sky.red *= bright->red, sky.green *= bright->green, sky.blue *= bright->blue;
-    return vec3f_from_color(color_over(sky, scene->background));
+    return vec3f_from_color(sky_color(scene, direction, spread));
 }

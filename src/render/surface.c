@@ -20,7 +20,8 @@ static const float SHADOW_WORTH = 1.0f / 2048;
 
 static Vec3f follow(SurfaceTracer *tracer, Leg *leg, const SurfaceHit *first, bool lit_already);
 
-static float most_of(Vec3f c) { return float_max(c.x, float_max(c.y, c.z)); }
+/* Lights and what filters let through may be negative, and count no less. */
+static float most_of(Vec3f c) { return float_max(fabsf(c.x), float_max(fabsf(c.y), fabsf(c.z))); }
 static float grey_of(Vec3f c) { return 0.297f * c.x + 0.589f * c.y + 0.114f * c.z; }
 
 /* Of the enclosures, which are many bytes, only those that count are ever set or copied. */

@@ -7,7 +7,8 @@
 
 #include <string.h>
 
-static float most_of(Vec3f c) { return float_max(c.x, float_max(c.y, c.z)); }
+/* Lights and what filters let through may be negative, and count no less. */
+static float most_of(Vec3f c) { return float_max(fabsf(c.x), float_max(fabsf(c.y), fabsf(c.z))); }
 
 int surface_enclosure(const Enclosure *enclosures, int count, const SurfaceHit *hit) {
     for (int i = count - 1; i >= 0; i--)

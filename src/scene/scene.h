@@ -736,6 +736,7 @@ typedef struct Scene {
     const Pigment *const *sky_layers; /* of sky_sphere, first below; pattern space: unit direction */
     size_t sky_layer_count;
     Color sky_emission;               /* times which they are bright */
+    bool old_sky;                     /* #version is below 3.7: layers are laid over each other as then */
     Color background;
     const Fog *fogs;
     size_t fog_count;

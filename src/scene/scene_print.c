@@ -608,6 +608,11 @@ void scene_print(const Scene *scene, StrBuf *out) {
         add_color(p, "emission", *bright);
         end_line(p);
     }
+    if (scene->old_sky && scene->sky_layer_count > 1) {
+        begin_line(p, "sky");
+        add_flag(p, "layers_as_before_3.7", true);
+        end_line(p);
+    }
     for (size_t i = 0; i < scene->fog_count; i++) print_fog(p, &scene->fogs[i]);
     for (size_t i = 0; i < scene->rainbow_count; i++) print_rainbow(p, &scene->rainbows[i]);
     print_media(p, &scene->media);

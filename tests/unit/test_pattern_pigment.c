@@ -197,9 +197,35 @@ static void skies_have_layers(void **state) {
     day.direction = vec3(0, 1, 0);
     clouds.color = (Color){1, 1, 1, 0, 0.5};
     const Pigment *layers[] = {&day, &clouds};
-    assert_true(sky_color(NULL, 0, vec3(0, 1, 0), 0).transmit == 1);
-    assert_true(fabs(sky_color(layers, 1, vec3(0.6, 0.8, 0), 0).green - 0.8) < 1e-9);
-    assert_true(fabs(sky_color(layers, 2, vec3(0.6, 0.8, 0), 0).green - 0.9) < 1e-9);
+    Scene scene = {.sky_emission = {1, 1, 1, 0, 0}, .background = {0.1, 0.2, 0.3, 0, 0}, .sky_layers = layers};
+    assert_true(sky_color(&scene, vec3(0, 1, 0), 0).green == 0.2);
+    scene.sky_layer_count = 1;
+    assert_true(fabs(sky_color(&scene, vec3(0.6, 0.8, 0), 0).green - 0.8) < 1e-9);
+    scene.sky_layer_count = 2;
+    assert_true(fabs(sky_color(&scene, vec3(0.6, 0.8, 0), 0).green - 0.9) < 1e-9);
+}
+
+/* POV-Ray's own pixels: two clear layers over <.2, .4, .6>, as version 3.7 and as 3.6 lays them; with and without emission. */
+static void skies_of_two_versions(void **state) {
+    (void)state;
+    Pigment low = make_pigment(PATTERN_SOLID), high = make_pigment(PATTERN_SOLID);
+    low.color = (Color){0.9, 0.8, 0.7, 0.6, 0.3};
+    high.color = (Color){0.3, 0.5, 0.7, 0.4, 0.2};
+    const Pigment *layers[] = {&low, &high};
+    static const struct {
+        bool old;
+        Color emission, seen;
+    } cases[] = {{false, {1, 1, 1, 0, 0}, {0.2026, 0.3568, 0.5210, 0, 0}},
+                 {true, {1, 1, 1, 0, 0}, {0.1990, 0.3104, 0.4286, 0, 0}},
+                 {false, {0.5, 0.7, 0.8, 0, 0}, {0.1282, 0.2872, 0.4582, 0, 0}},
+                 {true, {0.5, 0.7, 0.8, 0, 0}, {0.1120, 0.2360, 0.3642, 0, 0}}};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(cases); i++) {
+        Scene scene = {.sky_emission = cases[i].emission, .background = {0.2, 0.4, 0.6, 0, 0}, .sky_layers = layers, .sky_layer_count = 2, .old_sky = cases[i].old};
+        Color seen = sky_color(&scene, vec3(0, 1, 0), 0);
+        assert_true(fabs(seen.red - cases[i].seen.red) < 1e-4);
+        assert_true(fabs(seen.green - cases[i].seen.green) < 1e-4);
+        assert_true(fabs(seen.blue - cases[i].seen.blue) < 1e-4);
+    }
 }
 
 static void absurd_places_are_harmless(void **state) {
@@ -228,6 +254,7 @@ int main(void) {
         cmocka_unit_test(layers_show_what_is_below),
         cmocka_unit_test(layers_stand_in_texture_space),
         cmocka_unit_test(skies_have_layers),
+        cmocka_unit_test(skies_of_two_versions),
         cmocka_unit_test(absurd_places_are_harmless),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -47,7 +47,7 @@ WaveKind pigment_wave(const Pigment *pigment) {
     return own == WAVE_OWN ? WAVE_RAMP : own;
 }
 
-static Spread exactly(double value) { return (Spread){value, 0}; }
+static Spread exactly(double value) { return (Spread){value, 0, false}; }
 
 /* The mean of sin over an interval of this width is this times its value at the centre. */
 static double sine_kept(double width) { return width > 1e-6 ? sin(width / 2) / (width / 2) : 1; }
@@ -59,7 +59,7 @@ static double cycloidal(double value) { return sin(2 * VTS_PI * (value - floor(v
 static Spread faded(double value, double mean, double deviation, double size, double sharpness) {
     double kept = noise_kept(size, sharpness);
     if (kept == 1) return exactly(value);
-    return (Spread){mean + kept * (value - mean), width_of_variance(variance_lost(deviation, kept))};
+    return (Spread){mean + kept * (value - mean), width_of_variance(variance_lost(deviation, kept)), true};
 }
 
 static Spread bozo(const Pigment *pigment, const Spot *spot) {
@@ -85,7 +85,7 @@ static Spread octave_sum(const Pigment *pigment, const Spot *spot, int count, do
         frequency *= 2;
         weight /= 2;
     }
-    return (Spread){sum, width_of_variance(variance)};
+    return (Spread){sum, width_of_variance(variance), true};
 }
 
 /* What the later noises are spread by, the first is not: POV-Ray's. */
@@ -105,7 +105,7 @@ static Spread granite(const Pigment *pigment, const Spot *spot) {
 
 static Spread wrinkles(const Pigment *pigment, const Spot *spot) {
     Spread sum = octave_sum(pigment, spot, 10, 1, wrinkle_octave, 0.512, 0.245, 0.4);
-    return (Spread){sum.value / 2, sum.width / 2};
+    return (Spread){sum.value / 2, sum.width / 2, sum.bell};
 }
 
 static Spread agate(const Pigment *pigment, const Spot *spot) {
@@ -116,21 +116,21 @@ static Spread agate(const Pigment *pigment, const Spot *spot) {
     double width = 2 * VTS_PI * hypot(amount * turb.width, 1.1 * spot_width(spot, vec3(0, 0, 1)));
     double kept = sine_kept(width);
     double value = 0.5 * (kept * cycloidal(phase) + 1);
-    return (Spread){pow(double_clamp(value, 0, 1), 0.77), width_of_variance(0.125 * (1 - kept * kept))};
+    return (Spread){pow(double_clamp(value, 0, 1), 0.77), width_of_variance(0.125 * (1 - kept * kept)), false};
 }
 
 static Spread marble(const Pigment *pigment, const Spot *spot) {
-    Spread value = {spot->p.x, spot_width(spot, vec3(1, 0, 0))};
+    Spread value = {spot->p.x, spot_width(spot, vec3(1, 0, 0)), false};
     if (!has_turbulence(pigment)) return value;
     Spread turb = turbulence(spot, octaves_of(pigment));
     double amount = pigment->turbulence.x;
-    return (Spread){value.value + amount * turb.value, hypot(value.width, amount * turb.width)};
+    return (Spread){value.value + amount * turb.value, hypot(value.width, amount * turb.width), false};
 }
 
 static Spread distance_from(const Spot *spot, Vec3 p) {
     double r = vec3_length(p);
     Vec3 away = r > 0 ? vec3_scale(p, 1 / r) : vec3_splat(1 / sqrt(3));
-    return (Spread){r, spot_width(spot, away)};
+    return (Spread){r, spot_width(spot, away), false};
 }
 
 static Spread wood(const Pigment *pigment, const Spot *spot) {
@@ -158,15 +158,15 @@ static Spread crackle(const Pigment *pigment, const Spot *spot) {
 
 static Spread gradient(const Pigment *pigment, const Spot *spot) {
     Vec3 direction = vec3_normalize(pigment->direction);
-    return (Spread){vec3_dot(spot->p, direction), spot_width(spot, direction)};
+    return (Spread){vec3_dot(spot->p, direction), spot_width(spot, direction), false};
 }
 
 static Spread radial(const Spot *spot) {
     Vec3 p = spot->p;
-    if (fabs(p.x) < 0.001 && fabs(p.z) < 0.001) return (Spread){0.25, fmin(spot_size(spot) * 1000, 1)};
+    if (fabs(p.x) < 0.001 && fabs(p.z) < 0.001) return (Spread){0.25, fmin(spot_size(spot) * 1000, 1), false};
     double square = p.x * p.x + p.z * p.z;
     double width = spot_width(spot, vec3(p.z / square, 0, -p.x / square)) / (2 * VTS_PI);
-    return (Spread){0.25 + (atan2(p.x, p.z) + VTS_PI) / (2 * VTS_PI), fmin(width, 1)};
+    return (Spread){0.25 + (atan2(p.x, p.z) + VTS_PI) / (2 * VTS_PI), fmin(width, 1), false};
 }
 
 /* The square of the mean of three sines, each averaged over the footprint. */
@@ -181,17 +181,17 @@ static Spread leopard(const Spot *spot) {
         peak += (1 - once * once) / 2;
     }
     double value = (sum * sum + squares) / 9;
-    return (Spread){value, width_of_variance((4 * sum * sum * peak + 2 * peak * peak) / 81)};
+    return (Spread){value, width_of_variance((4 * sum * sum * peak + 2 * peak * peak) / 81), false};
 }
 
 static Spread falling(Spread distance) {
-    return (Spread){fmax(1 - distance.value, 0), fmin(distance.width, 1)};
+    return (Spread){fmax(1 - distance.value, 0), fmin(distance.width, 1), distance.bell};
 }
 
 static Spread boxed(const Spot *spot) {
     Vec3 p = vec3(fabs(spot->p.x), fabs(spot->p.y), fabs(spot->p.z));
     int axis = p.x >= p.y && p.x >= p.z ? 0 : p.y >= p.z ? 1 : 2;
-    return falling((Spread){vec3_get(p, axis), spot_width(spot, vec3(axis == 0, axis == 1, axis == 2))});
+    return falling((Spread){vec3_get(p, axis), spot_width(spot, vec3(axis == 0, axis == 1, axis == 2)), false});
 }
 
 static double unwrapped(double value) { return value < 0 ? 1 + fmod(value, 1) : fmod(value, 1); }
@@ -278,7 +278,7 @@ Spread pattern_value(const Pigment *pigment, const Spot *spot) {
     case PATTERN_CYLINDRICAL: return falling(distance_from(spot, vec3(spot->p.x, 0, spot->p.z)));
     case PATTERN_ONION: return distance_from(spot, spot->p);
     case PATTERN_SPHERICAL: return falling(distance_from(spot, spot->p));
-    case PATTERN_PLANAR: return falling((Spread){fabs(spot->p.y), spot_width(spot, vec3(0, 1, 0))});
+    case PATTERN_PLANAR: return falling((Spread){fabs(spot->p.y), spot_width(spot, vec3(0, 1, 0)), false});
     case PATTERN_SLOPE: return exactly(slope(pigment, spot));
     case PATTERN_AOI: return exactly(incidence(spot));
     case PATTERN_FUNCTION: return exactly(function_at(pigment, spot->p));

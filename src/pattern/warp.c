@@ -36,7 +36,7 @@ Spread turbulence(const Spot *spot, Octaves octaves) {
         frequency *= (double)octaves.lambda;
         amplitude *= (double)octaves.omega;
     }
-    return (Spread){sum, width_of_variance(variance)};
+    return (Spread){sum, width_of_variance(variance), false};
 }
 
 Vec3 turbulence_vector(const Spot *spot, Octaves octaves, double *variance) {

@@ -5,9 +5,11 @@
 #include "pattern/spot.h"
 #include "scene/scene.h"
 
-/* A value and the width of the range, uniformly filled, that it takes over the footprint. */
+/* A value and the width of the range that it takes over the footprint: uniformly filled; or, with `bell`, as noises are: a bell with the
+ * deviation that the range would have. */
 typedef struct Spread {
     double value, width;
+    bool bell;
 } Spread;
 
 typedef struct Octaves {

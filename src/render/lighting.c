@@ -2,10 +2,10 @@
 
 #include "pattern/pattern.h"
 
-/* Smooth from 0 at `low` to 1 at `high`: POV-Ray's cubic at the rims of lights. */
+/* Smooth from 0 at `low` to 1 at `high`, and a step there if `low` is not below it: POV-Ray's cubic at the rims of lights. */
 static double rim(double low, double high, double x) {
-    if (x <= low) return 0;
     if (x >= high) return 1;
+    if (x <= low) return 0;
     double f = (x - low) / (high - low);
     return f * f * (3 - 2 * f);
 }
@@ -15,7 +15,7 @@ static double spot_factor(const Light *light, Vec3 to_light) {
     double cosine = vec3_dot(light->to_light, to_light);
     if (!(cosine > 0)) return 0;
     double factor = light->tightness != 0 ? pow(cosine, light->tightness) : 1;
-    if (light->radius > 0) factor *= rim(cos(light->falloff * VTS_RADIANS), cos(light->radius * VTS_RADIANS), cosine);
+    factor *= rim(cos(light->falloff * VTS_RADIANS), cos(light->radius * VTS_RADIANS), cosine);
     return factor;
 }
 

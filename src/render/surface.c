@@ -50,7 +50,8 @@ typedef struct Meeting {
     bool lit_already;        /* its own light and that of lights is taken care of elsewhere */
     SurfaceLayer layers[MOST_LAYERS];
     int layer_count;
-    Vec3f through;           /* what all layers let through */
+    Vec3f faded;             /* what is left of light that came to the leg through the interior that it ends in */
+    Vec3f through;           /* what all layers let through, faded */
     double curvature;        /* of the surface; NAN: not asked yet */
 } Meeting;
 
@@ -104,8 +105,9 @@ static void read_layers(Meeting *m, float bailout) {
         if (fabsf(grey_of(above)) <= bailout) break;
     }
     m->through = fabsf(grey_of(above)) > bailout ? above : vec3f(0, 0, 0);
-    if (hit->interior && surface_enclosure(m->leg->enclosures, m->leg->enclosure_count, hit) >= 0)
-        m->through = vec3f_mul(m->through, surface_faded(hit->interior, hit->t));
+    bool inside = hit->interior && surface_enclosure(m->leg->enclosures, m->leg->enclosure_count, hit) >= 0;
+    m->faded = inside ? surface_faded(hit->interior, hit->t) : vec3f(1, 1, 1);
+    m->through = vec3f_mul(m->through, m->faded);
 }
 
 /* ---- light of its own and from lights ---- */
@@ -203,19 +205,19 @@ static Vec3f mirror(SurfaceTracer *tracer, Meeting *m, bool all_of_it) {
     return sum;
 }
 
-/* What comes bent, or all reflected, through the surface. */
+/* What comes bent through the surface, or all reflected: which POV-Ray does not filter by the surface's colour. */
 static Vec3f bent_light(SurfaceTracer *tracer, Meeting *m, double ratio, bool *all_of_it) {
     Vec3 direction, normal = m->layers[0].normal;
     if (vec3_dot(normal, m->leg->cone.direction) > 0) normal = vec3_negate(normal);
     if (!surface_bent(m->leg->cone.direction, normal, 1 / ratio, &direction)) {
         *all_of_it = true;
-        return mirrored_light(tracer, m, normal, most_of(m->through));
+        return vec3f_mul(m->faded, mirrored_light(tracer, m, normal, most_of(m->faded)));
     }
     double bend = vec3_dot(direction, normal) - vec3_dot(m->leg->cone.direction, normal) / ratio; /* n cos i - cos t */
     Leg leg;
     leg_from(tracer, m, direction, bend, most_of(m->through), &leg);
     surface_cross(leg.enclosures, &leg.enclosure_count, m->hit, tracer->compiled->solids_matter);
-    return follow(tracer, &leg, NULL, false);
+    return vec3f_mul(m->through, follow(tracer, &leg, NULL, false));
 }
 
 static Outcome see_part(SurfaceTracer *tracer, Meeting *m) {
@@ -228,7 +230,7 @@ static Outcome see_part(SurfaceTracer *tracer, Meeting *m) {
     if (m->through.x != 0 || m->through.y != 0 || m->through.z != 0) {
         double ratio = index_ratio(m->leg, m->hit);
         if (fabs(ratio - 1) < SAME_INDEX) out.straight = m->through;
-        else out.light = vec3f_add(out.light, vec3f_mul(m->through, bent_light(tracer, m, ratio, &all_of_it)));
+        else out.light = vec3f_add(out.light, bent_light(tracer, m, ratio, &all_of_it));
     }
     out.light = vec3f_add(out.light, mirror(tracer, m, all_of_it));
     return out;

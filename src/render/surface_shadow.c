@@ -55,6 +55,16 @@ void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit, boo
     if (entering) enclose(&enclosures[(*count)++], hit->interior, hit->filled, hit->hollow, &hit->to_interior);
 }
 
+/* POV-Ray's bright spot in the shadow of what is clear: cos^(45 caustics), to the normal as the top layer bends it, is added to 1
+ * (measured). */
+static const double CAUSTICS = 45;
+
+static float focused(const TexturePart *part, const Ray *ray, const SurfaceHit *hit) {
+    if (!hit->interior || hit->interior->caustics == 0) return 1;
+    Vec3 normal = texture_layer_normal(part, part->texture, hit->normal);
+    return (float)(1 + pow(fabs(vec3_dot(normal, ray->direction)), CAUSTICS * hit->interior->caustics));
+}
+
 /* What a surface lets through of light: of each layer filter × pigment + transmit. */
 static Vec3f filtered(const Ray *ray, const SurfaceHit *hit) {
     SurfaceParts looks;
@@ -71,15 +81,13 @@ static Vec3f filtered(const Ray *ray, const SurfaceHit *hit) {
             through = vec3f_mul(through, vec3f((float)(c.filter * c.red + c.transmit), (float)(c.filter * c.green + c.transmit),
                                                (float)(c.filter * c.blue + c.transmit)));
         }
-        sum = vec3f_madd(sum, through, (float)part->weight);
+        sum = vec3f_madd(sum, through, (float)part->weight * focused(part, ray, hit));
     }
     return sum;
 }
 
 /* Light through everything clear on the way, of which there may be much; nothing more than so much is followed. */
 enum { MOST_CLEAR = 1000 };
-/* POV-Ray's bright spot in the shadow of what is clear: cos^(45 caustics) is added to 1 (measured). */
-static const double CAUSTICS = 45;
 
 /* What casts shadows is as fine as what they fall on: a surface seen without its finest parts must not lie in the shadow of these. */
 static RayWidth width_at(const Leg *leg, Vec3 point) {
@@ -103,8 +111,6 @@ static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from,
         through = vec3f_mul(through, filtered(ray, &hit));
         if (hit.interior && surface_enclosure(enclosures, count, &hit) >= 0)
             through = vec3f_mul(through, surface_faded(hit.interior, hit.t - begun));
-        if (hit.interior && hit.interior->caustics != 0)
-            through = vec3f_scale(through, (float)(1 + pow(fabs(vec3_dot(hit.normal, ray->direction)), CAUSTICS * hit.interior->caustics)));
         surface_cross(enclosures, &count, &hit, compiled->solids_matter);
         if (most_of(through) < (float)bailout) break;
         begun = hit.t;

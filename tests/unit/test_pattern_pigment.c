@@ -1,4 +1,5 @@
 /* Colour maps, layers and uniform pigments: closed forms, and colours that POV-Ray gives. */
+#include "base/random.h"
 #include "pattern/pattern.h"
 
 #include <math.h>
@@ -191,6 +192,28 @@ static void layers_stand_in_texture_space(void **state) {
     assert_true(texture_look(&texture, vec3(1.5, 0.5, 0.5), no_normal, 0).color.blue == 1);
 }
 
+/* From far away a noise shows the mean of its map, rare colours of the map's ends included; of granite, whose values lean to
+ * one side, half of these. */
+static void rare_values_of_noises_are_seen_from_afar(void **state) {
+    (void)state;
+    static const PatternKind kinds[] = {PATTERN_BOZO, PATTERN_GRANITE, PATTERN_WRINKLES};
+    const ColorMapEntry rare[] = {{0, {0, 0, 0, 0, 0}, NULL}, {0.7, {0, 0, 0, 0, 0}, NULL}, {0.7, {1, 1, 1, 0, 0}, NULL}, {1, {1, 1, 1, 0, 0}, NULL}};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(kinds); i++) {
+        Pigment pigment = make_pigment(kinds[i]);
+        pigment.entries = rare;
+        pigment.entry_count = VTS_ARRAY_COUNT(rare);
+        double sum = 0;
+        enum { POINTS = 20000 };
+        for (uint64_t k = 0; k < POINTS; k++) {
+            Vec3 p = vec3(random_unit(random_hash(k, 1, 0, 0)), random_unit(random_hash(k, 2, 0, 0)), random_unit(random_hash(k, 3, 0, 0)));
+            sum += pigment_color(&pigment, vec3_scale(p, 100), no_normal, 0).red;
+        }
+        double near = sum / POINTS, far = pigment_color(&pigment, vec3(0.3, 0.2, 0.1), no_normal, 1000).red;
+        assert_true(near > 0.03 && near < 0.12);
+        assert_true(far > 0.5 * near && far < 1.25 * near);
+    }
+}
+
 static void skies_have_layers(void **state) {
     (void)state;
     Pigment day = make_pigment(PATTERN_GRADIENT), clouds = make_pigment(PATTERN_SOLID);
@@ -253,6 +276,7 @@ int main(void) {
         cmocka_unit_test(knows_uniform_pigments),
         cmocka_unit_test(layers_show_what_is_below),
         cmocka_unit_test(layers_stand_in_texture_space),
+        cmocka_unit_test(rare_values_of_noises_are_seen_from_afar),
         cmocka_unit_test(skies_have_layers),
         cmocka_unit_test(skies_of_two_versions),
         cmocka_unit_test(absurd_places_are_harmless),

@@ -3,6 +3,7 @@
 #include "base/stopwatch.h"
 #include "eval/eval.h"
 #include "hooks.h"
+#include "render/audit.h"
 #include "render/preview.h"
 #include "render/reference.h"
 #include "render/report.h"
@@ -383,6 +384,10 @@ VtsStatus session_draw(VtsSession *session, bool exact, const MomentPlan *plan, 
     session->preview = NULL;
     if (session->interrupted) return VTS_INTERRUPTED;
     if (!done) memory_budget_fail(&session->memory);
+    if (session->audits && !plan->unseen) {
+        const CompileOptions how = {.pool = session->pool, .memory = &session->memory, .interrupted = &session->interrupted};
+        audit_picture(&session->compiled, &how, &options, &session->picture, stats);
+    }
     return VTS_OK;
 }
 
@@ -426,6 +431,7 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
     double built = stopwatch_wall();
     RenderStats stats;
     session_keep_tiles(session, output_path, exact);
+    session->audits = !exact && !o->unreported;
     if ((status = session_expose(session, scene_path, exact, &stats)) != VTS_OK) return status;
     stats.kept_tiles = tile_file_taken(session->kept);
     double rendered = stopwatch_wall();
@@ -512,7 +518,7 @@ static void report_memory(VtsSession *session) {
 static VtsStatus guarded(VtsSession *session, const Call *call) {
     session->started_wall = stopwatch_wall();
     session->started_cpu = stopwatch_cpu();
-    session->probing = session->silent = false;
+    session->probing = session->silent = session->audits = false;
     session->moment = 0;
     session->pilot = (PilotResult){.known = false};
     if (session->interrupted) return VTS_INTERRUPTED;

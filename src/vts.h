@@ -95,6 +95,7 @@ typedef struct VtsOptions {
     void (*on_progress)(void *context, const char *stage, size_t done, size_t total);
     void *context;
     bool colour;                     /* ANSI colours in diagnostics */
+    bool unreported;                 /* nobody asks for vts_report(): nothing is done for it alone */
 } VtsOptions;
 
 typedef enum VtsDump { VTS_DUMP_TOKENS, VTS_DUMP_AST, VTS_DUMP_SCENE, VTS_DUMP_TAPE, VTS_DUMP_COMPILED } VtsDump;

@@ -33,6 +33,7 @@ struct VtsSession {
     bool in_film, renew; /* vts_set_frame() was called; what the calls before have read is to be forgotten */
     bool probing;       /* nothing is told */
     double moment;      /* of the exposure, 0 to 1, that the scene is evaluated at; */
+    bool audits;        /* pictures are audited, for the report */
     bool silent;        /* after the first one errors alone are told */
     /* of one call */
     Arena parse, scene_arena, compiled_arena;

@@ -76,6 +76,7 @@ int command_render(Settings *settings) {
     if (settings->scenes.count > 1)
         return complain_usage(settings, "one scene at a time, not also '%s'", settings->scenes.items[1]);
     if (settings->report && !report_file_possible(settings, settings->report)) return VTS_ERROR_FILE;
+    settings->options.unreported = !settings->report;
     Console console;
     console_init(&console, settings);
     Rendering rendering = {settings->scenes.items[0], settings, &console};

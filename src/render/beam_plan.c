@@ -80,7 +80,7 @@ static bool build_texel(BuiltTexel *texel, size_t most, CompiledScene *compiled,
     size_t triangles = 0;
     for (size_t i = 0; i < def->layer_count && triangles <= most; i++) {
         TexelMesh mesh;
-        if (!texel_mesh_layer(texel, &def->layers[i], BEAM_TOLERANCE_VOXELS / int_max(texel->finest_seen, 16), compiled, diags, &mesh)) return false;
+        if (!texel_mesh_layer(texel, &def->layers[i], &(TexelFineness){BEAM_TOLERANCE_VOXELS / int_max(texel->finest_seen, 16), 0}, compiled, diags, &mesh)) return false;
         triangles += mesh.triangle_count;
         if (triangles <= most) beam_texel_add_layer(draft, &mesh);
     }

@@ -300,10 +300,12 @@ void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out, Ao
         if (tr->plan.first == tr->plan.most) wanted = tr->plan.most;
     }
     double error = tr->before > 0 ? law.error * pow(law.samples / tr->before, law.power) : 0;
-    tr->squared_error += error * error * pixels;
+    tr->squared_noise += error * error * pixels;
 }
 
 double beam_tracer_error(const BeamTracer *tr, uint64_t *pixels) {
     *pixels = tr->pixel_count;
-    return tr->squared_error;
+    return tr->squared_error + tr->squared_noise;
 }
+
+double beam_tracer_noise(const BeamTracer *tr) { return tr->squared_noise; }

@@ -29,6 +29,8 @@ BeamTracer *beam_tracer_create(const CompiledScene *compiled, const BeamPlan *pl
 void beam_tile(BeamTracer *tracer, int x0, int y0, int x1, int y1, Radiance *out, AovSum *aovs);
 /* The expected square of the error of what was drawn, summed over *pixels pixels: of noise, and where compiled->voxel_error is known of voxels. */
 double beam_tracer_error(const BeamTracer *tracer, uint64_t *pixels);
+/* The same of noise alone. */
+double beam_tracer_noise(const BeamTracer *tracer);
 /* What has been done so far, in counts that hang on nothing but the scene and the picture. */
 typedef struct BeamWork {
     uint64_t triangles, nodes; /* mapped and drawn, and boxes around some */

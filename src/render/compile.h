@@ -119,10 +119,20 @@ void beam_pilot(CompiledScene *compiled);
 #define EARLIEST_VOXELS 0.4
 /* Of the scene's knob `detail`. */
 typedef enum Detail { DETAIL_AUTO, DETAIL_EXACT, DETAIL_VOXELS, DETAIL_SLAB } Detail;
+/* How near triangles are to what they stand for, in texel space; and of how many a density is made, 0: as many as tell it well. */
+typedef struct TexelFineness {
+    double tolerance;
+    size_t flakes;
+} TexelFineness;
 /* A layer's triangles in compiled->scratch; false after a diagnostic. */
-bool texel_mesh_layer(const BuiltTexel *texel, const TexelLayer *layer, double tolerance, CompiledScene *compiled, DiagList *diags,
+bool texel_mesh_layer(const BuiltTexel *texel, const TexelLayer *layer, const TexelFineness *how, CompiledScene *compiled, DiagList *diags,
                       TexelMesh *mesh);
-/* All matter of a texel as its source triangles, for the reference. exact_build.c */
-bool exact_build_texel(BuiltTexel *texel, CompiledScene *compiled, DiagList *diags);
+/* As TexelFineness; more triangles than `most` (0: any number) are not made. */
+typedef struct ExactMaking {
+    double tolerance;
+    size_t flakes, most;
+} ExactMaking;
+/* All matter of a texel as its source triangles, for the reference; false after a diagnostic, or silently where there would be too many. exact_build.c */
+bool exact_build_texel(BuiltTexel *texel, const ExactMaking *how, CompiledScene *compiled, DiagList *diags);
 
 #endif

@@ -191,8 +191,7 @@ static int strata_columns(const Strata *strata, int row) {
     return strata->samples / strata->rows + (row < strata->samples % strata->rows);
 }
 
-static Radiance see_pixel(void *context, int worker, int px, int py, AovSum *aovs) {
-    const Reference *reference = context;
+static Radiance see_pixel(const Reference *reference, int worker, int px, int py, AovSum *aovs) {
     const RenderOptions *options = reference->options;
     Strata strata = strata_of(int_max(1, options->samples));
     Radiance sum = {{0, 0, 0}, 0};
@@ -217,8 +216,13 @@ static Radiance see_pixel(void *context, int worker, int px, int py, AovSum *aov
 }
 
 static void see_tile(void *context, int worker, int x0, int y0, int x1, int y1, Radiance *out, AovSum *aovs) {
+    const Reference *reference = context;
     for (int y = y0; y < y1; y++)
-        for (int x = x0; x < x1; x++) *out++ = see_pixel(context, worker, x, y, aovs ? aovs++ : NULL);
+        for (int x = x0; x < x1; x++) *out++ = see_pixel(reference, worker, x, y, aovs ? aovs++ : NULL);
+}
+
+Radiance reference_pixel(const CompiledScene *compiled, const RenderOptions *options, int x, int y, TraceCounters *counters) {
+    return see_pixel(&(Reference){compiled, options, counters}, 0, x, y, NULL);
 }
 
 bool reference_picture(const CompiledScene *compiled, const RenderOptions *options, MemoryBudget *memory, Image *out,

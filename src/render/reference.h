@@ -11,5 +11,7 @@ enum { REFERENCE_DEFAULT_SAMPLES = 64, REFERENCE_MOST_SAMPLES = 1 << 16 };
  * sample and seed. Lights cast hard shadows by one ray each. */
 bool reference_picture(const CompiledScene *compiled, const RenderOptions *options, MemoryBudget *memory, Image *out,
                        RenderStats *stats, StrBuf *error);
+/* One pixel, as a number of the scene's gamma. */
+Radiance reference_pixel(const CompiledScene *compiled, const RenderOptions *options, int x, int y, TraceCounters *counters);
 
 #endif

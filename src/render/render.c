@@ -75,7 +75,7 @@ static void share_middles(Frame *frame, int workers) {
 }
 
 static void count_workers(const Frame *frame, int workers, RenderStats *stats) {
-    double squares = 0;
+    double squares = 0, noise = 0;
     uint64_t pixels = 0;
     SamplerTally tally = {.pixels = 0};
     for (int i = 0; i < workers; i++) {
@@ -86,11 +86,13 @@ static void count_workers(const Frame *frame, int workers, RenderStats *stats) {
         }
         beam_tracer_count(frame->beams[i], &stats->counters);
         squares += beam_tracer_error(frame->beams[i], &count);
+        noise += beam_tracer_noise(frame->beams[i]);
         pixels += count;
     }
-    squares += tally.squared_error, pixels += tally.pixels;
+    squares += tally.squared_error, noise += tally.squared_error, pixels += tally.pixels;
     stats->split_pixels = tally.refined;
     bool known = frame->beams ? isinf(frame->compiled->all_exact_to) || frame->compiled->voxel_error >= 0 : frame->compiled->skin_count == 0;
+    stats->noise_estimate = pixels ? sqrt(noise / (double)pixels) : 0;
     stats->error_estimate = !known ? -1 : pixels ? sqrt(squares / (double)pixels) : 0;
 }
 

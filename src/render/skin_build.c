@@ -26,11 +26,13 @@ static int power_of_two_above(double x, int most) {
 
 /* Contents are tessellated to a fifth of a voxel: what is left of facets disappears in the voxels' own blur. */
 static const double CONTENT_TOLERANCE_VOXELS = 0.2;
+/* For the reference as the finest voxels would have it. */
+static const double EXACT_TOLERANCE = 0.2 / TEXEL_LARGEST_RESOLUTION;
 
-bool texel_mesh_layer(const BuiltTexel *texel, const TexelLayer *layer, double tolerance, CompiledScene *compiled, DiagList *diags,
+bool texel_mesh_layer(const BuiltTexel *texel, const TexelLayer *layer, const TexelFineness *fineness, CompiledScene *compiled, DiagList *diags,
                       TexelMesh *mesh) {
     const CompileOptions *options = compiled->options;
-    const TexelMeshOptions how = {tolerance, options->interrupted, options->progress};
+    const TexelMeshOptions how = {fineness->tolerance, options->interrupted, options->progress, fineness->flakes};
     ShapeRefusal refusal;
     if (!texel_layer_mesh(texel->def, layer, &how, &compiled->scratch, mesh, &refusal)) {
         if (options->interrupted && *options->interrupted) return false;
@@ -54,7 +56,7 @@ static VoxelLayer *build_voxels(const BuiltTexel *texel, const TexelLayer *layer
     if (layer->density) {
         mesh = (TexelMesh){0};
         build.field = texel_field_make(def, layer, &compiled->scratch);
-    } else if (!texel_mesh_layer(texel, layer, CONTENT_TOLERANCE_VOXELS / texel->built, compiled, diags, &mesh)) {
+    } else if (!texel_mesh_layer(texel, layer, &(TexelFineness){CONTENT_TOLERANCE_VOXELS / texel->built, 0}, compiled, diags, &mesh)) {
         return NULL;
     }
     VoxelLayer *voxels = voxel_layer_build(&mesh, &build, NULL);
@@ -171,7 +173,12 @@ BuiltTexel *texel_ask(const TexelDef *def, CompiledScene *compiled) {
 bool texel_build(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
     const TexelDef *def = texel->def;
     int most = def->resolution ? def->resolution : LARGEST_AUTO_RESOLUTION;
-    if (options->exact) return exact_build_texel(texel, compiled, diags);
+    if (options->exact) {
+        double start = stopwatch_wall();
+        bool done = exact_build_texel(texel, &(ExactMaking){.tolerance = EXACT_TOLERANCE}, compiled, diags);
+        texel->build_seconds = stopwatch_wall() - start;
+        return done;
+    }
     texel->built = def->file ? def->resolution : power_of_two_above(texel->needed, power_of_two_above(most, TEXEL_LARGEST_RESOLUTION));
     if (!build_matter(texel, options, compiled, diags)) return false;
     if (texel->matter_count == 0) return true;

@@ -87,7 +87,7 @@ static void add_field(const Wall *wall, const TexelField *field) {
 static void add_layer(const TexelDef *def, const TexelLayer *layer, Section sections[2], CompiledScene *compiled) {
     Vec3f e = texel_extent(def);
     ArenaMark scratch = arena_mark(&compiled->scratch);
-    const TexelMeshOptions how = {1.0 / SECTION, compiled->options->interrupted, NULL};
+    const TexelMeshOptions how = {1.0 / SECTION, compiled->options->interrupted, NULL, 0};
     const TexelField *field = layer->density ? texel_field_make(def, layer, &compiled->scratch) : NULL;
     TexelMesh mesh = {0};
     ShapeRefusal refusal;

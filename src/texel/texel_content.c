@@ -45,7 +45,7 @@ bool texel_layer_mesh(const TexelDef *def, const TexelLayer *layer, const TexelM
                       ShapeRefusal *refusal) {
     if (layer->density) {
         *refusal = (ShapeRefusal){0};
-        texel_field_flakes(texel_field_make(def, layer, arena), texel_extent(def), FIELD_FLAKES, arena, out);
+        texel_field_flakes(texel_field_make(def, layer, arena), texel_extent(def), how->flakes ? how->flakes : FIELD_FLAKES, arena, out);
         return true;
     }
     TriangleSoup soup = {0};

@@ -16,6 +16,7 @@ typedef struct TexelMeshOptions {
     double tolerance;               /* the largest distance from the true surface, in texel space */
     const atomic_bool *interrupted; /* or NULL */
     const Progress *progress;       /* or NULL */
+    size_t flakes;                  /* triangles that a density is made of; 0: as many as tell it well */
 } TexelMeshOptions;
 
 /* The contents of one layer as triangles in texel space, in `arena`. False, with *refusal filled, for contents that have no finite boundary or

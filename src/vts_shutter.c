@@ -70,7 +70,7 @@ static VtsStatus draw_moment(Exposure *e, double moment, int count) {
     VtsStatus status = go_to(e, moment);
     if (status == VTS_OK) status = session_draw(session, e->exact, &plan, &stats);
     if (status != VTS_OK) return status;
-    if (e->moments++ == 0) e->stats->error_estimate = stats.error_estimate;
+    if (e->moments++ == 0) e->stats->error_estimate = stats.error_estimate, e->stats->noise_estimate = stats.noise_estimate;
     trace_counters_add(&e->stats->counters, &stats.counters);
     e->stats->split_pixels += stats.split_pixels;
     return VTS_OK;

@@ -10,12 +10,12 @@
 enum { PLACES_A_SIDE = 24, PLACES = PLACES_A_SIDE * PLACES_A_SIDE, MOST_WITHIN = 96, MOST_BESIDE = 32 };
 /* Of the picture's work, the part that rays may take, and how many that is of each pixel. */
 static const double SHARE = 0.1;
-enum { LEAST_RAYS = 8, MOST_RAYS = 128 };
+enum { LEAST_RAYS = 8, LEAST_PATHS = 96, MOST_RAYS = 128 }; /* paths of light through volumes are noisy, and their light pass took more than rays tell */
 /* Work in rays of the reference, each of which asks for light about once. */
 static const double STEPS_A_RAY = 6, TRIANGLES_A_RAY = 60;
 /* Triangles are as near to what is round as beams have them: a tenth of a pixel. */
 static const double TOLERANCE_VOXELS = 0.2;
-enum { COARSEST = 16, FLAKES = 150000, MOST_TRIANGLES = 3000000 };
+enum { COARSEST = 16, FLAKES = 60000, MOST_TRIANGLES = 3000000 };
 /* What lies within chance counts less and less: at so many standard errors as much as what was thought before. */
 static const double DOUBTFUL = 2;
 
@@ -140,9 +140,9 @@ static double settle(const Place *places, int count, double before) {
     return weight > 0 ? weight * mean + (1 - weight) * before : before;
 }
 
-static int rays_a_pixel(const TraceCounters *c, int pixels) {
+static int rays_a_pixel(const TraceCounters *c, bool paths, int pixels) {
     double work = (double)c->camera_rays + (double)c->shadow_rays + (double)c->steps / STEPS_A_RAY + (double)c->triangles / TRIANGLES_A_RAY;
-    return (int)double_clamp(SHARE * work / (4 * int_max(pixels, 1)), LEAST_RAYS, MOST_RAYS);
+    return (int)double_clamp(SHARE * work / (4 * int_max(pixels, 1)), paths ? LEAST_PATHS : LEAST_RAYS, MOST_RAYS);
 }
 
 /* ---- the whole ---- */
@@ -156,7 +156,7 @@ static void look(Audit *audit, const CompiledScene *compiled, Pool *pool, Render
         all[i] = place_in(audit->options.region, i);
         inside += within[i] = compiled->skin_count == 0 || meets_skins(compiled, all[i].x, all[i].y);
     }
-    audit->options.samples = rays_a_pixel(&stats->counters, int_min(inside, MOST_WITHIN) + int_min(PLACES - inside, MOST_BESIDE));
+    audit->options.samples = rays_a_pixel(&stats->counters, compiled->volumes, int_min(inside, MOST_WITHIN) + int_min(PLACES - inside, MOST_BESIDE));
     double noise = stats->noise_estimate * stats->noise_estimate, known = stats->error_estimate, total = 0;
     for (int kind = 0; kind < 2; kind++) {
         int of_kind = kind ? PLACES - inside : inside, count = choose(audit, all, within, !kind, of_kind, kind ? MOST_BESIDE : MOST_WITHIN);

@@ -8,7 +8,8 @@
 
 #include <stdint.h>
 
-enum { MOST_SAMPLES = 8, FLAKE_CELLS = 128 };
+enum { MOST_SAMPLES = 8, LEAST_FLAKE_CELLS = 8, MOST_FLAKE_CELLS = 128 };
+static const double FLAKES_A_CELL = 0.7;
 /* What is thinner counts as nothing, so that the noise of scanners does not fill all voxels. */
 static const double LEAST_DENSITY = 1.0 / 512;
 /* Cells of this optical depth, all around, let nothing of what is within be seen: e to the power of its negative is 1/1000. */
@@ -149,16 +150,29 @@ const TexelField *texel_field_make(const TexelDef *def, const TexelLayer *layer,
 
 /* ---- flakes ---- */
 
-static Vec3f cell_corner(Vec3f sides, size_t cell) {
-    return vec3f((float)(cell % FLAKE_CELLS) * sides.x, (float)(cell / FLAKE_CELLS % FLAKE_CELLS) * sides.y,
-                 (float)(cell / FLAKE_CELLS / FLAKE_CELLS) * sides.z);
+/* Cells that flakes are dealt out to, by the density there: n each way. */
+typedef struct FlakeGrid {
+    size_t n;
+    Vec3f sides;
+} FlakeGrid;
+
+static FlakeGrid flake_grid(Vec3f extent, size_t flakes) {
+    size_t n = (size_t)int_clamp((int)cbrt((double)flakes / FLAKES_A_CELL + 0.5), LEAST_FLAKE_CELLS, MOST_FLAKE_CELLS);
+    return (FlakeGrid){n, vec3f_scale(extent, 1 / (float)n)};
 }
 
-static double cell_area(const TexelField *field, Vec3f sides, size_t cell) {
+static Vec3f cell_corner(const FlakeGrid *g, size_t cell) {
+    Vec3f sides = g->sides;
+    size_t n = g->n;
+    return vec3f((float)(cell % n) * sides.x, (float)(cell / n % n) * sides.y,
+                 (float)(cell / n / n) * sides.z);
+}
+
+static double cell_area(const TexelField *field, const FlakeGrid *g, size_t cell) {
     float area = 0, normals[6] = {0};
-    Vec3f lo = cell_corner(sides, cell);
-    if (!field->touches(field->context, lo, vec3f_add(lo, sides))) return 0;
-    field->fill(field->context, lo, sides, &area, normals);
+    Vec3f lo = cell_corner(g, cell);
+    if (!field->touches(field->context, lo, vec3f_add(lo, g->sides))) return 0;
+    field->fill(field->context, lo, g->sides, &area, normals);
     return (double)area;
 }
 
@@ -194,33 +208,35 @@ static void add_flake(const FieldMatter *m, Vec3f lo, Vec3f sides, double area, 
 }
 
 /* Whether no ray comes into the cell: all around it others take what light there is. */
-static bool is_hidden(const double *areas, size_t cell, double opaque) {
-    const int at[3] = {(int)(cell % FLAKE_CELLS), (int)(cell / FLAKE_CELLS % FLAKE_CELLS), (int)(cell / FLAKE_CELLS / FLAKE_CELLS)};
+static bool is_hidden(const double *areas, size_t n, size_t cell, double opaque) {
+    const int at[3] = {(int)(cell % n), (int)(cell / n % n), (int)(cell / n / n)};
     for (int k = 0; k < 3; k++)
-        if (at[k] == 0 || at[k] == FLAKE_CELLS - 1) return false;
+        if (at[k] == 0 || at[k] == (int)n - 1) return false;
     for (int z = -1; z <= 1; z++)
         for (int y = -1; y <= 1; y++)
             for (int x = -1; x <= 1; x++)
-                if (areas[((size_t)(at[2] + z) * FLAKE_CELLS + (size_t)(at[1] + y)) * FLAKE_CELLS + (size_t)(at[0] + x)] < opaque) return false;
+                if (areas[((size_t)(at[2] + z) * n + (size_t)(at[1] + y)) * n + (size_t)(at[0] + x)] < opaque) return false;
     return true;
 }
 
 /* The area in each cell, but for those that cannot be seen; returns the sum. */
-static double seen_areas(const TexelField *field, Vec3f sides, Arena *arena, double **out) {
-    const size_t cells = (size_t)FLAKE_CELLS * FLAKE_CELLS * FLAKE_CELLS;
+static double seen_areas(const TexelField *field, const FlakeGrid *g, Arena *arena, double **out) {
+    const size_t cells = g->n * g->n * g->n;
+    Vec3f sides = g->sides;
     double *areas = arena_new_array(arena, double, cells), *seen = arena_new_array(arena, double, cells), total = 0;
     double shortest = (double)float_min(sides.x, float_min(sides.y, sides.z));
     double opaque = 2 * HIDING_DEPTH / shortest * (double)sides.x * (double)sides.y * (double)sides.z;
-    for (size_t c = 0; c < cells; c++) areas[c] = cell_area(field, sides, c);
-    for (size_t c = 0; c < cells; c++) total += seen[c] = is_hidden(areas, c, opaque) ? 0 : areas[c];
+    for (size_t c = 0; c < cells; c++) areas[c] = cell_area(field, g, c);
+    for (size_t c = 0; c < cells; c++) total += seen[c] = is_hidden(areas, g->n, c, opaque) ? 0 : areas[c];
     *out = seen;
     return total;
 }
 
 void texel_field_flakes(const TexelField *field, Vec3f extent, size_t count, Arena *arena, TexelMesh *out) {
-    const size_t cells = (size_t)FLAKE_CELLS * FLAKE_CELLS * FLAKE_CELLS;
-    Vec3f sides = vec3f_scale(extent, 1.0F / FLAKE_CELLS);
-    double *areas, total = seen_areas(field, sides, arena, &areas);
+    const FlakeGrid g = flake_grid(extent, count);
+    const size_t cells = g.n * g.n * g.n;
+    const Vec3f sides = g.sides;
+    double *areas, total = seen_areas(field, &g, arena, &areas);
     *out = (TexelMesh){0};
     if (!(total > 0)) return;
     Vec3f *vertices = arena_new_array(arena, Vec3f, 3 * (count + 1));
@@ -231,7 +247,7 @@ void texel_field_flakes(const TexelField *field, Vec3f extent, size_t count, Are
         RandomStream random = {random_hash(c, 0xF1A, 0, 0)};
         for (double n = floor(before); n < floor(after) && out->triangle_count <= count; n++) {
             size_t i = out->triangle_count++;
-            add_flake(field->context, cell_corner(sides, c), sides, total / (double)count, &random, &vertices[3 * i]);
+            add_flake(field->context, cell_corner(&g, c), sides, total / (double)count, &random, &vertices[3 * i]);
             for (uint32_t k = 0; k < 3; k++) triangles[i][k] = (uint32_t)(3 * i) + k;
         }
         before = after;

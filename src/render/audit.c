@@ -18,6 +18,9 @@ static const double TOLERANCE_VOXELS = 0.2;
 enum { COARSEST = 16, FLAKES = 60000, MOST_TRIANGLES = 3000000 };
 /* What lies within chance counts less and less: at so many standard errors as much as what was thought before. */
 static const double DOUBTFUL = 2;
+/* Above so many, what was thought before was too much; but so much of its square is left. */
+static const double MOST_LUCK = 1.5, LEAST_LEFT = 0.05;
+enum { ENOUGH = 16 };
 
 typedef struct Place {
     int x, y; /* of the whole picture */
@@ -137,7 +140,8 @@ static double settle(const Place *places, int count, double before) {
     double mean = sum / count, variance = fmax(squares / count - mean * mean, 0) / (count - 1), chance = DOUBTFUL * DOUBTFUL * variance;
     if (before < 0) return fmax(mean, 0.5 * sqrt(variance));
     double square = mean > 0 ? mean * mean : 0, weight = square * square / (square * square + chance * chance);
-    return weight > 0 ? weight * mean + (1 - weight) * before : before;
+    double settled = weight > 0 ? weight * mean + (1 - weight) * before : before;
+    return count < ENOUGH ? settled : fmin(settled, fmax(mean + MOST_LUCK * sqrt(variance), LEAST_LEFT * before));
 }
 
 static int rays_a_pixel(const TraceCounters *c, bool paths, int pixels) {

@@ -132,7 +132,7 @@ static void end_call(VtsSession *session) {
 void vts_session_destroy(VtsSession *session) {
     if (!session) return;
     end_call(session);
-    session_trim_cloths(session, true);
+    session_trim_nets(session, true);
     volume_memo_destroy(session->volume_memo);
     texel_cache_destroy(session->texels);
     pool_destroy(session->pool);
@@ -274,9 +274,9 @@ VtsStatus session_evaluate(VtsSession *session, const char *path, EvalMode mode)
     EvalGeometry geometry = hooks_geometry(&session->scene_arena, session->texels);
     /* As in POV-Ray, what counts frames is 0 where there is no film; but a picture alone is the first of one, so that scenes which
      * take their part of a table by the frame's number can be read and drawn. */
-    EvalClothStates cloths = session_cloth_states(session);
+    NetStates states = session_net_states(session);
     bool film = session_is_film(o), counted = film || !mode.is_program;
-    EvalOptions options = {.geometry = &geometry, .cloth_states = &cloths, .include_dirs = o->include_dirs, .include_dir_count = o->include_dir_count,
+    EvalOptions options = {.geometry = &geometry, .net_states = &states, .include_dirs = o->include_dirs, .include_dir_count = o->include_dir_count,
                            .stdlib_dir = session->stdlib.size ? session->stdlib.data : NULL,
                            .declares = declares, .declare_count = o->declare_count, .clock = o->clock + session->moment * o->shutter_clock, .clock_on = film || o->clock_set,
                            .clock_delta = film ? o->clock_delta : 0, .initial_clock = film ? o->first_clock : 0,
@@ -540,7 +540,7 @@ static VtsStatus guarded(VtsSession *session, const Call *call) {
         texel_cache_clear(session->texels);
     }
     end_call(session);
-    session_trim_cloths(session, false);
+    session_trim_nets(session, false);
     texel_cache_trim(session->texels);
     return status;
 }

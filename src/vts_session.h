@@ -5,6 +5,7 @@
 #include "vts.h"
 
 #include "eval/eval.h"
+#include "grow/spring_net.h"
 #include "image/image.h"
 #include "render/render.h"
 
@@ -49,7 +50,7 @@ struct VtsSession {
         int frame;
         PilotResult result;   /* not known where nothing of it was needed */
     } film_pilot;
-    struct ClothStates *cloths; /* followed so far; NULL: none */
+    struct KeptStates *nets; /* followed so far; NULL: none */
     TileFile *kept; /* what is done of the picture that is being drawn; or NULL */
     double started_wall, started_cpu;
 };
@@ -85,10 +86,10 @@ VtsStatus session_compile_frame(VtsSession *session, const char *scene_path, boo
 /* vts_shutter.c: evaluates once more, silently, and compiles. */
 VtsStatus session_repeat(VtsSession *session, const char *scene_path, bool exact);
 
-/* vts_cloth.c: states of cloths, kept in memory as long as each frame asks for them, and in the session's cache folder. */
-EvalClothStates session_cloth_states(VtsSession *session);
+/* vts_nets.c: states of cloths and springs, kept in memory as long as each frame asks for them, and in the session's cache folder. */
+NetStates session_net_states(VtsSession *session);
 /* Before a frame: lets go what the last one did not ask for; all of it. */
-void session_trim_cloths(VtsSession *session, bool all);
+void session_trim_nets(VtsSession *session, bool all);
 
 /* vts_resume.c: a file beside the picture for what is done of it, closed by end of the call; of blurred pictures none. */
 void session_keep_tiles(VtsSession *session, const char *output_path, bool exact);

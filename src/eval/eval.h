@@ -110,18 +110,8 @@ typedef struct EvalGeometry {
     bool (*geo)(void *context, const GeoOrigin *origin, const EvalGeoRequest *request, Vec3 *answer, StrBuf *error);
 } EvalGeometry;
 
-struct Cloth;
-/* States of cloths that were followed before, by cloth_spec_hash(). */
-typedef struct EvalClothStates {
-    /* Puts the cloth into the latest kept state not after `tick`, if there is one after its own. */
-    void (*find)(void *context, Hash128 key, uint64_t tick, struct Cloth *cloth);
-    /* Keeps its state. `asked`: it is at the time that was asked for, else passes it on its way. */
-    void (*keep)(void *context, Hash128 key, const struct Cloth *cloth, bool asked);
-    void *context;
-} EvalClothStates;
-
 typedef struct EvalOptions {
-    const EvalClothStates *cloth_states; /* NULL: cloths are followed from their beginning */
+    const struct NetStates *net_states; /* grow/spring_net.h; NULL: cloths are followed from their beginning */
     const char *const *include_dirs;  /* after the including file's folder and the scene's folder */
     size_t include_dir_count;
     const char *stdlib_dir;           /* last; may be NULL */

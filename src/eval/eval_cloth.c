@@ -5,25 +5,6 @@
 /* Springs that may be looked at for one cloth: some ten minutes. */
 static const double MOST_WORK = 5e10;
 
-/* Seconds from one state that is kept on the way to the next. */
-enum { STATE_SECONDS = 1 };
-
-/* From the state that was kept, by those that are to be kept. */
-static bool follow(Cloth *cloth, Hash128 key, const Eval *ev, double time, Vec3 *places) {
-    const EvalClothStates *states = ev ? ev->options->cloth_states : NULL;
-    const atomic_bool *interrupted = ev ? ev->options->interrupted : NULL;
-    if (!states) return cloth_follow(cloth, time, interrupted, places);
-    uint64_t last = cloth_tick_of(time), step = STATE_SECONDS * CLOTH_TICKS;
-    states->find(states->context, key, last, cloth);
-    for (uint64_t next = (cloth_tick(cloth) / step + 1) * step; next <= last; next += step) {
-        if (!cloth_follow(cloth, (double)next / CLOTH_TICKS, interrupted, places)) return false;
-        states->keep(states->context, key, cloth, false);
-    }
-    if (!cloth_follow(cloth, time, interrupted, places)) return false;
-    states->keep(states->context, key, cloth, true);
-    return true;
-}
-
 bool cloth_places(const BuildContext *context, const ClothSpec *spec, Span span, Vec3 *places) {
     Eval *ev = context->eval;
     double time = ev ? ev->options->time : 0;
@@ -32,7 +13,8 @@ bool cloth_places(const BuildContext *context, const ClothSpec *spec, Span span,
         return false;
     }
     ArenaMark mark = arena_mark(context->arena);
-    bool done = follow(cloth_create(spec, context->arena), cloth_spec_hash(spec), ev, time, places);
+    bool done = net_follow_by_states(cloth_create(spec, context->arena), cloth_spec_hash(spec), ev ? ev->options->net_states : NULL, time,
+                                     ev ? ev->options->interrupted : NULL, cloth_mass_count(spec), places);
     arena_reset_to(context->arena, mark);
     if (!done) {
         ev->interrupted = ev->stopped = true;

@@ -12,7 +12,7 @@
 typedef struct Sheet {
     Arena arena;
     ClothSpec spec;
-    Cloth *cloth;
+    SpringNet *cloth;
     Vec3 *places, *rest;
     size_t bytes;
 } Sheet;
@@ -22,7 +22,7 @@ static Sheet lay(const ClothSpec *spec) {
     arena_init(&s.arena, NULL, 0);
     s.cloth = cloth_create(spec, &s.arena);
     s.places = malloc(s.bytes), s.rest = malloc(s.bytes);
-    cloth_follow(s.cloth, 0, NULL, s.rest);
+    net_follow(s.cloth, 0, NULL, cloth_mass_count(&s.spec), s.rest);
     return s;
 }
 
@@ -53,7 +53,7 @@ static void a_hanging_sheet_stretches_as_its_weight_says(void **state) {
     ClothSpec spec = {.width = 0.7, .height = 2, .nu = 3, .nv = 40, .mass = 0.3, .stiffness = 60, .damping = 4, .elongation = 1,
                       .gravity = {0, -9.81, 0}, .pins = CLOTH_PIN_TOP};
     Sheet s = lay(&spec);
-    cloth_follow(s.cloth, 12, NULL, s.places);
+    net_follow(s.cloth, 12, NULL, cloth_mass_count(&s.spec), s.places);
     double strain = spec.mass * 9.81 / (spec.stiffness * spec.width);
     for (int j = 0; j <= spec.nv; j++) {
         double a = spec.height * (1 - (double)j / spec.nv), expected = spec.height / 2 - (a + strain * (a - a * a / (2 * spec.height)));
@@ -72,7 +72,7 @@ static void a_row_between_two_pins_is_an_elastic_catenary(void **state) {
         ClothSpec spec = {.width = 2, .height = 0.1, .nu = 32, .nv = 1, .mass = 0.1, .stiffness = stiffness, .damping = 4, .elongation = 5,
                           .gravity = {0, -9.81, 0}, .pins = CLOTH_PIN_LEFT | CLOTH_PIN_RIGHT};
         Sheet s = lay(&spec);
-        cloth_follow(s.cloth, 10, NULL, s.places);
+        net_follow(s.cloth, 10, NULL, cloth_mass_count(&s.spec), s.places);
         double ea = stiffness * spec.height / 2, w = spec.mass / 2 * 9.81 / spec.width, l = spec.width, low = 1e-9, high = 1e6;
         for (int k = 0; k < 200; k++) {
             double h = sqrt(low * high), span = h * l / ea + 2 * h / w * asinh(w * l / (2 * h));
@@ -90,7 +90,7 @@ static void a_loose_sheet_falls_as_things_fall(void **state) {
     for (double stiffness = 1e-3; stiffness < 1e10; stiffness *= 1e4) {
         ClothSpec spec = flag(stiffness, 0);
         Sheet s = lay(&spec);
-        cloth_follow(s.cloth, 1, NULL, s.places);
+        net_follow(s.cloth, 1, NULL, cloth_mass_count(&s.spec), s.places);
         Vec3 middle = vec3_splat(0);
         for (size_t i = 0; i < cloth_mass_count(&spec); i++) {
             assert_near(s.places[i].y - s.rest[i].y, -9.81 / 2, 0.02);
@@ -107,7 +107,7 @@ static void a_wind_from_the_front_pushes_with_its_force_on_the_area(void **state
     ClothSpec spec = flag(100, 0);
     spec.wind = &wind, spec.gravity = vec3_splat(0), spec.unrest = 0;
     Sheet s = lay(&spec);
-    cloth_follow(s.cloth, 0.5, NULL, s.places);
+    net_follow(s.cloth, 0.5, NULL, cloth_mass_count(&s.spec), s.places);
     double expected = 0.5 * 0.25 * 0.8 * spec.width * spec.height / spec.mass;
     for (size_t i = 0; i < cloth_mass_count(&spec); i++) assert_near(s.places[i].z, expected, 0.005 * expected);
     fold(&s);
@@ -147,11 +147,11 @@ static void energy_and_length_keep_their_bounds_from_limp_to_rigid(void **state)
         ClothSpec spec = flag(stiffness, pinnings[q % (int)VTS_ARRAY_COUNT(pinnings)]);
         spec.elongation = q % 3 == 0 ? 0 : 0.1;
         Sheet s = lay(&spec);
-        double start = cloth_energy(s.cloth), hundredth = 0.01 * spec.mass * 9.81 * spec.height;
+        double start = net_energy(s.cloth), hundredth = 0.01 * spec.mass * 9.81 * spec.height;
         for (int frame = 1; frame <= 48; frame++) {
-            cloth_follow(s.cloth, frame / 24.0, NULL, s.places);
+            net_follow(s.cloth, frame / 24.0, NULL, cloth_mass_count(&s.spec), s.places);
             for (size_t i = 0; i < cloth_mass_count(&spec); i++) assert_true(vec3_is_finite(s.places[i]));
-            assert_true(cloth_energy(s.cloth) <= start + hundredth);
+            assert_true(net_energy(s.cloth) <= start + hundredth);
             assert_true(height_energy(&s) <= start + hundredth);
             assert_true(longest(&s) <= (1 + spec.elongation) * 1.003);
             for (int j = 0; spec.pins & CLOTH_PIN_LEFT && j <= spec.nv; j++) assert_memory_equal(&s.places[j], &s.rest[j], sizeof(Vec3));
@@ -167,7 +167,7 @@ static void little_is_lost_where_springs_are_soft(void **state) {
     Sheet s = lay(&spec);
     double deepest = 0, again = 0;
     for (int frame = 0; frame < 480; frame++) {
-        cloth_follow(s.cloth, frame / 240.0, NULL, s.places);
+        net_follow(s.cloth, frame / 240.0, NULL, cloth_mass_count(&s.spec), s.places);
         double depth = -0.5 - place(&s, 0, 0).y;
         if (frame < 120) deepest = fmax(deepest, depth);
         if (frame > 360) again = fmax(again, depth);
@@ -191,8 +191,8 @@ static void a_time_alone_is_that_time_of_the_whole_run(void **state) {
     for (size_t r = 0; r < VTS_ARRAY_COUNT(rates); r++) {
         Sheet run = lay(&spec), alone = lay(&spec);
         int last = (int)(1.7 * rates[r]);
-        for (int frame = 0; frame <= last; frame++) cloth_follow(run.cloth, frame / rates[r], NULL, run.places);
-        cloth_follow(alone.cloth, last / rates[r], NULL, alone.places);
+        for (int frame = 0; frame <= last; frame++) net_follow(run.cloth, frame / rates[r], NULL, cloth_mass_count(&run.spec), run.places);
+        net_follow(alone.cloth, last / rates[r], NULL, cloth_mass_count(&alone.spec), alone.places);
         assert_memory_equal(run.places, alone.places, run.bytes);
         assert_true(length(place(&run, 12, 0), rest(&run, 12, 0)) > 0.05);
         fold(&run);
@@ -208,7 +208,7 @@ static void places_go_on_without_jumps(void **state) {
     Sheet s = lay(&spec);
     Vec3 before = place(&s, 0, 0);
     for (int k = 0; k <= 2000; k++) {
-        cloth_follow(s.cloth, 0.5 + k / 2000.0, NULL, s.places);
+        net_follow(s.cloth, 0.5 + k / 2000.0, NULL, cloth_mass_count(&s.spec), s.places);
         Vec3 now = place(&s, 12, 0);
         if (k) assert_true(length(now, before) < 30 / 2000.0); /* 30 units a second */
         before = now;
@@ -223,8 +223,8 @@ static void the_wind_does_what_energy_there_is(void **state) {
     spec.wind = &wind, spec.damping = 0.3;
     Sheet s = lay(&spec);
     for (int frame = 0; frame < 96; frame++) {
-        cloth_follow(s.cloth, frame / 24.0, NULL, s.places);
-        assert_true(cloth_energy(s.cloth) <= cloth_energy_limit(s.cloth) * (1 + 1e-9) + 1e-9);
+        net_follow(s.cloth, frame / 24.0, NULL, cloth_mass_count(&s.spec), s.places);
+        assert_true(net_energy(s.cloth) <= s.cloth->limit * (1 + 1e-9) + 1e-9);
     }
     fold(&s);
 }
@@ -238,7 +238,7 @@ static void numbers_past_all_measure_do_no_harm(void **state) {
             spec.nu = 4, spec.nv = 3;
             *(which == 0 ? &spec.mass : which == 1 ? &spec.stiffness : which == 2 ? &spec.gravity.x : which == 3 ? &spec.damping : &spec.width) = numbers[a];
             Sheet s = lay(&spec);
-            cloth_follow(s.cloth, 0.25, NULL, s.places);
+            net_follow(s.cloth, 0.25, NULL, cloth_mass_count(&s.spec), s.places);
             assert_memory_equal(s.places, s.rest, sizeof(Vec3));
             if (which == 1 || which == 3)
                 for (size_t i = 0; i < cloth_mass_count(&spec); i++) assert_true(vec3_is_finite(s.places[i]));
@@ -251,8 +251,8 @@ static void an_interruption_is_heard(void **state) {
     ClothSpec spec = flag(60, CLOTH_PIN_LEFT);
     Sheet s = lay(&spec);
     atomic_bool stop = true;
-    assert_false(cloth_follow(s.cloth, 10, &stop, s.places));
-    assert_true(cloth_follow(s.cloth, 0, &stop, s.places));
+    assert_false(net_follow(s.cloth, 10, &stop, cloth_mass_count(&s.spec), s.places));
+    assert_true(net_follow(s.cloth, 0, &stop, cloth_mass_count(&s.spec), s.places));
     fold(&s);
 }
 
@@ -261,16 +261,16 @@ static void states_go_on(void **state) {
     (void)state;
     ClothSpec spec = flag(60, CLOTH_PIN_LEFT);
     Sheet through = lay(&spec), first = lay(&spec), second = lay(&spec);
-    double *numbers = malloc(cloth_state_count(first.cloth) * sizeof *numbers);
-    cloth_follow(through.cloth, 1.3, NULL, through.places);
-    cloth_follow(first.cloth, 0.71, NULL, first.places);
-    cloth_save_state(first.cloth, numbers);
-    assert_int_equal(cloth_tick(first.cloth), cloth_tick_of(0.71));
-    assert_true(cloth_load_state(second.cloth, numbers));
-    cloth_follow(second.cloth, 1.3, NULL, second.places);
+    double *numbers = malloc(net_state_count(first.cloth) * sizeof *numbers);
+    net_follow(through.cloth, 1.3, NULL, cloth_mass_count(&through.spec), through.places);
+    net_follow(first.cloth, 0.71, NULL, cloth_mass_count(&first.spec), first.places);
+    net_save_state(first.cloth, numbers);
+    assert_int_equal(first.cloth->tick, net_tick_of(0.71));
+    assert_true(net_load_state(second.cloth, numbers));
+    net_follow(second.cloth, 1.3, NULL, cloth_mass_count(&second.spec), second.places);
     assert_memory_equal(second.places, through.places, through.bytes);
     numbers[7] = NAN;
-    assert_false(cloth_load_state(first.cloth, numbers));
+    assert_false(net_load_state(first.cloth, numbers));
     free(numbers);
     fold(&through), fold(&first), fold(&second);
 }

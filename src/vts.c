@@ -308,7 +308,8 @@ VtsStatus session_compile(VtsSession *session, bool exact, int texel_resolution)
     VtsStatus status = apply_settings(session);
     if (status != VTS_OK) return status;
     snprintf(session->stage, sizeof session->stage, "objects");
-    CompileOptions options = {.pool = session->pool, .memory = &session->memory, .texels = session->texels, .progress = &session->progress,
+    NetStates states = session_net_states(session);
+    CompileOptions options = {.net_states = &states, .pool = session->pool, .memory = &session->memory, .texels = session->texels, .progress = &session->progress,
                               .width = session->options.width, .height = session->options.height,
                               .texel_resolution = texel_resolution,
                               .interrupted = &session->interrupted, .exact = exact, .pilot = &session->pilot, .volume_memo = session->volume_memo, .film = session_is_film(&session->options)};

@@ -9,6 +9,7 @@ typedef struct SkinDraft {
         size_t count, capacity;
     } texels;
     Transform place; /* stays the identity: a skin has no transform of its own */
+    Span springs;
 } SkinDraft;
 
 /* ---- texel { Flower texture { Red } density 0.05 } ---- */
@@ -63,6 +64,30 @@ static void read_jitter(Reader *reader, const Word *word, void *target) {
     jitter_read(reader, word, &((SkinDraft *)target)->skin.jitter);
 }
 
+static void read_damping(Reader *reader, const Word *word, void *target) {
+    double *damping = &((SkinSprings *)target)->damping;
+    if (!word_arguments(reader, word, 1, 1) || !word_float(reader, word, 0, damping)) return;
+    if (*damping < 0) reader_error(reader, word->arguments[0].span, "'%s' must not be negative, found %g", word->text, *damping);
+}
+
+static void read_springs(Reader *reader, const Word *word, void *target) {
+    static const WordRule spring_rules[] = {
+        {"stiffness", WORD_POSITIVE, offsetof(SkinSprings, stiffness), NULL, true},
+        {"damping", WORD_CUSTOM, 0, read_damping, true},
+    };
+    SkinDraft *draft = target;
+    if (!word->body) {
+        reader_error(reader, word->span, "'%s' needs its block { … }", word->text);
+        return;
+    }
+    draft->springs = word->span;
+    draft->skin.springs = (SkinSprings){.present = true, .stiffness = 40, .damping = 2};
+    Reader body = reader_nested(reader, word->body);
+    reader_add_table(&body, spring_rules, VTS_ARRAY_COUNT(spring_rules), &draft->skin.springs);
+    reader_run(&body);
+    reader_end_nested(reader, &body);
+}
+
 static void read_tiling(Reader *reader, const Word *word, void *target) {
     Word next;
     if (word->count == 0 && reader_take_word(reader, "plain", &next)) return;
@@ -77,7 +102,7 @@ static const WordRule rules[] = {
     {"mapping", WORD_CUSTOM, 0, read_mapping, true},
     {"jitter", WORD_CUSTOM, 0, read_jitter, true},
     {"tiling", WORD_CUSTOM, 0, read_tiling, true},
-    {"springs", WORD_INERT, offsetof(SkinDraft, skin.inert), NULL, true},
+    {"springs", WORD_CUSTOM, 0, read_springs, true},
     {"surface", WORD_IGNORED, 0, NULL, true}, /* arrives as a value; here for "did you mean" */
     {"wind_field", WORD_IGNORED, 0, NULL, true},
 };
@@ -136,6 +161,8 @@ bool build_skin(BuildContext *context, const EvalBlock *block, Value *out) {
     reader.on_value = on_value;
     reader.value_target = draft;
     if (!reader_run(&reader) || !complete(&reader, draft)) return false;
+    if (skin->springs.present && !skin->wind)
+        diag_warning(context->diags, draft->springs, "nothing moves these springs: the skin has no wind_field");
     skin->texels = draft->texels.items;
     skin->texel_count = draft->texels.count;
     skin_rehash(skin);

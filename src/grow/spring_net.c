@@ -107,7 +107,7 @@ static void advance(SpringNet *net, double step) {
     for (size_t i = 0; i < net->mass_count; i++) {
         NetMass *m = &masses[i];
         if (m->weight == 0) continue;
-        m->speed = vec3_scale(vec3_madd(vec3_madd(m->speed, net->gravity, step), m->blown, step * m->weight), kept);
+        m->speed = vec3_madd(vec3_madd(vec3_scale(m->speed, kept), net->gravity, step), m->blown, step * m->weight);
         m->next = vec3_madd(m->place, m->speed, step);
     }
     relax_all(net, step);

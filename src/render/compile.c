@@ -190,6 +190,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     out->skins = arena_new_array(arena, CompiledSkin, skins.count);
     for (size_t i = 0; i < skins.count; i++)
         if (skin_compile(skins.items[i], out, diags, &out->skins[out->skin_count])) out->skin_count++;
+    if (interrupted(options)) return COMPILE_INTERRUPTED;
     if (diags->error_count > errors) return COMPILE_FAILED;
     out->most_samples = scene->settings.max_error > 0 ? MOST_SAMPLES : MOST_SAMPLES_UNASKED;
     if (options->film && out->skin_count) { /* errors of two frames add up in their difference, and few of those of skins are the same */

@@ -32,6 +32,7 @@ typedef struct CompileOptions {
     int texel_resolution; /* to build texels at, as far as they allow it; 0: what the view can see */
     const atomic_bool *interrupted;
     bool exact; /* for the reference: texels and skins keep their geometry, no voxels are built */
+    const struct NetStates *net_states; /* of springs in skins; NULL: they are followed from their beginning */
     struct VolumeMemo *volume_memo; /* NULL: nothing is kept of volumes */
     PilotResult *pilot; /* is used if it is known, else becomes known; NULL: trial pixels are drawn, and forgotten */
     bool film;  /* one of several pictures in a row: skins are drawn so much better that what changes between two is right to max_error */

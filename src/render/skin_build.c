@@ -8,6 +8,7 @@
 #include "render/beam_rigid.h"
 #include "render/skin_fold.h"
 #include "render/skin_rim.h"
+#include "render/skin_wind.h"
 #include "tape/noise.h"
 #include "texel/texel_content.h"
 #include "texel/texel_field.h"
@@ -214,7 +215,8 @@ static Vec3 noise_at(Vec3 foot, const NoiseJitter *jitter, uint32_t seed) {
 /* Streams of the noises, so that one jitter does not repeat in another. */
 enum { STREAM_COORDINATES = 0x11, STREAM_HEIGHT = 0x22, STREAM_DIRECTION = 0x33 };
 
-static SkinVertex make_vertex(const Skin *skin, const SurfaceMesh *mesh, size_t i, double top, double time) {
+/* Before the wind, and before the layer is made as high as copies reach. */
+static SkinVertex make_vertex(const Skin *skin, const SurfaceMesh *mesh, size_t i) {
     const SkinMapping *mapping = &skin->mapping;
     const SkinJitter *jitter = &skin->jitter;
     Vec3 foot = mesh->vertices[i], normal = mesh->normals[i];
@@ -246,10 +248,24 @@ static SkinVertex make_vertex(const Skin *skin, const SurfaceMesh *mesh, size_t 
         out.w_foot = w[0], out.w_tip = w[1];
     }
     out.height = vec3_scale(direction, length);
-    if (skin->wind) out.height = wind_bend(out.height, wind_force(skin->wind, foot, time), skin->wind->stiffness);
-    out.height = vec3_scale(out.height, top);
-    out.w_tip = out.w_foot + (out.w_tip - out.w_foot) * top;
     return out;
+}
+
+/* NULL after a diagnostic, or when interrupted. */
+static const SkinVertex *make_vertices(const Skin *skin, const SurfaceMesh *mesh, double top, CompiledScene *compiled, DiagList *diags) {
+    SkinVertex *vertex = arena_new_array(compiled->arena, SkinVertex, mesh->vertex_count);
+    Vec3 *heights = arena_new_array(compiled->arena, Vec3, mesh->vertex_count);
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        vertex[i] = make_vertex(skin, mesh, i);
+        heights[i] = vertex[i].height;
+    }
+    if (!skin_bend(skin, mesh, compiled, diags, heights)) return NULL;
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        SkinVertex *v = &vertex[i];
+        v->height = vec3_scale(heights[i], top);
+        v->w_tip = v->w_foot + (v->w_tip - v->w_foot) * top;
+    }
+    return vertex;
 }
 
 /* ---- cells ---- */
@@ -325,9 +341,10 @@ static bool sheets_overlap(const CompiledSkin *skin) {
     return false;
 }
 
-static void make_cells(const Skin *skin, const SurfaceMesh *mesh, double time, Arena *arena, CompiledSkin *out, DiagList *diags) {
-    SkinVertex *vertex = arena_new_array(arena, SkinVertex, mesh->vertex_count);
-    for (size_t i = 0; i < mesh->vertex_count; i++) vertex[i] = make_vertex(skin, mesh, i, out->top, time);
+static bool make_cells(const Skin *skin, const SurfaceMesh *mesh, CompiledScene *compiled, CompiledSkin *out, DiagList *diags) {
+    Arena *arena = compiled->arena;
+    const SkinVertex *vertex = make_vertices(skin, mesh, out->top, compiled, diags);
+    if (!vertex) return false;
     double repeat_u, repeat_v;
     repeats(&skin->mapping, skin->surface, mesh, &repeat_u, &repeat_v);
     out->cells = arena_new_array(arena, SkinCell, mesh->cell_count);
@@ -350,6 +367,7 @@ static void make_cells(const Skin *skin, const SurfaceMesh *mesh, double time, A
         note_fold(&folds, cell, i);
     }
     report_folds(&folds, skin, mesh, out->cells, diags);
+    return true;
 }
 
 /* ---- resolution: what the view can see ---- */
@@ -462,7 +480,7 @@ bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, Co
         diag_error(diags, refusal.span, "this surface cannot carry a skin: %s", refusal.reason);
         return false;
     }
-    make_cells(skin, &mesh, compiled->scene->time, compiled->arena, out, diags);
+    if (!make_cells(skin, &mesh, compiled, out, diags)) return false;
     out->texels = arena_new_array(compiled->arena, PlacedTexel, skin->texel_count * (skin->wang ? WANG_GRIDS + 1 : 1));
     for (size_t i = 0; i < skin->texel_count; i++) place_texel(i, compiled, diags, out);
     skin_rim_add(out, &mesh, compiled->arena);

@@ -588,6 +588,12 @@ typedef struct WindField {
     const Tape *function;        /* (x, y, z, t) → 3; NULL */
 } WindField;
 
+/* Hold the tips of height vectors while the wind blows: grow/tips.h. */
+typedef struct SkinSprings {
+    bool present;
+    double stiffness, damping; /* > 0, >= 0 */
+} SkinSprings;
+
 typedef struct Skin {
     Span span;
     Hash128 hash;
@@ -597,6 +603,7 @@ typedef struct Skin {
     SkinMapping mapping;
     SkinJitter jitter;
     const WindField *wind;  /* bends the height vectors; NULL */
+    SkinSprings springs;
     bool wang;              /* tiling: cyclic texels are laid without period; else side by side */
     const Texture *texture; /* over the layers' own; NULL */
     const InertNote *inert;

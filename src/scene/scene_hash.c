@@ -435,6 +435,10 @@ void skin_rehash(Skin *skin) {
     add_jitter(&h, &skin->jitter);
     hash_add_u64(&h, skin->wind != NULL);
     if (skin->wind) hash_add_hash(&h, skin->wind->hash);
+    if (skin->springs.present) {
+        hash_add_double(&h, skin->springs.stiffness);
+        hash_add_double(&h, skin->springs.damping);
+    }
     hash_add_u64(&h, skin->wang);
     add_texture(&h, skin->texture);
     skin->hash = h;

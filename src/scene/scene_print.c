@@ -465,6 +465,14 @@ static void print_wind(Printer *p, const WindField *w) {
     end_line(p);
 }
 
+static void print_springs(Printer *p, const SkinSprings *springs) {
+    if (!springs->present) return;
+    begin_line(p, "springs");
+    add_number(p, "stiffness", springs->stiffness);
+    add_number(p, "damping", springs->damping);
+    end_line(p);
+}
+
 static void print_skin(Printer *p, const Skin *skin) {
     begin_line(p, "skin");
     if (skin->wang) strbuf_adds(p->out, " tiling wang");
@@ -485,6 +493,7 @@ static void print_skin(Printer *p, const Skin *skin) {
     print_mapping(p, &skin->mapping);
     print_jitter(p, &skin->jitter);
     print_wind(p, skin->wind);
+    print_springs(p, &skin->springs);
     print_texture(p, skin->texture);
     p->depth--;
 }

@@ -253,6 +253,34 @@ S
   cmp -s b35.ppm c35.ppm || fail "blurred, a frame alone is another"
 }
 
+# So is a frame of springs, and it differs from that of the wind alone.
+case_springs() {
+  cat >springs.vts <<'S'
+animation { frames 40 fps 10 }
+camera { location <0, 2, -4> look_at 0 }
+light_source { <-30, 40, -30>, rgb 1.2 }
+#declare Field = surface { patch_grid 6, 6 function(u, v) { <4*(u - 0.5), 0, 4*(v - 0.5)> } }
+#declare Reeds = texel { layer { cylinder { <0.5, 0, 0.5>, <0.5, 1, 0.5>, 0.1 } texture { pigment { rgb 1 } } } }
+skin { surface { Field } texel { Reeds } mapping { repeat 8 height 0.6 }
+  wind_field { direction x speed 3 strength 1 gust { wavelength 5 amplitude 1 sharpness 2 } }
+  springs { stiffness 40 damping 1 } }
+S
+  run springs.vts -s 32x24 -o alone.ppm -f 35; want_status 0
+  run springs.vts -s 32x24 -o film.ppm -f 1-40x17; want_status 0
+  cmp -s alone35.ppm film35.ppm || fail "frames that go on from each other differ from one alone"
+  run springs.vts -s 32x24 -o cold.ppm -f 35,3,31 --cache kept; want_status 0
+  [ "$(ls kept/*.springs | wc -l)" = 3 ] || fail "not one state for each second: $(ls kept)"
+  run springs.vts -s 32x24 -o warm.ppm -f 35 --cache kept; want_status 0
+  cmp -s alone35.ppm cold35.ppm && cmp -s alone35.ppm warm35.ppm || fail "states of a cache change the springs"
+  sed '/springs {/s/springs.*/}/' springs.vts >bare.vts
+  run bare.vts -s 32x24 -o bare.ppm -f 1,35; want_status 0
+  cmp -s film01.ppm bare01.ppm || fail "springs do not begin as the wind bends them"
+  cmp -s alone35.ppm bare35.ppm && fail "springs change nothing"
+  sed 's/damping 1/damping 3/' springs.vts >other.vts
+  run other.vts -s 32x24 -o other.ppm -f 35 --cache kept; cmp -s alone35.ppm other35.ppm && fail "damping changes nothing"
+  "$vts" run --dump scene springs.vts | grep -q 'springs stiffness 40 damping 1' || fail "the scene does not tell its springs"
+}
+
 # A picture at a clock is exposed as the frame that has it.
 case_shutter() {
   film 'shutter 0.5'

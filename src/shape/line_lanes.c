@@ -9,12 +9,42 @@ enum { AHEAD = 2 /* pieces divided together */, FEW_LANES = 24 };
 /* Pieces up to this many line_shortest() are left to halving, whose bounds' roundings are smaller. */
 static const double ALONE = 0x1p6;
 
+/* Of the width of what looks: a piece as short whose ends differ in sign is a root, whichever of several that is. */
+static const double NARROW = 0x1p-6;
+
+/* Terms of the sum are settled on a piece where their errors are less than SETTLES of what the sum may be off its middle: parts of the
+ * piece take them as they are, until their errors come to STALE of that, or to half of all. */
+static const double SETTLES = 0x1p-7, STALE = 0x1p-5;
+
+/* The sum of the settled terms at middle + s·half. */
+typedef struct Settled {
+    uint32_t terms; /* a bit for each */
+    double middle, half, centre, slope, error, size;
+} Settled;
+
+typedef struct LanePiece {
+    double a, b;
+    Settled settled;
+} LanePiece;
+
 typedef struct Lanes {
     LineSearch *search;
     AffineLanes *scratch;
-    LinePiece stack[LINE_MOST_PIECES];
+    LanePiece stack[LINE_MOST_PIECES];
     int count;
 } Lanes;
+
+/* What is divided together, lane by lane. */
+typedef struct Batch {
+    LinePiece pieces[AFFINE_LANES];
+    int used;
+    TapeSettled settled;
+    AffineLanes bounds;
+    TapeEach each;
+} Batch;
+
+static double middle_of(LinePiece p) { return p.a / 2 + p.b / 2; }
+static double half_of(LinePiece p) { return (p.b - p.a) / 2 * (1 + 0x1p-50); }
 
 static void place_lanes(const Line *line, const LinePiece *pieces, AffineLanes in[3], AffineLanes *width) {
     const double origin[3] = {line->origin.x, line->origin.y, line->origin.z},
@@ -45,13 +75,59 @@ static uint64_t open_lanes(const AffineLanes *bounds) {
     return open;
 }
 
-/* What may hold a zero of the pieces, cut, goes onto the stack, the first on top. */
-static void push_rest(Lanes *lanes, const LinePiece *pieces, const AffineLanes *bounds, int used) {
-    uint64_t open = open_lanes(bounds);
-    for (int l = used; l-- > 0;) {
+/* ---- terms that are settled ---- */
+
+/* For a part of the piece, in lane l. The part's middle is rounded. */
+static void take_settled(const Settled *whole, LinePiece part, TapeSettled *out, int l) {
+    double middle = middle_of(part), way = (middle - whole->middle) / whole->half, share = half_of(part) / whole->half;
+    double off = fabs(whole->slope) * (0x1p-50 * (fabs(middle) + fabs(whole->middle)) / whole->half);
+    out->centre[l] = whole->centre + whole->slope * way, out->slope[l] = whole->slope * share;
+    out->error[l] = affine_lane_error(whole->error + off, 4 * (fabs(whole->centre) + fabs(whole->slope)));
+    out->size[l] = whole->size;
+}
+
+/* Whether this error is below a share of what the sum may be, in all lanes of `open`. */
+static bool errors_below(const double *errors, const AffineLanes *bounds, uint64_t open, double share, double of_error) {
+    for (int l = 0; l < AFFINE_LANES; l++) {
         if (!(open >> l & 1)) continue;
-        LinePiece piece = pieces[l];
-        AffineForm f = affine_lane(bounds, l);
+        double most = bound_max(share * (fabs(bounds->slope[l]) + bounds->error[l]), of_error * bounds->error[l]);
+        if (!(errors[l] <= most && bounds->error[l] < HUGE_VAL)) return false;
+    }
+    return true;
+}
+
+/* What the parts of each lane's piece need not evaluate again. */
+static void settle(const TapeSum *sum, const Batch *batch, uint64_t open, Settled *out) {
+    bool stays = errors_below(batch->settled.error, &batch->bounds, open, STALE, 0.2);
+    for (int l = 0; l < batch->used; l++) {
+        const TapeSettled *old = &batch->settled;
+        out[l] = (Settled){.middle = middle_of(batch->pieces[l]), .half = half_of(batch->pieces[l])};
+        if (stays && old->terms)
+            out[l].terms = old->terms, out[l].centre = old->centre[l], out[l].slope = old->slope[l], out[l].error = old->error[l], out[l].size = old->size[l];
+    }
+    for (size_t k = 0; k < size_min(sum->count, TAPE_SETTLED_MOST); k++) {
+        const AffineLanes *own = &batch->each.of[k];
+        if (!(batch->each.terms >> k & 1) || !errors_below(own->error, &batch->bounds, open, SETTLES, 0)) continue;
+        for (int l = 0; l < batch->used; l++) {
+            out[l].terms |= (uint32_t)1 << k;
+            out[l].centre += own->centre[l], out[l].slope += own->slope[l], out[l].error += own->error[l];
+            out[l].size += fabs(own->centre[l]) + fabs(own->slope[l]) + own->error[l] + sum->terms[k].rounding;
+        }
+    }
+    for (int l = 0; l < batch->used; l++) out[l].error = affine_lane_error(out[l].error, TAPE_SETTLED_MOST * out[l].size);
+}
+
+/* ---- pieces ---- */
+
+/* What may hold a zero of the pieces, cut, goes onto the stack, the first on top. */
+static void push_rest(Lanes *lanes, const Batch *batch) {
+    uint64_t open = open_lanes(&batch->bounds);
+    Settled settled[AFFINE_LANES];
+    if (open) settle(lanes->search->line->sum, batch, open, settled);
+    for (int l = batch->used; l-- > 0;) {
+        if (!(open >> l & 1)) continue;
+        LinePiece piece = batch->pieces[l];
+        AffineForm f = affine_lane(&batch->bounds, l);
         if (!(f.error < HUGE_VAL)) {
             f = line_bounds(lanes->search, piece.a, piece.b);
             Interval range = affine_range(f);
@@ -59,40 +135,47 @@ static void push_rest(Lanes *lanes, const LinePiece *pieces, const AffineLanes *
         }
         if (!f.nan) line_cut(f, &piece.a, &piece.b);
         if (!(piece.b >= piece.a) || lanes->count >= LINE_MOST_PIECES) continue;
-        lanes->stack[lanes->count++] = piece;
+        lanes->stack[lanes->count++] = (LanePiece){piece.a, piece.b, settled[l]};
     }
 }
 
 /* The first pieces of the stack, taken together: each is divided into as many parts as there are lanes for it. */
-static void divide(Lanes *lanes, const LinePiece *wholes, int count) {
-    LinePiece pieces[AFFINE_LANES];
-    AffineLanes bounds, width;
+static void divide(Lanes *lanes, const LanePiece *wholes, int count) {
+    Batch batch;
+    AffineLanes width;
     const Line *line = lanes->search->line;
-    int shares = AFFINE_LANES / count, used = 0;
+    int shares = AFFINE_LANES / count;
+    batch.used = 0, batch.settled.terms = wholes[0].settled.terms;
     for (int k = 0; k < count; k++) {
         double a = wholes[k].a, b = wholes[k].b, step = (b - a) / shares;
-        for (int l = 0; l < shares; l++)
-            pieces[used++] = (LinePiece){l ? a + step * l : a, l < shares - 1 ? a + step * (l + 1) : b};
+        for (int l = 0; l < shares; l++) {
+            LinePiece part = {l ? a + step * l : a, l < shares - 1 ? a + step * (l + 1) : b};
+            if (batch.settled.terms) take_settled(&wholes[k].settled, part, &batch.settled, batch.used);
+            batch.pieces[batch.used++] = part;
+        }
     }
-    for (int l = used; l < AFFINE_LANES; l++) pieces[l] = pieces[used - 1];
-    place_lanes(line, pieces, lanes->scratch, &width);
-    tape_sum_lanes(line->sum, line->level, line_is_wide(line) ? &width : NULL, &bounds, lanes->scratch);
-    lanes->search->work.bounds += (uint64_t)used;
-    push_rest(lanes, pieces, &bounds, used);
+    place_lanes(line, batch.pieces, lanes->scratch, &width);
+    tape_sum_rest(line->sum, line->level, line_is_wide(line) ? &width : NULL, &batch.settled, &batch.bounds, &batch.each, lanes->scratch);
+    lanes->search->work.bounds += (uint64_t)batch.used;
+    push_rest(lanes, &batch);
 }
 
 static bool search(Lanes *lanes, double *t, bool *falling) {
     LineSearch *s = lanes->search;
     while (lanes->count > 0) {
-        LinePiece wholes[AFFINE_LANES];
+        LanePiece wholes[AHEAD];
         int count = 0;
         while (count < AHEAD && lanes->count > 0) {
-            LinePiece piece = lanes->stack[lanes->count - 1];
+            const LanePiece piece = lanes->stack[lanes->count - 1];
             bool full = lanes->count + AFFINE_LANES > LINE_MOST_PIECES || s->work.bounds > LINE_MOST_BOUNDS;
-            if (count > 0 && (full || piece.b - piece.a < 0x1p-20 * (fabs(piece.a) + fabs(piece.b)))) break;
+            bool other = count > 0 && piece.settled.terms != wholes[0].settled.terms;
+            if (count > 0 && (full || other || piece.b - piece.a < 0x1p-20 * (fabs(piece.a) + fabs(piece.b)))) break;
             lanes->count--;
             if (full) {
-                if (line_give_up(s, piece, t, falling)) return true;
+                if (line_give_up(s, (LinePiece){piece.a, piece.b}, t, falling)) return true;
+            } else if (piece.b - piece.a <= NARROW * line_width(s->line, piece.a) &&
+                       line_place_between(s, piece.a, piece.b, t, falling)) {
+                return true;
             } else if (piece.b - piece.a <= ALONE * line_shortest(s->line, piece.b)) {
                 if (line_search_halves(s, piece.a, piece.b, t, falling)) return true;
             } else {
@@ -109,7 +192,7 @@ bool line_search_lanes(LineSearch *s, double from, double to, double *t, bool *f
     size_t slots = s->line->sum->scratch_size;
     Lanes lanes = {.search = s, .scratch = slots > FEW_LANES ? malloc(slots * sizeof *few) : few, .count = 1};
     if (!lanes.scratch) return false;
-    lanes.stack[0] = (LinePiece){from, to};
+    lanes.stack[0] = (LanePiece){.a = from, .b = to};
     bool found = search(&lanes, t, falling);
     if (lanes.scratch != few) free(lanes.scratch);
     return found;

@@ -107,11 +107,18 @@ static void add_nodes(Points *points, NodeCell cell) {
         points->at[points->count++] = worley_node(cell, bits, k);
 }
 
-/* The squares of the distances from the piece's centre to the nearest nodes number 0 … last. */
-static void nearest(const Points *points, const Piece *p, int last, double *squares) {
+/* The squares of the distances from the piece's centre to all nodes, and to the nearest ones, number 0 … last. */
+static void nearest(const Points *points, const Piece *p, int last, double *restrict all, double *restrict squares) {
+    for (int i = 0; i < points->count; i++) all[i] = vec3_length_squared(vec3_sub(points->at[i], p->centre));
     for (int k = 0; k <= last; k++) squares[k] = HUGE_VAL;
+    for (int i = 0; i < points->count; i++) keep_least(squares, last + 1, all[i]);
+}
+
+/* Of all nodes those that may be among the nearest from a place of the piece: distances change by no more than the way. */
+static void keep_near(const Points *points, const double *all, double far, Points *near) {
+    near->count = 0;
     for (int i = 0; i < points->count; i++)
-        keep_least(squares, last + 1, vec3_length_squared(vec3_sub(points->at[i], p->centre)));
+        if (all[i] <= far * far) near->at[near->count++] = points->at[i];
 }
 
 /* Of each piece all nodes that may be among the nearest up to `last` from any of its places, if they are less than a unit away: the
@@ -119,12 +126,12 @@ static void nearest(const Points *points, const Piece *p, int last, double *squa
 static void gather_nodes(Points *points, const Piece *pieces, int count, const Box3 *box, int last) {
     NearCell cells[MOST_CELLS];
     int cell_count = cells_near(box, cells);
-    double reach = 0, squares[WORLEY_NODES];
+    double reach = 0, squares[WORLEY_NODES], all[MOST_POINTS];
     points->count = 0;
     for (int c = 0; c < cell_count; c++)
         if (cells[c].square == 0) add_nodes(points, cells[c].cell);
     for (int i = 0; i < count; i++) {
-        nearest(points, &pieces[i], last, squares);
+        nearest(points, &pieces[i], last, all, squares);
         reach = bound_max(reach, sqrt(squares[last]) + 2 * (pieces[i].length + pieces[i].off) + SLACK);
     }
     for (int c = 0; c < cell_count; c++)
@@ -194,18 +201,20 @@ static AffineForm along_nodes(const Points *points, const Piece *p, int index) {
 
 static void worley_group(const Piece *pieces, int count, const Box3 *box, int last, AffineForm *out,
                          int stride) {
-    Points points;
+    Points points, near;
+    double all[MOST_POINTS];
     gather_nodes(&points, pieces, count, box, last);
     for (int i = 0; i < count; i++) {
         const Piece *p = &pieces[i];
         double squares[WORLEY_NODES], off = p->length + p->off;
-        nearest(&points, p, last, squares);
+        nearest(&points, p, last, all, squares);
+        keep_near(&points, all, sqrt(squares[last]) + 2 * off + SLACK, &near);
         for (int k = 0; k <= last; k++) {
             double at = sqrt(squares[k]);
             AffineForm *form = &out[k * stride + i];
             bool complete = at + 2 * off < 1 - SLACK;
             if (!complete) at = noise_worley(p->centre, k);
-            *form = complete ? along_nodes(&points, p, k) : affine_unknown(false);
+            *form = complete ? along_nodes(&near, p, k) : affine_unknown(false);
             form->error += p->off;
             *form = affine_within(*form, interval(bound_max(0, at - off), at + off));
         }

@@ -17,6 +17,7 @@ typedef struct TapeTerm {
     const Tape *tape;
     double scale;
     double low, high; /* of scale times the function, over the box; the widest come first */
+    double middle, half; /* the same range; half is infinite where it has no end */
     double rounding;  /* if it is a sum itself: the size of what it adds, over the box */
     /* What stands for it where it is finer than the width of what looks (tape_detail.h): from one width on less of it, from the other
      * on only its mean. Infinite: it stays. */
@@ -39,5 +40,24 @@ TapeSum tape_sum_of(const Tape *tape, const struct Interval *box, Arena *arena);
  * unknown in a lane is so in the sum. `width`: of what looks, along the same pieces; NULL: 0. The scratch has scratch_size lanes, the inputs
  * first. Returns how many terms were evaluated. */
 size_t tape_sum_lanes(const TapeSum *sum, double level, const AffineLanes *width, AffineLanes *restrict out, AffineLanes *restrict scratch);
+
+/* Terms that were bounded on a longer piece, and are so smooth there that parts of it need no more. */
+typedef struct TapeSettled {
+    uint32_t terms; /* a bit for each, of the first TAPE_SETTLED_MOST; 0: there are none */
+    double centre[AFFINE_LANES], slope[AFFINE_LANES], error[AFFINE_LANES]; /* their sum's, on the pieces of the lanes */
+    double size[AFFINE_LANES]; /* of what was added up to it */
+} TapeSettled;
+
+enum { TAPE_SETTLED_MOST = 24 };
+
+/* Bounds of the terms one by one. */
+typedef struct TapeEach {
+    uint32_t terms; /* a bit for each that was evaluated, of the first TAPE_SETTLED_MOST */
+    AffineLanes of[TAPE_SETTLED_MOST];
+} TapeEach;
+
+/* The same where `settled` stands for some of the terms; *each gets the others that were evaluated. */
+size_t tape_sum_rest(const TapeSum *sum, double level, const AffineLanes *width, const TapeSettled *settled, AffineLanes *restrict out,
+                     TapeEach *restrict each, AffineLanes *restrict scratch);
 
 #endif

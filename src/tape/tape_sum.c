@@ -158,7 +158,10 @@ static void add_up(TapeSum *sum, Arena *arena) {
            *size = arena_new_array(arena, double, sum->count + 1), low = 0, high = 0;
     middle[sum->count] = half[sum->count] = size[sum->count] = 0;
     for (size_t k = sum->count; k-- > 0;) {
-        const TapeTerm *term = &sum->terms[k];
+        TapeTerm *term = &sum->terms[k];
+        bool ends = isfinite(term->low) && isfinite(term->high);
+        term->middle = ends ? term->low / 2 + term->high / 2 : 0;
+        term->half = ends ? bound_max(term->high - term->middle, term->middle - term->low) * (1 + 0x1p-50) + 0x1p-1000 : HUGE_VAL;
         low = round_down(low + term->low), high = round_up(high + term->high);
         bool known = isfinite(low) && isfinite(high);
         middle[k] = known ? low / 2 + high / 2 : 0;
@@ -203,19 +206,20 @@ typedef struct Total {
     double centre[AFFINE_LANES], slope[AFFINE_LANES], error[AFFINE_LANES], size[AFFINE_LANES];
 } Total;
 
-static void begin(Total *restrict total, const AffineLanes *restrict term, double scale, double constant, double size) {
-    double absolute = fabs(scale);
+static void begin(Total *restrict total, const TapeSettled *settled, double constant, double size) {
+    AFFINE_EACH_LANE total->centre[l] = constant, total->slope[l] = total->error[l] = 0, total->size[l] = size;
+    if (!settled || settled->terms == 0) return;
     AFFINE_EACH_LANE {
-        double c = term->centre[l] * scale, s = term->slope[l] * scale, e = term->error[l] * absolute;
-        total->centre[l] = constant + c, total->slope[l] = s, total->error[l] = e;
-        total->size[l] = size + (fabs(c) + fabs(s)) + e;
+        total->centre[l] += settled->centre[l], total->slope[l] = settled->slope[l], total->error[l] = settled->error[l];
+        total->size[l] += settled->size[l];
     }
 }
 
-static void add_scaled(Total *restrict total, const AffineLanes *restrict term, double scale, double rounding) {
+static void add_scaled(Total *restrict total, const AffineLanes *restrict term, double scale, double rounding, AffineLanes *restrict own) {
     double absolute = fabs(scale);
     AFFINE_EACH_LANE {
         double c = term->centre[l] * scale, s = term->slope[l] * scale, e = term->error[l] * absolute;
+        own->centre[l] = c, own->slope[l] = s, own->error[l] = e;
         total->centre[l] += c, total->slope[l] += s, total->error[l] += e;
         total->size[l] += ((fabs(c) + fabs(s)) + e) + rounding;
     }
@@ -263,23 +267,43 @@ static const AffineLanes *seen_term(const TapeTerm *term, const Look *look, Affi
     return filled;
 }
 
-size_t tape_sum_lanes(const TapeSum *sum, double level, const AffineLanes *width, AffineLanes *restrict out, AffineLanes *restrict scratch) {
+/* What terms from k on may add, those that are settled left out. */
+typedef struct Rest {
+    double middle[MOST_TERMS + 1], half[MOST_TERMS + 1];
+} Rest;
+
+static bool is_settled(const TapeSettled *settled, size_t k) { return settled && k < TAPE_SETTLED_MOST && (settled->terms >> k & 1); }
+
+static void find_rest(const TapeSum *sum, const TapeSettled *settled, Rest *rest) {
+    rest->middle[sum->count] = rest->half[sum->count] = 0;
+    for (size_t k = sum->count; k-- > 0;) {
+        bool counts = !is_settled(settled, k);
+        rest->middle[k] = rest->middle[k + 1] + (counts ? sum->terms[k].middle : 0);
+        rest->half[k] = (rest->half[k + 1] + (counts ? sum->terms[k].half : 0)) * (1 + 0x1p-50);
+    }
+}
+
+size_t tape_sum_rest(const TapeSum *sum, double level, const AffineLanes *width, const TapeSettled *settled, AffineLanes *restrict out,
+                     TapeEach *restrict each, AffineLanes *restrict scratch) {
     const Look look = look_of(width);
     Total total;
-    AffineLanes filled;
-    double n = (double)sum->count + 2, constant = sum->constant - level,
-           size = fabs(sum->constant) + fabs(level);
-    if (sum->count == 0) {
-        affine_fill_lanes(&filled, sum->constant);
-        affine_shift_lanes(out, &filled, -level);
-        return 0;
+    Rest own;
+    const double *middles = sum->rest_middle, *halves = sum->rest_half;
+    double n = (double)sum->count + 2;
+    AffineLanes filled, spare;
+    size_t k = 0;
+    if (settled && settled->terms) find_rest(sum, settled, &own), middles = own.middle, halves = own.half;
+    each->terms = 0;
+    begin(&total, settled, sum->constant - level, fabs(sum->constant) + fabs(level));
+    for (bool first = middles == sum->rest_middle; k < sum->count && (first || !all_decided(&total, middles[k], halves[k])); k++) {
+        const TapeTerm *term = &sum->terms[k];
+        if (is_settled(settled, k)) continue;
+        bool kept = k < TAPE_SETTLED_MOST;
+        add_scaled(&total, seen_term(term, &look, scratch, &filled), term->scale, term->rounding, kept ? &each->of[k] : &spare);
+        if (kept) each->terms |= (uint32_t)1 << k;
+        first = false;
     }
-    const TapeTerm *term = sum->terms, *end = term + sum->count;
-    begin(&total, seen_term(term, &look, scratch, &filled), term->scale, constant, size + term->rounding);
-    for (term++; term < end && !all_decided(&total, sum->rest_middle[term - sum->terms], sum->rest_half[term - sum->terms]); term++)
-        add_scaled(&total, seen_term(term, &look, scratch, &filled), term->scale, term->rounding);
-    size_t k = (size_t)(term - sum->terms);
-    double middle = sum->rest_middle[k], half = sum->rest_half[k], rest = sum->rest_size[k];
+    double middle = middles[k], half = halves[k], rest = sum->rest_size[k];
     /* The tape adds in another order, with coefficients multiplied in another: a rounding of each partial sum and of each product,
      * there and here. */
     AFFINE_EACH_LANE {
@@ -287,4 +311,9 @@ size_t tape_sum_lanes(const TapeSum *sum, double level, const AffineLanes *width
         out->error[l] = affine_lane_error(total.error[l] + half, 2 * n * (total.size[l] + rest));
     }
     return k;
+}
+
+size_t tape_sum_lanes(const TapeSum *sum, double level, const AffineLanes *width, AffineLanes *restrict out, AffineLanes *restrict scratch) {
+    TapeEach each;
+    return tape_sum_rest(sum, level, width, NULL, out, &each, scratch);
 }

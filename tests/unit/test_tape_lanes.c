@@ -149,6 +149,57 @@ static void sums_hold_their_values(void **state) {
     arena_destroy(&arena);
 }
 
+/* Of the terms that were evaluated some, at random, with what was added up. */
+static TapeSettled settled_of(const TapeEach *each, uint32_t wanted) {
+    TapeSettled out = {.terms = each->terms & wanted};
+    for (int k = 0; k < TAPE_SETTLED_MOST; k++) {
+        if (!(out.terms >> k & 1)) continue;
+        for (int l = 0; l < AFFINE_LANES; l++) {
+            double c = each->of[k].centre[l], s = each->of[k].slope[l], e = each->of[k].error[l];
+            out.centre[l] += c, out.slope[l] += s, out.error[l] += e, out.size[l] += fabs(c) + fabs(s) + e;
+        }
+    }
+    return out;
+}
+
+/* Terms that are settled are not evaluated again, and the sum holds its values as before. */
+static void settled_terms_hold_their_values(void **state) {
+    (void)state;
+    Arena arena;
+    arena_init(&arena, NULL, 0);
+    TapeBuilder *b = tape_builder_create(&arena, 3);
+    TapeRef p[3], sum = tape_constant(b, 0.25);
+    for (int k = 0; k < 3; k++) p[k] = tape_input(b, k), sum = tape_binary(b, TAPE_ADD, sum, tape_unary(b, TAPE_SQR, p[k], (Span){0}), (Span){0});
+    sum = tape_binary(b, TAPE_SUB, sum, tape_ternary(b, TAPE_PERLIN, p[0], p[1], p[2], (Span){0}), (Span){0});
+    const Tape *tape = tape_finish(b, &sum, 1);
+    const Interval box[3] = {interval(-21, 21), interval(-21, 21), interval(-21, 21)};
+    TapeSum parts = tape_sum_of(tape, box, &arena);
+    AffineLanes scratch[32], out;
+    TapeEach each, again;
+    int fewer = 0;
+    assert_true(parts.scratch_size <= VTS_ARRAY_COUNT(scratch));
+    for (uint64_t i = 0; i < 10000; i++) {
+        for (uint32_t l = 0; l < AFFINE_LANES; l++)
+            for (uint32_t k = 0; k < 3; k++) affine_set_lane(&scratch[k], (int)l, with_rounding(some_line(i * 8 + l, 10 * k, true)));
+        AffineLanes in[3] = {scratch[0], scratch[1], scratch[2]};
+        double level = 4 * unit(i, 90);
+        tape_sum_rest(&parts, level, NULL, NULL, &out, &each, scratch);
+        const TapeSettled settled = settled_of(&each, (uint32_t)bits(i, 91));
+        for (int k = 0; k < 3; k++) scratch[k] = in[k];
+        tape_sum_rest(&parts, level, NULL, &settled, &out, &again, scratch);
+        assert_int_equal(again.terms & settled.terms, 0);
+        fewer += again.terms != each.terms;
+        for (uint32_t l = 0; l < AFFINE_LANES; l++) {
+            double s = 2 * unit(i, l) - 1, x[3], value;
+            for (int k = 0; k < 3; k++) x[k] = in[k].centre[l] + in[k].slope[l] * s;
+            tape_eval_once(tape, x, &value);
+            assert_true(fabs(value - level - (out.centre[l] + out.slope[l] * s)) <= out.error[l]);
+        }
+    }
+    assert_true(fewer > 5000);
+    arena_destroy(&arena);
+}
+
 static void nodes_hold_their_values(void **state) {
     (void)state;
     for (uint64_t i = 0; i < 6000; i++) {
@@ -207,7 +258,7 @@ static void nodes_along_lines_hold_their_values(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_operation_holds_its_values), cmocka_unit_test(noises_hold_their_values), cmocka_unit_test(constants_hold_their_values),
-        cmocka_unit_test(sums_hold_their_values),           cmocka_unit_test(nodes_hold_their_values),
+        cmocka_unit_test(sums_hold_their_values), cmocka_unit_test(settled_terms_hold_their_values),           cmocka_unit_test(nodes_hold_their_values),
         cmocka_unit_test(nodes_along_lines_hold_their_values),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

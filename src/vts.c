@@ -1,6 +1,7 @@
 #include "vts_session.h"
 
 #include "base/stopwatch.h"
+#include "eval/block_setting.h"
 #include "eval/eval.h"
 #include "hooks.h"
 #include "render/audit.h"
@@ -267,10 +268,35 @@ static void pass_text(void *context, EvalStream stream, const char *text) {
 
 static bool session_is_film(const VtsOptions *o) { return o->last_frame > o->first_frame || o->frame > 1; }
 
+/* Of a scene that stays as it is: the next frame of a film may have the block. */
+static VtsStatus check_used(VtsSession *session, const struct EvalSetting *settings, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        const char *name = settings[i].name, *dot = strchr(name, '.');
+        if (*settings[i].used) continue;
+        diag_error(&session->diags, (Span){0}, "--set %s=%s: the scene has no '%.*s' that takes the word '%s'", name, settings[i].value,
+                   (int)(dot - name), name, dot + 1);
+        return VTS_ERROR_USAGE;
+    }
+    return VTS_OK;
+}
+
+/* Those settings that are words of blocks. */
+static size_t find_block_settings(VtsSession *session, struct EvalSetting **out) {
+    const VtsOptions *o = &session->options;
+    size_t count = 0;
+    *out = arena_new_array(&session->parse, struct EvalSetting, o->setting_count);
+    bool *used = arena_new_array(&session->scene_arena, bool, o->setting_count);
+    for (size_t i = 0; i < o->setting_count; i++)
+        if (block_setting_is_name(o->settings[i].name)) (*out)[count++] = (struct EvalSetting){o->settings[i].name, o->settings[i].value, &used[i]};
+    return count;
+}
+
 VtsStatus session_evaluate(VtsSession *session, const char *path, EvalMode mode) {
     const VtsOptions *o = &session->options;
     struct EvalDeclare *declares = arena_new_array(&session->parse, struct EvalDeclare, o->declare_count);
     for (size_t i = 0; i < o->declare_count; i++) declares[i] = (struct EvalDeclare){o->declares[i].name, o->declares[i].value};
+    struct EvalSetting *settings;
+    size_t setting_count = find_block_settings(session, &settings);
     EvalGeometry geometry = hooks_geometry(&session->scene_arena, session->texels);
     /* As in POV-Ray, what counts frames is 0 where there is no film; but a picture alone is the first of one, so that scenes which
      * take their part of a table by the frame's number can be read and drawn. */
@@ -278,7 +304,7 @@ VtsStatus session_evaluate(VtsSession *session, const char *path, EvalMode mode)
     bool film = session_is_film(o), counted = film || !mode.is_program;
     EvalOptions options = {.geometry = &geometry, .net_states = &states, .include_dirs = o->include_dirs, .include_dir_count = o->include_dir_count,
                            .stdlib_dir = session->stdlib.size ? session->stdlib.data : NULL,
-                           .declares = declares, .declare_count = o->declare_count, .clock = o->clock + session->moment * o->shutter_clock, .clock_on = film || o->clock_set,
+                           .declares = declares, .declare_count = o->declare_count, .settings = settings, .setting_count = setting_count, .clock = o->clock + session->moment * o->shutter_clock, .clock_on = film || o->clock_set,
                            .clock_delta = film ? o->clock_delta : 0, .initial_clock = film ? o->first_clock : 0,
                            .final_clock = film ? o->last_clock : 0, .frame_number = counted ? o->frame : 0,
                            .initial_frame = counted ? o->first_frame : 0, .final_frame = counted ? o->last_frame : 0,
@@ -293,10 +319,11 @@ VtsStatus session_evaluate(VtsSession *session, const char *path, EvalMode mode)
     snprintf(session->stage, sizeof session->stage, "reading");
     EvalStatus result = eval_file(path, &options, &session->sources, &session->diags, &session->names, &session->parse,
                                   &session->scene_arena, &session->scene);
+    VtsStatus used = result == EVAL_OK && session->scene && !film && !mode.ends_at_film ? check_used(session, settings, setting_count) : VTS_OK;
     session_print_diagnostics(session);
     arena_destroy(&session->parse); /* tokens and trees: of a large scene more than what is drawn */
     switch (result) {
-    case EVAL_OK: return VTS_OK;
+    case EVAL_OK: return used;
     case EVAL_NO_FILE: return VTS_ERROR_FILE;
     case EVAL_INTERRUPTED: return VTS_INTERRUPTED;
     case EVAL_FAILED: break;

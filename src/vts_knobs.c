@@ -1,6 +1,7 @@
 /* Settings from outside: --set KNOB=VALUE, over the scene's global_settings. */
 #include "vts_session.h"
 
+#include "eval/block_setting.h"
 #include "scene/knobs.h"
 
 #include <errno.h>
@@ -90,7 +91,15 @@ static bool set_number(const NumberKnob *knob, const char *text, GlobalSettings 
     return true;
 }
 
+/* A word of blocks is read when the scene is. */
+static bool check_block_setting(const char *name, const char *value, StrBuf *why) {
+    const char *wrong = block_setting_check(name, value);
+    if (wrong) strbuf_addf(why, "'%s' cannot be '%s': %s", name, value, wrong);
+    return !wrong;
+}
+
 bool knob_set(const char *name, const char *value, GlobalSettings *settings, StrBuf *why) {
+    if (strchr(name, '.')) return check_block_setting(name, value, why);
     const NamedKnob *named = named_knob_find(name);
     const NumberKnob *number = named ? NULL : find_number_knob(name);
     if (named) return set_name(named, value, settings, why);

@@ -94,6 +94,8 @@ typedef struct BuildContext {
     int wave_count;      /* number_of_waves of global_settings; 0: not given */
     bool names_missing;  /* an include was not found: what it declares is missing, without a word */
     double time, cycle;  /* of the frame in seconds, and after how many a film begins again; 0: it does not */
+    const struct BlockSetting *settings; /* block_setting.h: from outside, over what blocks say */
+    size_t setting_count;
     void *eval;          /* for the evaluator itself */
 } BuildContext;
 

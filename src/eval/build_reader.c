@@ -1,3 +1,4 @@
+#include "eval/block_setting.h"
 #include "eval/build_parts.h"
 
 #include <string.h>
@@ -469,7 +470,7 @@ static void read_objects(Reader *reader, const BlockItem *item) {
     }
 }
 
-bool reader_run(Reader *reader) {
+static void read_items(Reader *reader) {
     const BlockItem *item;
     while ((item = reader_peek(reader))) {
         reader->next++;
@@ -485,6 +486,56 @@ bool reader_run(Reader *reader) {
             read_value(reader, item);
         if (diag_full(reader->context->diags)) break;
     }
+}
+
+/* ---- what is set from outside ---- */
+
+static const WordRule *find_rule_anywhere(const Reader *reader, const char *text) {
+    const WordRule *rule = NULL;
+    for (size_t t = 0; t < reader->table_count && !rule; t++) rule = find_rule(&reader->tables[t], text);
+    return rule;
+}
+
+/* It takes the place of the word that stands in the block. */
+static void forget_once(Reader *reader, const WordRule *rule) {
+    for (size_t i = 0; i < reader->seen_count; i++)
+        if (reader->seen[i].rule == rule) reader->seen[i--] = reader->seen[--reader->seen_count];
+}
+
+/* As if the block ended with the setting's words; whatever is wrong with them is so at the block's own word. */
+static void apply_setting(Reader *reader, const BlockSetting *setting) {
+    const EvalBlock *block = reader->block;
+    BlockItem *items = arena_copy(reader->context->arena, setting->items, setting->count * sizeof *items);
+    for (size_t i = 0; i < setting->count; i++) {
+        Argument *arguments = arena_copy(reader->context->arena, items[i].arguments, items[i].argument_count * sizeof *arguments);
+        for (size_t k = 0; k < items[i].argument_count; k++) arguments[k].span = block->word_span;
+        items[i].arguments = arguments;
+        items[i].span = items[i].word_span = block->word_span;
+    }
+    const EvalBlock words = {.word = block->word, .word_span = block->word_span, .span = block->word_span, .items = items, .count = setting->count, .outer = block->outer};
+    size_t next = reader->next;
+    reader->block = &words;
+    reader->next = 0;
+    read_items(reader);
+    reader->block = block;
+    reader->next = next;
+    *setting->used = true;
+}
+
+static void apply_settings(Reader *reader) {
+    const BuildContext *context = reader->context;
+    for (size_t i = 0; i < context->setting_count && reader->block->word; i++) {
+        const BlockSetting *setting = &context->settings[i];
+        const WordRule *rule = strcmp(setting->block, reader->block->word->text) == 0 ? find_rule_anywhere(reader, setting->word) : NULL;
+        if (!rule) continue;
+        forget_once(reader, rule);
+        apply_setting(reader, setting);
+    }
+}
+
+bool reader_run(Reader *reader) {
+    read_items(reader);
+    apply_settings(reader);
     return !reader->failed;
 }
 

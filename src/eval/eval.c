@@ -1,3 +1,4 @@
+#include "eval/block_setting.h"
 #include "eval/eval.h"
 
 #include "eval/eval_files.h"
@@ -211,6 +212,18 @@ static void init(Eval *ev, const EvalOptions *options, SourceSet *sources, DiagL
     diags->context = ev;
 }
 
+/* Words of blocks, over what the text says. */
+static void take_settings(Eval *ev) {
+    const EvalOptions *options = ev->options;
+    BlockSetting *settings = arena_new_array(ev->build.arena, BlockSetting, options->setting_count);
+    for (size_t i = 0; i < options->setting_count; i++) {
+        settings[i] = block_setting_make(ev->build.arena, ev->names, options->settings[i].name, options->settings[i].value);
+        settings[i].used = options->settings[i].used;
+    }
+    ev->build.settings = settings;
+    ev->build.setting_count = options->setting_count;
+}
+
 static void release(Eval *ev) {
     MemoryBudget *budget = ev->parse->budget;
     if (budget) {
@@ -320,6 +333,7 @@ EvalStatus eval_file(const char *path, const EvalOptions *options, SourceSet *so
     watch_memory(&ev);
     eval_set_scene_path(&ev, path);
     scope_enter(&ev, &global);
+    take_settings(&ev);
     declare_options(&ev);
     if (load_scene(&ev, path, &file, &status)) status = evaluate(&ev, file, scene);
     release(&ev);

@@ -117,6 +117,8 @@ typedef struct EvalOptions {
     const char *stdlib_dir;           /* last; may be NULL */
     const struct EvalDeclare { const char *name, *value; } *declares; /* numbers become floats, the rest strings */
     size_t declare_count;
+    const struct EvalSetting { const char *name, *value; bool *used; } *settings; /* block_setting.h: "volume.rays"; *used is set when a block takes it */
+    size_t setting_count;
     double clock;
     bool clock_on;
     double clock_delta, initial_clock, final_clock;

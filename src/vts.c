@@ -135,6 +135,7 @@ void vts_session_destroy(VtsSession *session) {
     end_call(session);
     session_trim_nets(session, true);
     volume_memo_destroy(session->volume_memo);
+    free(session->last_error);
     texel_cache_destroy(session->texels);
     pool_destroy(session->pool);
     arena_destroy(&session->arena);

@@ -189,6 +189,8 @@ typedef struct VtsMeasure {
     size_t texel_bytes;
     VtsDifference difference;
     double rmse; /* difference.rmse without the reference's noise: the root of the difference of squares, 0 where that is below the noise */
+    double flicker; /* RMS over pixels and channels of the change of (picture - reference) since the frame that this session measured before, the
+                     * noise of both references in it; negative: there was none */
 } VtsMeasure;
 
 /* Renders as vts_render() does and compares with the reference; `picture_path` (or NULL) gets the picture. To be called with a session that

@@ -89,13 +89,20 @@ static VtsStatus draw_half(VtsSession *session, const char *scene_path, const ch
 
 VtsStatus session_make_reference(VtsSession *session, const char *scene_path, const char *const paths[2], VtsReference *reference) {
     static const unsigned long long OTHER_SEED = 0x9e3779b97f4a7c15u;
+    static const unsigned long long NEXT_FRAME = 0xd1342543de82ef95u;
     VtsStatus status = session_evaluate(session, scene_path, (EvalMode){0});
     if (status == VTS_OK) status = session_compile(session, true, 0);
-    session->options.reference_samples = (session->options.reference_samples + 1) / 2;
+    const unsigned long long seed = session->options.seed;
+    /* The noise of one frame tells nothing of the noise of another. */
+    if (session->in_film) session->options.seed += NEXT_FRAME * (unsigned long long)(session->options.frame - session->options.first_frame);
+    const int rays = session->options.reference_samples;
+    session->options.reference_samples = (rays + 1) / 2;
     for (int half = 0; half < 2 && status == VTS_OK; half++) {
         status = draw_half(session, scene_path, paths ? paths[half] : NULL, half == 0, reference);
         session->options.seed ^= OTHER_SEED;
     }
+    session->options.seed = seed;
+    session->options.reference_samples = rays;
     return status;
 }
 
@@ -133,6 +140,28 @@ static VtsStatus compare(VtsSession *session, const VtsReference *reference, Vts
     return VTS_OK;
 }
 
+/* How much the error has changed since the frame before, which it then takes the place of. */
+static VtsStatus find_flicker(VtsSession *session, const VtsReference *reference, VtsMeasure *out) {
+    const Image *picture = &session->picture;
+    size_t samples = 3 * (size_t)picture->width * (size_t)picture->height;
+    float *error = malloc(samples * sizeof *error), *before = session->last_error;
+    if (!error) return VTS_ERROR_MEMORY;
+    image_subtract(&reference->picture, picture, error);
+    out->flicker = -1;
+    if (before && session->last_error_size[0] == picture->width && session->last_error_size[1] == picture->height) {
+        double sum = 0;
+        for (size_t i = 0; i < samples; i++) {
+            double change = (double)error[i] - (double)before[i];
+            sum += change * change;
+        }
+        out->flicker = sqrt(sum / (double)samples);
+    }
+    free(before);
+    session->last_error = error;
+    session->last_error_size[0] = picture->width, session->last_error_size[1] = picture->height;
+    return VTS_OK;
+}
+
 static void count(const VtsSession *session, const RenderStats *stats, VtsMeasure *out) {
     out->camera_rays = stats->counters.camera_rays;
     out->shadow_rays = stats->counters.shadow_rays;
@@ -145,15 +174,17 @@ VtsStatus session_measure(VtsSession *session, const char *scene_path, const Vts
                           VtsMeasure *out) {
     VtsStatus status = check_size(session, reference);
     if (status != VTS_OK) return status;
+    out->flicker = -1;
     RenderStats stats;
     Watch watch = watch_now();
     if ((status = session_evaluate(session, scene_path, (EvalMode){0})) != VTS_OK) return status;
     lap(&watch, &out->parse_wall_s, &out->parse_user_s);
-    if ((status = session_compile(session, false, 0)) != VTS_OK) return status;
+    if ((status = session_compile_frame(session, scene_path, false)) != VTS_OK) return status;
     lap(&watch, &out->build_wall_s, &out->build_user_s);
     if ((status = session_expose(session, scene_path, false, &stats)) != VTS_OK) return status;
     lap(&watch, &out->render_wall_s, &out->render_user_s);
     count(session, &stats, out);
-    if ((status = compare(session, reference, out)) != VTS_OK || !picture_path) return status;
+    if ((status = compare(session, reference, out)) == VTS_OK && session->in_film) status = find_flicker(session, reference, out);
+    if (status != VTS_OK || !picture_path) return status;
     return session_save_picture(session, scene_path, picture_path);
 }

@@ -52,6 +52,8 @@ struct VtsSession {
     } film_pilot;
     struct KeptStates *nets; /* followed so far; NULL: none */
     TileFile *kept; /* what is done of the picture that is being drawn; or NULL */
+    float *last_error; /* of the picture that vts_measure() drew last, NULL: none */
+    int last_error_size[2];
     double started_wall, started_cpu;
 };
 

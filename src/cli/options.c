@@ -166,8 +166,12 @@ static const char *apply_sweep(Settings *s, const char *value) {
     return settings_add_pair(s, &s->sweeps, value) ? NULL : "KNOB=VALUE,VALUE,…";
 }
 static const char *apply_methods(Settings *s, const char *value) {
-    s->methods = value;
-    return *value ? NULL : "names of knobs, such as quadrature,ray_path";
+    settings_add(&s->methods, value);
+    return *value && *value != '=' ? NULL : "names of knobs, such as quadrature,ray_path, or KNOB=VALUE,VALUE";
+}
+static const char *apply_axes(Settings *s, const char *value) {
+    s->axes = value;
+    return *value ? NULL : "two axes, such as cpu_s,rmse";
 }
 static const char *apply_reference(Settings *s, const char *value) {
     settings_add(&s->references, value);
@@ -240,7 +244,8 @@ static const Option OPTIONS[] = {
     {"samples", 0, "N", COMMAND_REFERENCE, apply_rays, "rays of a pixel, 1 to 65536; default 64"},
     {"samples", 0, "N", COMMAND_CHART, apply_rays, "rays of a pixel of the reference, in two halves, 1 to 65536; default 64"},
     {"sweep", 0, "KNOB=V,V,...", COMMAND_CHART, apply_sweep, "a point of the chart for each value; may be given several times"},
-    {"methods", 0, "KNOB,...", COMMAND_CHART, apply_methods, "a curve for each method that these knobs have names for"},
+    {"methods", 0, "KNOB,...", COMMAND_CHART, apply_methods, "a curve for each method that these knobs have names for, or for those of KNOB=VALUE,VALUE"},
+    {"axes", 0, "X,Y", COMMAND_CHART, apply_axes, "X: cpu_s, wall_s, camera_rays, shadow_rays, steps, voxels_visited or texel_bytes; Y: rmse, flip, psnr or flicker; default cpu_s,rmse"},
     {"reference", 0, "F", COMMAND_CHART, apply_reference,
      "measures by this picture; given twice, by the mean of two whose noise their difference tells"},
     {"keep", 0, "DIR", COMMAND_CHART, apply_keep, "keeps the picture of each point, and the reference, in this folder"},
@@ -279,6 +284,7 @@ static const Option OPTIONS[] = {
     {"shutter", 0, "F", COMMAND_ALL, apply_shutter, "part of a frame's time that it is exposed; default: as the scene's animation says, else 0"},
     {"fps", 0, "N", COMMAND_ALL, apply_fps, "frames a second; default: as the scene's animation says, else 24"},
     {"resume", 0, NULL, COMMAND_RENDER | COMMAND_REFERENCE | COMMAND_STITCH | COMMAND_FARM, apply_resume, "leaves out the pictures that are there, and goes on with one that was not finished"},
+    {"resume", 0, NULL, COMMAND_CHART, apply_resume, "takes over the points that the .csv has from the same program, machine, scene and options"},
     {"aov", 0, "NAMES", COMMAND_RENDER | COMMAND_REFERENCE, apply_aov,
      "further channels of an EXR: some of depth,normal,albedo,alpha,position,object,uv,texel_level,samples"},
     {"preview", 0, "HOST:PORT", COMMAND_RENDER | COMMAND_REFERENCE, apply_preview,

@@ -31,7 +31,7 @@ void settings_free(Settings *settings) {
                          &settings->sweeps};
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) free(pairs[i]->items);
     TextList *texts[] = {&settings->scenes, &settings->includes, &settings->read_folders,
-                         &settings->write_folders, &settings->references, &settings->sbatch, &settings->passed};
+                         &settings->write_folders, &settings->references, &settings->methods, &settings->sbatch, &settings->passed};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) free(texts[i]->items);
     free(settings->animation.asked.items);
     *settings = (Settings){0};

@@ -54,7 +54,8 @@ typedef struct Settings {
     const char *report;         /* file, "-" for stdout, or NULL */
     const char *metrics, *diff; /* of compare; NULL: the usual ones, no picture */
     bool json;
-    const char *methods;        /* of chart: "quadrature,ray_path", or NULL */
+    TextList methods;           /* of chart: "quadrature,ray_path", "volume.method=path,two_pass" */
+    const char *axes;           /* of chart: "cpu_s,rmse", or NULL */
     TextList references;        /* of chart: one picture or two, or none */
     const char *keep;           /* of chart: a folder for its pictures, or NULL */
     int repeats;                /* of chart: renderings of each point; 0: 1 */

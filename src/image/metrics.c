@@ -55,3 +55,11 @@ bool image_compare(const Image *a, const Image *b, ImageDifference *out, StrBuf 
     out->psnr = coded > 0 ? 10 * log10(samples / coded) : (double)INFINITY;
     return true;
 }
+
+void image_subtract(const Image *reference, const Image *test, float *out) {
+    Channels from_reference = colour_channels(reference), from_test = colour_channels(test);
+    for (int y = 0; y < test->height; y++)
+        for (int x = 0; x < test->width; x++)
+            for (int c = 0; c < 3; c++)
+                *out++ = (float)(clamped(image_pixel(test, x, y)[from_test.index[c]]) - clamped(image_pixel(reference, x, y)[from_reference.index[c]]));
+}

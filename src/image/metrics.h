@@ -16,4 +16,7 @@ typedef struct ImageDifference {
  * one is taken as R = G = B. False when the sizes differ. */
 bool image_compare(const Image *a, const Image *b, ImageDifference *out, StrBuf *error);
 
+/* Test less reference of every pixel and colour, linear light clamped to [0, 1]: 3 * width * height floats. Both have the same size. */
+void image_subtract(const Image *reference, const Image *test, float *out);
+
 #endif

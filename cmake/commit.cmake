@@ -1,0 +1,15 @@
+# cmake -DSOURCE=… -DOUT=… -P commit.cmake: the commit that is built, for the captions of charts, as a C file that changes only when it does.
+find_program(git git)
+set(commit "")
+if(git)
+  execute_process(COMMAND ${git} describe --always --dirty --abbrev=10 --exclude=* WORKING_DIRECTORY ${SOURCE} OUTPUT_VARIABLE commit
+    OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+endif()
+set(text "extern const char chart_commit[];\nconst char chart_commit[] = \"${commit}\";\n")
+set(before "")
+if(EXISTS ${OUT})
+  file(READ ${OUT} before)
+endif()
+if(NOT before STREQUAL text)
+  file(WRITE ${OUT} "${text}")
+endif()

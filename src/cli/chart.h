@@ -57,6 +57,9 @@ const char *chart_compiler(void);
 /* Takes over points that were measured before, from the text of a CSV file: those of the same program, machine, scene and options. How many. */
 size_t chart_resume(Chart *chart, Settings *settings, const char *csv);
 
+/* Whether any point has a place on both axes. */
+bool chart_is_drawn(const Chart *chart);
+
 /* As text that the caller frees; NULL when memory is short. */
 char *chart_csv(const Chart *chart, Settings *settings);
 char *chart_script(const Chart *chart, Settings *settings, const char *terminal);

@@ -149,6 +149,12 @@ static void put_quoted(FILE *out, const char *text) {
 /* What a logarithm has room for. */
 static bool is_drawn(const Chart *chart, const ChartPoint *p) { return p->done && chart->x->value(p) > 0 && chart->y->value(p) > 0; }
 
+bool chart_is_drawn(const Chart *chart) {
+    bool any = false;
+    for (size_t i = 0; i < chart->count; i++) any |= is_drawn(chart, &chart->points[i]);
+    return any;
+}
+
 static void put_point(FILE *out, const Chart *chart, const ChartPoint *p) {
     fprintf(out, "%.6g\t%.6g\t", chart->x->value(p), chart->y->value(p));
     for (const char *c = p->label; *c; c++) fputc((unsigned char)*c < ' ' ? ' ' : *c, out);
@@ -262,10 +268,19 @@ static void put_caption(FILE *out, const Chart *chart, Settings *settings) {
     fputs(" at screen 0.02, 0.025 font ',10'\n", out);
 }
 
+/* All of it may be nearer to the reference than its noise. */
+static bool has_front(const Chart *chart) {
+    bool any = false;
+    for (size_t i = 0; i < chart->count; i++) any |= chart->points[i].on_front && is_drawn(chart, &chart->points[i]);
+    return any;
+}
+
 static void put_plot(FILE *out, const Chart *chart) {
+    const bool front = has_front(chart);
     size_t number = 0;
     bool drawn;
-    fputs("plot $front using 1:2 with lines dashtype 2 linewidth 2 linecolor rgb '#a0a0a0' title 'Pareto front'", out);
+    fputs("plot NaN notitle", out);
+    if (front) fputs(", \\\n  $front using 1:2 with lines dashtype 2 linewidth 2 linecolor rgb '#a0a0a0' title 'Pareto front'", out);
     for (size_t i = 1, end; i < chart->count; i = end) {
         end = end_of_curve(chart, i, &drawn);
         if (!drawn) continue;
@@ -273,7 +288,7 @@ static void put_plot(FILE *out, const Chart *chart) {
         put_quoted(out, chart->points[i].curve);
         fprintf(out, ", \\\n  $curve%zu using 1:2:3 with labels left offset 0.8, 0.5 font ',9' notitle", i);
     }
-    fputs(", \\\n  $front using 1:2 with points pointtype 6 pointsize 1.6 linecolor rgb '#606060' title 'on the front'", out);
+    if (front) fputs(", \\\n  $front using 1:2 with points pointtype 6 pointsize 1.6 linecolor rgb '#606060' title 'on the front'", out);
     if (is_drawn(chart, &chart->points[0]))
         fputs(", \\\n  $plain using 1:2 with points pointtype 12 pointsize 2.4 linewidth 2 linecolor rgb '#c00000' title 'as the scene has it'", out);
     fputc('\n', out);

@@ -308,7 +308,10 @@ static void judge_noise(const Work *w) {
 }
 
 static int draw_plot(const Work *w) {
-    if (chart_least_error(&w->chart) <= 0) return VTS_OK; /* a logarithm has room for nothing */
+    if (!chart_is_drawn(&w->chart)) {
+        complain_warning(w->settings, "no point has a place on axes that are logarithms: nothing is drawn; the numbers are in '%s'", w->csv);
+        return VTS_OK;
+    }
     char *script = chart_script(&w->chart, w->settings, chart_terminal(w->plot));
     if (!script) return VTS_ERROR_MEMORY;
     PlotStatus plot = chart_plot(w->settings, script, w->plot);

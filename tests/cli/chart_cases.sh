@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# chart.sh CASE VTS JSON_CHECK: one case about charts, see harness.sh.
+# chart_cases.sh CASE VTS JSON_CHECK: one case about charts, see harness.sh.
 source "${BASH_SOURCE%/*}/harness.sh"
 
 # column NAME [ROW [FILE]]: a field of a chart's numbers; rows count from 1.
@@ -39,7 +39,7 @@ case_blocks() {
   cat >fog.vts <<'S'
 camera { location <0, 0.3, -4> look_at <0, 0.3, 0> }
 light_source { <5, 10, -5> rgb 1 }
-volume { box { -1, 1 } scattering rgb 2 rays 1000 orders 2 step auto }
+volume { box { -1, 1 } scattering rgb 2 rays 300 orders 2 step auto }
 isosurface { function { y + 1 - 0.1*sin(9*x) } contained_by { box { -3, 3 } } pigment { rgb 0.5 } }
 S
   local size='fog.vts -s 12x9 --samples 4'

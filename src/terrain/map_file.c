@@ -81,7 +81,7 @@ bool map_file_open(MapFile *file, const char *path, StrBuf *error) {
 
 static float known_or_nan(const MapFile *file, const double *nodata, float sample) {
     enum { LEAST_SHORT = -32768 };
-    bool none = !(fabsf(sample) <= 1e30f) || (file->place.has_nodata && sample == (float)file->place.nodata) ||
+    bool none = !(fabsf(sample) < 1e30f) || (file->place.has_nodata && sample == (float)file->place.nodata) ||
                 (nodata && sample == (float)*nodata) || (file->small_samples && sample == LEAST_SHORT);
     return none ? NAN : sample;
 }

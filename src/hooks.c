@@ -1,6 +1,7 @@
 #include "hooks.h"
 
 #include "pattern/pattern_function.h"
+#include "image/palette.h"
 #include "image/picture.h"
 #include "shape/extent.h"
 #include "shape/mesh_file.h"
@@ -16,6 +17,7 @@
 typedef struct KnownPicture {
     const char *path;
     double gamma;
+    bool use_index, by_index; /* wanted, and had */
     Picture picture;
     struct KnownPicture *next;
 } KnownPicture;
@@ -84,8 +86,30 @@ static bool mesh_file(void *context, Arena *arena, const char *path, const EvalM
 
 static const KnownPicture *find_picture(const Hooks *hooks, const ImageMap *image) {
     const KnownPicture *known = hooks->pictures;
-    while (known && !(known->gamma == image->gamma && strcmp(known->path, image->path) == 0)) known = known->next;
+    while (known && !(known->gamma == image->gamma && known->use_index == image->use_index && strcmp(known->path, image->path) == 0)) known = known->next;
     return known;
+}
+
+/* Numbers of palettes as light, 255 being 1. */
+static bool load_numbers(const ImageMap *image, Arena *arena, Picture *out, StrBuf *error) {
+    float entries[PALETTE_MOST][4];
+    for (int i = 0; i < PALETTE_MOST; i++)
+        for (int c = 0; c < 4; c++) entries[i][c] = c < 3 ? (float)i / (PALETTE_MOST - 1) : 1;
+    return image->use_index && picture_load_entries(image->path, (const float(*)[4])entries, arena, out, error);
+}
+
+static void load_shares(ImageMap *image, Arena *arena) {
+    float entries[PALETTE_MOST][4] = {{0}};
+    if (!image->palette_count) return;
+    for (int i = 0; i < PALETTE_MOST; i++) entries[i][3] = 1;
+    for (size_t k = 0; k < image->palette_count; k++) {
+        const double *share = image->palette_filter + 3 * k;
+        if (!(share[0] >= 0 && share[0] < PALETTE_MOST)) continue;
+        entries[(int)share[0]][0] += (float)share[1];
+        entries[(int)share[0]][1] += (float)share[2];
+    }
+    Picture *shares = arena_new(arena, Picture);
+    if (picture_load_entries(image->path, (const float(*)[4])entries, arena, shares, NULL)) image->shares = shares;
 }
 
 static bool picture_file(void *context, Arena *arena, ImageMap *image, StrBuf *error) {
@@ -94,13 +118,17 @@ static bool picture_file(void *context, Arena *arena, ImageMap *image, StrBuf *e
     if (!known) {
         KnownPicture *loaded = arena_new(arena, KnownPicture);
         PictureGamma curve = image->gamma > 0 ? PICTURE_GAMMA_POWER : image->gamma < 0 ? PICTURE_GAMMA_SRGB : PICTURE_GAMMA_FILE;
-        if (!picture_load(image->path, curve, image->gamma, arena, &loaded->picture, error)) return false;
+        loaded->by_index = load_numbers(image, arena, &loaded->picture, error);
+        if (!loaded->by_index && !picture_load(image->path, curve, image->gamma, arena, &loaded->picture, error)) return false;
         loaded->path = image->path;
         loaded->gamma = image->gamma;
+        loaded->use_index = image->use_index;
         loaded->next = hooks->pictures;
         known = hooks->pictures = loaded;
     }
     image->picture = &known->picture;
+    image->by_index = known->by_index;
+    load_shares(image, arena);
     hash_add_hash(&image->hash, known->picture.hash);
     return true;
 }

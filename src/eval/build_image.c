@@ -213,6 +213,7 @@ const ImageMap *image_read(Reader *parent, const Word *word) {
     bool told = draft.image.gamma != 0 && !draft.made;
     if (!told) draft.image.gamma = usual_gamma(&draft.image, word->text);
     draft.image.assumed_gamma = !told && draft.image.gamma == 1 ? 1 : build_assumed_gamma(parent->context);
+    draft.image.use_index = strcmp(word->text, "bump_map") == 0 ? draft.image.use_index : draft.textures;
     rehash(&draft.image);
     if (draft.image.path && !picture_file_load(parent->context, &draft.image, draft.file)) {
         parent->failed = true;

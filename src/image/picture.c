@@ -1,5 +1,6 @@
 #include "image/picture.h"
 
+#include "image/palette.h"
 #include "image/srgb.h"
 
 #include <string.h>
@@ -80,21 +81,40 @@ static bool holds_integers(const Image *image) {
     return image->stored_as != IMAGE_SAMPLE_FLOAT && image->stored_as != IMAGE_SAMPLE_HALF && image->stored_as != IMAGE_SAMPLE_DOUBLE;
 }
 
+/* The arena may not return once it runs out, and nothing else frees the image. */
+static bool make_and_free(Image *image, Arena *arena, Picture *out, StrBuf *error) {
+    size_t need = (size_t)image->width * (size_t)image->height * 4 * sizeof(float) * 3 / 2;
+    bool room = memory_budget_take(arena->budget, need);
+    if (room) {
+        memory_budget_give_back(arena->budget, need);
+        picture_make(image, arena, out);
+    } else if (error) {
+        strbuf_adds(error, "it does not fit into the memory limit");
+    }
+    image_free(image);
+    return room;
+}
+
 bool picture_load(const char *path, PictureGamma curve, double gamma, Arena *arena, Picture *out, StrBuf *error) {
     Image image;
     if (!image_load(&image, path, IMAGE_AS_COLOUR, arena->budget, error)) return false;
     if (curve == PICTURE_GAMMA_POWER && holds_integers(&image)) change_gamma(&image, gamma);
-    /* The arena may not return once it runs out, and nothing else frees the image. */
-    size_t need = (size_t)image.width * (size_t)image.height * 4 * sizeof(float) * 3 / 2;
-    bool room = memory_budget_take(arena->budget, need);
-    if (room) {
-        memory_budget_give_back(arena->budget, need);
-        picture_make(&image, arena, out);
-    } else if (error) {
-        strbuf_adds(error, "it does not fit into the memory limit");
+    return make_and_free(&image, arena, out, error);
+}
+
+bool picture_load_entries(const char *path, const float (*entries)[4], Arena *arena, Picture *out, StrBuf *error) {
+    Palette palette;
+    Image numbers, image;
+    if (!palette_read(path, &palette) || !image_load(&numbers, path, IMAGE_AS_STORED, arena->budget, error)) return false;
+    palette_index(&palette, &numbers);
+    bool room = image_init(&image, numbers.width, numbers.height, 4, NULL, arena->budget, error);
+    size_t count = (size_t)numbers.width * (size_t)numbers.height;
+    for (size_t i = 0; room && i < count; i++) {
+        size_t entry = (size_t)double_clamp((double)numbers.pixels[i * (size_t)numbers.channels], 0, PALETTE_MOST - 1);
+        memcpy(image.pixels + 4 * i, entries[entry], sizeof *entries);
     }
-    image_free(&image);
-    return room;
+    image_free(&numbers);
+    return room && make_and_free(&image, arena, out, error);
 }
 
 /* ---- looking up ---- */

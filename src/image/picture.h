@@ -26,6 +26,9 @@ typedef enum PictureGamma { PICTURE_GAMMA_FILE /* what the format says, as image
 /* Loads a picture with its pyramid into `arena`. PICTURE_GAMMA_POWER: code values of integer formats are light to the power of 1/gamma.
  * False with a line in `error`. */
 bool picture_load(const char *path, PictureGamma curve, double gamma, Arena *arena, Picture *out, StrBuf *error);
+/* The same of a file with a table of colours (image/palette.h), each pixel being what `entries` has for its number, instead of a colour: 256
+ * times red, green, blue, multiplied by alpha, and alpha. False, also without a line, where the file has no table. */
+bool picture_load_entries(const char *path, const float (*entries)[4], Arena *arena, Picture *out, StrBuf *error);
 /* The pyramid of an image that is there. */
 void picture_make(const Image *image, Arena *arena, Picture *out);
 

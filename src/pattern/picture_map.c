@@ -92,21 +92,33 @@ static void footprint(const ImageMap *image, const Spot *spot, double out[2][2])
     out[1][1] = sqrt(fmax(vv - out[0][1] * out[0][1], 0));
 }
 
-static bool look_up(const ImageMap *image, const Spot *spot, PictureColor *out) {
+static bool find_place(const ImageMap *image, const Spot *spot, PictureSpot *at) {
     Place place = place_of(image, spot->p);
     if (place.outside || !image->picture || !isfinite(place.u) || !isfinite(place.v)) return false;
-    PictureSpot at = {.u = place.u, .v = place.v};
-    if (!spot_is_point(spot)) footprint(image, spot, at.axes);
-    *out = picture_color(image->picture, &at, (PictureFilter)image->interpolate, image->once || image->place);
+    *at = (PictureSpot){.u = place.u, .v = place.v};
+    if (!spot_is_point(spot)) footprint(image, spot, at->axes);
+    return true;
+}
+
+static PictureColor color_at(const ImageMap *image, const Picture *picture, const PictureSpot *at) {
+    return picture_color(picture, at, (PictureFilter)image->interpolate, image->once || image->place);
+}
+
+static bool look_up(const ImageMap *image, const Spot *spot, PictureColor *out) {
+    PictureSpot at;
+    if (!find_place(image, spot, &at)) return false;
+    *out = color_at(image, image->picture, &at);
     return true;
 }
 
 Color picture_map_color(const ImageMap *image, const Spot *spot) {
-    PictureColor c;
-    if (!look_up(image, spot, &c)) return (Color){1, 1, 1, 0, 1};
+    PictureSpot at;
+    if (!find_place(image, spot, &at)) return (Color){1, 1, 1, 0, 1};
+    PictureColor c = color_at(image, image->picture, &at), share = {0, 0, 0, 1};
+    if (image->shares) share = color_at(image, image->shares, &at);
     double transmit = image->picture->has_alpha ? 1 - c.alpha : 0;
     double gamma = image->assumed_gamma;
-    return (Color){gamma_from_light(c.red, gamma), gamma_from_light(c.green, gamma), gamma_from_light(c.blue, gamma), image->filter_all, transmit + image->transmit_all};
+    return (Color){gamma_from_light(c.red, gamma), gamma_from_light(c.green, gamma), gamma_from_light(c.blue, gamma), image->filter_all + share.red, transmit + image->transmit_all + share.green};
 }
 
 double picture_map_value(const ImageMap *image, const Spot *spot) {
@@ -120,22 +132,21 @@ size_t picture_map_index(const ImageMap *image, const Spot *spot) {
     PictureColor c;
     Spot middle = {.p = spot->p};
     if (!look_up(image, &middle, &c)) return 0;
-    return (size_t)(255 * double_clamp(c.red, 0, 1));
+    return (size_t)(255 * double_clamp(c.red, 0, 1) + 1e-3);
 }
 
 bool picture_map_heights(const ImageMap *image, const Spot *spot, double out[3]) {
     static const int steps[3][2] = {{0, 0}, {-1, -1}, {1, -1}};
-    Place place = place_of(image, spot->p);
-    if (place.outside || !image->picture || !isfinite(place.u) || !isfinite(place.v)) return false;
+    PictureSpot at;
+    if (!find_place(image, spot, &at)) return false;
     const PictureLevel *level = &image->picture->levels[0];
-    PictureSpot at = {.u = place.u, .v = place.v};
-    if (!spot_is_point(spot)) footprint(image, spot, at.axes);
+    double scale = image->by_index ? 255 : 1; /* numbers are as high as they are: POV-Ray's */
     for (int k = 0; k < 3; k++) {
         PictureSpot beside = at;
         beside.u += (double)steps[k][0] / level->width;
         beside.v += (double)steps[k][1] / level->height;
         PictureColor c = picture_color(image->picture, &beside, (PictureFilter)image->interpolate, false);
-        out[k] = 0.297 * c.red + 0.589 * c.green + 0.114 * c.blue;
+        out[k] = scale * (0.297 * c.red + 0.589 * c.green + 0.114 * c.blue);
     }
     return true;
 }

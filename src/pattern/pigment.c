@@ -94,6 +94,12 @@ static void blend_average(const Pigment *pattern, BlendVisit *visit, void *targe
     for (size_t k = 0; k < pattern->entry_count; k++) visit(target, k, pattern->entries[k].position / total);
 }
 
+/* Numbers beyond the textures begin anew, but that which is one too many: it has the last (measured). */
+static size_t material_number(const Pigment *pattern, const Spot *spot) {
+    size_t count = pattern->entry_count, number = pattern->image && count ? picture_map_index(pattern->image, spot) : 0;
+    return number > count ? number % count : number == count && count ? count - 1 : number;
+}
+
 void pattern_blend(const Pigment *pattern, const Spot *spot, BlendVisit *visit, void *target) {
     PatternTraits traits = pattern_traits(pattern->kind);
     if (traits.blocks)
@@ -103,7 +109,7 @@ void pattern_blend(const Pigment *pattern, const Spot *spot, BlendVisit *visit, 
     else if (pattern->kind == PATTERN_AVERAGE)
         blend_average(pattern, visit, target);
     else if (pattern->kind == PATTERN_MATERIAL)
-        visit(target, pattern->image ? picture_map_index(pattern->image, spot) % size_max(pattern->entry_count, 1) : 0, 1);
+        visit(target, material_number(pattern, spot), 1);
     else if (traits.sampled && !spot_is_point(spot))
         blend_sampled(pattern, spot, visit, target);
     else

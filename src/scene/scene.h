@@ -121,7 +121,8 @@ typedef struct ImageMap {
     int interpolate;              /* 0 nearest, 2 bilinear, 3 bicubic, 4 normalized distance */
     bool once;                    /* not repeated */
     bool use_alpha;               /* of a pattern: alpha counts, not grey */
-    bool use_index;               /* an index into the palette counts, not its colour */
+    bool use_index;               /* of a bump_map, and always of a material_map: the number in the palette counts, not its colour */
+    bool by_index;                /* the picture's colours are those numbers, over 255 */
     bool premultiplied, straight; /* alpha, if the text says so */
     double gamma;                 /* of the file; 0: the format's own; -1: sRGB */
     double assumed_gamma;         /* what light becomes in the scene's numbers (base/gamma.h) */
@@ -130,6 +131,7 @@ typedef struct ImageMap {
     const struct Picture *picture; /* image/picture.h; NULL: not drawn */
     bool georeferenced;
     const PicturePlace *place;    /* of what is georeferenced; else NULL */
+    const struct Picture *shares; /* the same pixels: what their numbers in the palette filter (red) and transmit (green); or NULL */
     const double *palette_filter; /* triples: index, filter, transmit */
     size_t palette_count;
 } ImageMap;

@@ -1,5 +1,6 @@
 /* height_field: two triangles between each four neighbouring heights, over the unit square of x and z. */
 #include "image/image.h"
+#include "image/palette.h"
 #include "shape/box_tree.h"
 #include "shape/solid.h"
 #include "shape/solid_parts.h"
@@ -42,6 +43,8 @@ static bool load_heights(const Solid *s, Arena *arena, Field *f) {
     bool ok = image_load(&image, s->as.field.path, IMAGE_AS_STORED, arena->budget, &error);
     strbuf_free(&error);
     if (!ok) return false;
+    Palette palette;
+    if (palette_read(s->as.field.path, &palette)) palette_index(&palette, &image);
     double most = image.stored_as == IMAGE_SAMPLE_U8 ? 255 : image.stored_as == IMAGE_SAMPLE_U16 ? 65535 : 1;
     f->columns = (uint32_t)image.width;
     f->rows = (uint32_t)image.height;

@@ -182,9 +182,7 @@ static void make_bins(CompiledScene *compiled, CompiledVolume *v) {
     light->density = arena_new_array(compiled->arena, float, bins);
 }
 
-bool volumes_light(CompiledScene *compiled) {
-    VolumeSet *set = compiled->volumes;
-    if (set->method == VOLUME_PATH) return true;
+static bool light_set(CompiledScene *compiled, VolumeSet *set) {
     int workers = pool_threads(compiled->options->pool);
     Tracer **tracers = arena_new_array(compiled->arena, Tracer *, (size_t)workers);
     for (int i = 0; i < workers; i++) {
@@ -200,6 +198,17 @@ bool volumes_light(CompiledScene *compiled) {
     for (size_t i = 0; i < set->count; i++) make_bins(compiled, &set->items[i]);
     bool done = volumes_shoot(compiled, tracers) && volumes_look_around(compiled, tracers);
     arena_reset_to(&compiled->scratch, mark);
+    return done;
+}
+
+bool volumes_light(CompiledScene *compiled) {
+    VolumeSet *set = compiled->volumes;
+    if (set->method == VOLUME_PATH) return true;
+    VolumeSet *smooth = volumes_without_peaks(set, compiled->arena);
+    compiled->volumes = smooth;
+    bool done = light_set(compiled, smooth);
+    compiled->volumes = set;
+    for (size_t i = 0; i < set->count; i++) set->items[i].light = smooth->items[i].light;
     return done;
 }
 

@@ -88,7 +88,7 @@ static void add_light(Path *p, const Collision *at, Vec3 point, Vec3 direction) 
             double u = random_next_unit(&p->random), v = random_next_unit(&p->random);
             way = light_ray_from(light, point, light_place(light, point, u, v));
         }
-        double shine = VOLUME_IRRADIANCE * phase_value(&at->volume->volume->phase, vec3_dot(way.direction, direction));
+        double shine = VOLUME_IRRADIANCE * phase_value(&at->volume->phase, vec3_dot(way.direction, direction));
         Vec3f color = vec3f_scale(way.color, (float)shine);
         if (color.x != 0 || color.y != 0 || color.z != 0) add(p, vec3f_mul(color, volume_lit(p->tracer, light, &way, point)));
     }
@@ -110,7 +110,7 @@ Vec3f volumes_path(SurfaceTracer *tracer, const Ray *first, double t_max, uint64
         if (order == most || !volume_survives(&p.random, p.weight, 1)) return p.sum;
         Vec3 point = vec3_madd(ray.origin, ray.direction, at.t);
         add_light(&p, &at, point, ray.direction);
-        double mu = phase_draw(&at.volume->volume->phase, random_next_unit(&p.random), random_next_unit(&p.random));
+        double mu = phase_draw(&at.volume->phase, random_next_unit(&p.random), random_next_unit(&p.random));
         ray = (Ray){point, phase_turn(ray.direction, mu, random_next_unit(&p.random))};
         t_max = volume_clear_way(compiled, &ray, &met);
     }

@@ -5,6 +5,8 @@
 #include "scene/scene_bounds.h"
 #include "volume/field.h"
 
+#include <string.h>
+
 /* ---- along rays ---- */
 
 static Vec3 to_cells(const CompiledVolume *v, Vec3 p) { return vec3_add(mat3_apply(&v->to_cells.linear, p), v->to_cells.offset); }
@@ -218,7 +220,8 @@ static void add_volume(VolumeBuild *b, const Object *object, const Transform *to
     channels(volume->absorption, v.absorption);
     for (int c = 0; c < 3; c++) v.extinction[c] = v.scattering[c] + v.absorption[c];
     if (is_empty(&v)) return;
-    phase_moments(&volume->phase, v.moments);
+    v.phase = volume->phase;
+    phase_moments(&v.phase, v.moments);
     const int *n = v.lattice.size;
     Transform scale = transform_scale(vec3(n[0], n[1], n[2])), shift = transform_translate(vec3_splat(0.5)), back = transform_inverse(&cube);
     Transform cells = transform_then(&back, &scale);
@@ -253,6 +256,35 @@ static int orders_of(const VolumeSet *set) {
     return most;
 }
 
+/* What is left of a volume without the peak. Where orders are counted, none is passed over. */
+static CompiledVolume without_peak(const CompiledVolume *v, bool counted) {
+    CompiledVolume out = *v;
+    double peak = counted ? 0 : phase_without_peak(&v->phase, &out.phase);
+    for (int c = 0; c < 3; c++) {
+        out.scattering[c] -= peak * v->scattering[c];
+        out.thinned[c] = out.extinction[c] = out.scattering[c] + v->absorption[c];
+    }
+    phase_moments(&out.phase, out.moments);
+    double thinned = out.thinned[0] + out.thinned[1] + out.thinned[2];
+    out.peak_share = thinned > 0 ? peak * (v->scattering[0] + v->scattering[1] + v->scattering[2]) / thinned : 0;
+    return out;
+}
+
+VolumeSet *volumes_without_peaks(const VolumeSet *set, Arena *arena) {
+    VolumeSet *out = arena_copy(arena, set, sizeof *set);
+    out->items = arena_copy(arena, set->items, set->count * sizeof *set->items);
+    for (size_t i = 0; i < set->count; i++) out->items[i] = without_peak(&set->items[i], set->orders != 0);
+    return out;
+}
+
+static void see_peak(CompiledVolume *v, bool counted, Arena *arena) {
+    const CompiledVolume rest = without_peak(v, counted);
+    Phase unused;
+    memcpy(v->thinned, rest.thinned, sizeof v->thinned);
+    v->peak_share = rest.peak_share;
+    v->spread = v->peak_share > 0 ? phase_spread_make(&v->phase, &rest.phase, phase_without_peak(&v->phase, &unused), arena) : NULL;
+}
+
 bool volumes_compile(CompiledScene *compiled, DiagList *diags) {
     VolumeBuild b = {.compiled = compiled, .diags = diags, .shapes = shape_tracer_create(compiled->arena)};
     size_t errors = diags->error_count;
@@ -265,6 +297,7 @@ bool volumes_compile(CompiledScene *compiled, DiagList *diags) {
     for (size_t i = 0; i < set->count; i++) set->bounds = box3_union(set->bounds, set->items[i].bounds);
     set->method = compiled->options->exact ? VOLUME_PATH : method_of(set);
     set->orders = orders_of(set);
+    for (size_t i = 0; i < set->count; i++) see_peak(&set->items[i], set->orders != 0, compiled->arena);
     compiled->volumes = set;
     return true;
 }

@@ -7,7 +7,7 @@
 #include "render/surface.h"
 #include "shape/body.h"
 #include "volume/lattice.h"
-#include "volume/phase.h"
+#include "volume/phase_spread.h"
 
 typedef struct VolumeLight VolumeLight;
 
@@ -21,7 +21,11 @@ typedef struct CompiledVolume {
     Transform body_place;     /* the body's own space → scene */
     Box3 bounds;              /* scene */
     double scattering[3], absorption[3], extinction[3];
+    Phase phase;
     double moments[PHASE_MOMENTS];
+    double thinned[3];        /* extinction, where light that a forward peak of the phase function turns aside goes on */
+    const PhaseSpread *spread;/* of that peak; NULL: none */
+    double peak_share;        /* how often it turns light on a way of thinned depth 1 */
     bool casts, seen;         /* shadows; in the picture */
     VolumeLight *light;       /* volume_light.h; NULL: nothing was kept */
 } CompiledVolume;
@@ -35,6 +39,9 @@ typedef struct VolumeSet {
     bool sky;                 /* light comes from the sky too */
 } VolumeSet;
 
+/* The set as the two passes see light that was scattered before: forward peaks of phase functions, which harmonics of low degrees cannot have, turn nothing aside (Wiscombe
+ * 1977). On the arena; with its volumes' `light` still to be made. */
+VolumeSet *volumes_without_peaks(const VolumeSet *set, Arena *arena);
 /* The scene's volumes without their light; NULL where there are none. False after a diagnostic. */
 bool volumes_compile(CompiledScene *compiled, DiagList *diags);
 

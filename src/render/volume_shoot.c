@@ -145,7 +145,7 @@ static void keep(const Shot *shot, const Collision *at, Vec3 point, Vec3 directi
 
 static Vec3 scatter(Shot *shot, const CompiledVolume *v, Vec3 direction) {
     double mu =
-        phase_draw(&v->volume->phase, random_next_unit(&shot->random), random_next_unit(&shot->random));
+        phase_draw(&v->phase, random_next_unit(&shot->random), random_next_unit(&shot->random));
     return phase_turn(direction, mu, random_next_unit(&shot->random));
 }
 
@@ -203,14 +203,12 @@ static void shoot_lamp(Shot *shot, double u) {
 }
 
 /* From all around, through discs that the volumes lie behind. */
-static void shoot_sky(Shot *shot, double u) {
+static void shoot_sky(Shot *shot, const double u[4]) {
     const Shooting *s = shot->shooting;
-    double z = 1 - 2 * u, turn = 2 * VTS_PI * random_next_unit(&shot->random),
-           r = sqrt(double_max(0, 1 - z * z)), power[3];
+    double z = 1 - 2 * u[0], turn = 2 * VTS_PI * u[1], r = sqrt(double_max(0, 1 - z * z)), power[3];
     Vec3 from = vec3(r * cos(turn), z, r * sin(turn)), a, b;
     Vec3f sky = sky_radiance(s->compiled->scene, from, 0);
-    double out = s->radius * sqrt(random_next_unit(&shot->random)),
-           around = 2 * VTS_PI * random_next_unit(&shot->random);
+    double out = s->radius * sqrt(u[2]), around = 2 * VTS_PI * u[3];
     double scale = 4 * VTS_PI * VTS_PI * s->radius * s->radius;
     power[0] = (double)sky.x * scale, power[1] = (double)sky.y * scale, power[2] = (double)sky.z * scale;
     if (!set_power(shot, power)) return;
@@ -226,6 +224,12 @@ static void shoot_sky(Shot *shot, double u) {
 /* Number i of a sequence that spreads evenly over [0, 1) however far it goes: multiples of the golden ratio. More rays go on where fewer ended. */
 static double spread(uint64_t i) { return random_unit(i * 0x9E3779B97F4A7C15u); }
 
+/* The same in four dimensions: multiples of powers of 1/x, x^5 = x + 1. */
+static void spread_in_four(uint64_t i, double out[4]) {
+    static const uint64_t steps[4] = {0xDB4F0B9175AE2165u, 0xBBE0563303A4615Fu, 0xA0F2EC75A1FE1575u, 0x89E182857D9ED689u};
+    for (int k = 0; k < 4; k++) out[k] = random_unit(i * steps[k]);
+}
+
 static void shoot_batch(void *context, size_t batch, int worker) {
     Shooting *s = context;
     Shot shot = {.shooting = s,
@@ -237,7 +241,10 @@ static void shoot_batch(void *context, size_t batch, int worker) {
         shot.random.state = random_hash(number, 0x6c616d70, 0, 0);
         if (s->lamp_total > 0 && volume_most_turns(s->set) > 0) shoot_lamp(&shot, spread(number));
         shot.random.state = random_hash(number, 0x736b79, 0, 0);
-        if (s->set->sky) shoot_sky(&shot, spread(number));
+        if (!s->set->sky) continue;
+        double places[4];
+        spread_in_four(number, places);
+        shoot_sky(&shot, places);
     }
     s->collisions[batch] += shot.collisions;
 }

@@ -22,7 +22,7 @@ typedef struct Gathering {
     int count;
 } Gathering;
 
-static double densest(const CompiledVolume *v) { return double_max(v->extinction[0], double_max(v->extinction[1], v->extinction[2])); }
+static double densest(const CompiledVolume *v) { return double_max(v->thinned[0], double_max(v->thinned[1], v->thinned[2])); }
 
 /* How far a step may go. */
 static double stride_of(const CompiledVolume *v, const Ray *cells) {
@@ -93,8 +93,11 @@ static double length_until(const Gathering *g, int begin, int end, double t) {
     return s->before + (t > s->t0 ? s->length * (t - s->t0) / (s->t1 - s->t0) : 0);
 }
 
+/* Of which so much is left. */
+static double depth_of(Vec3f through) { return -log(double_max((double)(through.x + through.y + through.z) / 3, 1e-30)); }
+
 /* What a unit of density at the place sends towards the eye. */
-static Vec3f source(const Gathering *g, const CompiledVolume *v, Vec3 point, const double shape[VOLUME_HARMONICS]) {
+static Vec3f source(const Gathering *g, const CompiledVolume *v, Vec3 point, double seen_depth, const double shape[VOLUME_HARMONICS]) {
     const Scene *scene = g->tracer->compiled->scene;
     Vec3 unit = volume_unit(v, point);
     Vec3f sum = volume_kept(v, unit, shape), scattering = {(float)v->scattering[0], (float)v->scattering[1], (float)v->scattering[2]};
@@ -103,15 +106,18 @@ static Vec3f source(const Gathering *g, const CompiledVolume *v, Vec3 point, con
         if (!light_shines_on(light, NULL)) continue;
         LightRay way = light_ray(light, point);
         if (way.color.x == 0 && way.color.y == 0 && way.color.z == 0) continue;
-        float shine = (float)(VOLUME_IRRADIANCE * phase_value(&v->volume->phase, vec3_dot(way.direction, g->ray.direction)));
-        Vec3f share = vec3f_mul(volume_lamp(v, g->tracer, l, &way, unit, point), way.color);
-        sum = vec3f_madd(sum, vec3f_mul(share, scattering), shine);
+        Vec3f through = volume_lamp(v, g->tracer, l, &way, unit, point);
+        double mu = vec3_dot(way.direction, g->ray.direction), shine = VOLUME_IRRADIANCE * phase_value(&v->phase, mu);
+        shine *= phase_spread(v->spread, mu, v->peak_share * depth_of(through), v->peak_share * seen_depth);
+        sum = vec3f_madd(sum, vec3f_mul(vec3f_mul(through, way.color), scattering), (float)shine);
     }
-    return sum;
+    return vec3f(float_max(sum.x, 0), float_max(sum.y, 0), float_max(sum.z, 0));
 }
 
 /* The mean of exp(-x) over [0, depth]. */
 static double mean_passing(double depth) { return depth > 1e-4 ? -expm1(-depth) / depth : 1 - depth / 2; }
+
+static Vec3f passing(const double depth[3]) { return vec3f((float)exp(-depth[0]), (float)exp(-depth[1]), (float)exp(-depth[2])); }
 
 Air volumes_gather(SurfaceTracer *tracer, const Cone *cone, double t_max, double *mean_t) {
     const VolumeSet *set = tracer->compiled->volumes;
@@ -126,7 +132,7 @@ Air volumes_gather(SurfaceTracer *tracer, const Cone *cone, double t_max, double
         if (g.count > before) bounds[met++] = before;
     }
     bounds[met] = g.count;
-    double shape[VOLUME_HARMONICS], weights = 0, depth_sum[3] = {0, 0, 0};
+    double shape[VOLUME_HARMONICS], weights = 0, depth_sum[3] = {0, 0, 0}, thinned_sum[3] = {0, 0, 0};
     Air air = {{1, 1, 1}, {0, 0, 0}, 0};
     volume_harmonics(vec3_negate(cone->direction), VOLUME_HARMONICS, shape);
     *mean_t = 0;
@@ -140,20 +146,28 @@ Air volumes_gather(SurfaceTracer *tracer, const Cone *cone, double t_max, double
                 if (o == m) continue;
                 const CompiledVolume *other = &set->items[g.steps[bounds[o]].volume];
                 double length = length_until(&g, bounds[o], bounds[o + 1], t);
-                for (int c = 0; c < 3; c++) others[c] += other->extinction[c] * length;
+                for (int c = 0; c < 3; c++) others[c] += other->thinned[c] * length;
             }
             float share[3];
             for (int c = 0; c < 3; c++)
-                share[c] = (float)(s->length * exp(-others[c] - v->extinction[c] * s->before) * mean_passing(v->extinction[c] * s->length));
+                share[c] = (float)(s->length * exp(-others[c] - v->thinned[c] * s->before) * mean_passing(v->thinned[c] * s->length));
             if (!(share[0] > 0 || share[1] > 0 || share[2] > 0)) continue;
-            Vec3f light = source(&g, v, cone_point(cone, t), shape);
+            double seen = (v->thinned[0] + v->thinned[1] + v->thinned[2]) / 3 * (s->before + at * s->length);
+            Vec3f light = source(&g, v, cone_point(cone, t), seen, shape);
             air.add = vec3f_add(air.add, vec3f_mul(light, vec3f(share[0], share[1], share[2])));
             *mean_t += (double)share[1] * t, weights += (double)share[1];
         }
         const Step *last = &g.steps[bounds[m + 1] - 1];
-        for (int c = 0; c < 3; c++) depth_sum[c] += v->extinction[c] * (last->before + last->length);
+        for (int c = 0; c < 3; c++) {
+            depth_sum[c] += v->extinction[c] * (last->before + last->length);
+            thinned_sum[c] += v->thinned[c] * (last->before + last->length);
+        }
     }
     if (weights > 0) *mean_t /= weights;
-    air.keep = vec3f((float)exp(-depth_sum[0]), (float)exp(-depth_sum[1]), (float)exp(-depth_sum[2]));
+    air.keep = passing(depth_sum);
+    if (set->sky && t_max >= VTS_INFINITY) { /* what peaks alone turn here comes from about there */
+        Vec3f turned = vec3f_sub(passing(thinned_sum), air.keep);
+        air.add = vec3f_add(air.add, vec3f_mul(turned, sky_radiance(tracer->compiled->scene, cone->direction, 0)));
+    }
     return air;
 }

@@ -60,43 +60,70 @@ double phase_draw(const Phase *phase, double which, double u) {
     return double_clamp(lobe_draw(&phase->lobes[i], u), -1, 1);
 }
 
-/* ---- means ---- */
+/* ---- moments ---- */
 
-/* Of mu and mu². */
-static void schlick_means(double k, double *first, double *second) {
+/* Means of mu, mu² and mu³. */
+static void schlick_means(double k, double out[3]) {
     if (fabs(k) < 0.02) {
-        *first = 2 * k / 3 + 2 * k * k * k / 15;
-        *second = 1.0 / 3 + 4 * k * k / 15;
+        out[0] = 2 * k / 3 + 2 * k * k * k / 15;
+        out[1] = 1.0 / 3 + 4 * k * k / 15;
+        out[2] = 2 * k / 5 + 6 * k * k * k / 35;
         return;
     }
     double log_ratio = log((1 + k) / (1 - k)), rest = 1 - k * k;
-    *first = 1 / k - rest / (2 * k * k) * log_ratio;
-    *second = rest / (k * k * k) * (k / rest + k - log_ratio);
+    out[0] = 1 / k - rest / (2 * k * k) * log_ratio;
+    out[1] = rest / (k * k * k) * (k / rest + k - log_ratio);
+    out[2] = rest / (2 * k * k * k * k) * (2 * k / rest - 3 * log_ratio + 4 * k);
 }
 
-static void lobe_means(const PhaseLobe *lobe, double *first, double *second) {
-    double k = lobe->k;
-    *first = 0, *second = 1.0 / 3;
+static void lobe_moments(const PhaseLobe *lobe, double out[PHASE_MOMENTS]) {
+    double k = lobe->k, means[3];
+    out[0] = 1, out[1] = out[2] = out[3] = 0;
     switch (lobe->kind) {
     case PHASE_ISOTROPIC: break;
-    case PHASE_RAYLEIGH: *second = 0.4; break;
+    case PHASE_RAYLEIGH: out[2] = 0.1; break;
     case PHASE_POWER:
-        *first = k / (k + 2);
-        *second = 4 * (k + 1) / (k + 3) - 4 * (k + 1) / (k + 2) + 1;
+        for (int l = 1; l < PHASE_MOMENTS; l++) out[l] = out[l - 1] * (k + 1 - l) / (k + 1 + l);
         break;
-    case PHASE_HENYEY_GREENSTEIN: *first = k, *second = (1 + 2 * k * k) / 3; break;
-    case PHASE_SCHLICK: schlick_means(k, first, second); break;
+    case PHASE_HENYEY_GREENSTEIN: out[1] = k, out[2] = k * k, out[3] = k * k * k; break;
+    case PHASE_SCHLICK:
+        schlick_means(k, means);
+        out[1] = means[0], out[2] = 1.5 * means[1] - 0.5, out[3] = 2.5 * means[2] - 1.5 * means[0];
+        break;
     }
 }
 
 void phase_moments(const Phase *phase, double out[PHASE_MOMENTS]) {
-    out[0] = 1, out[1] = out[2] = 0;
+    for (int l = 0; l < PHASE_MOMENTS; l++) out[l] = l == 0;
     for (int i = 0; i < phase->count; i++) {
-        double first, second;
-        lobe_means(&phase->lobes[i], &first, &second);
-        out[1] += phase->lobes[i].weight * first;
-        out[2] += phase->lobes[i].weight * (1.5 * second - 0.5);
+        double lobe[PHASE_MOMENTS];
+        lobe_moments(&phase->lobes[i], lobe);
+        for (int l = 1; l < PHASE_MOMENTS; l++) out[l] += phase->lobes[i].weight * lobe[l];
     }
+}
+
+/* ---- without its peak ---- */
+
+static const double LEAST_PEAK = 0.01, MOST_PEAK = 0.999999;
+
+/* Two lobes of the same mean cosine whose second moments lie on either side of the wanted one; or, where light goes backwards too, one forwards and one backwards. */
+static Phase phase_of_moments(double first, double second) {
+    if (second >= first * first) {
+        double k = double_min(sqrt(second), 0.999), forwards = k > 1e-6 ? double_clamp(0.5 + first / (2 * k), 0, 1) : 1;
+        return (Phase){.lobes = {{PHASE_HENYEY_GREENSTEIN, k, forwards}, {PHASE_HENYEY_GREENSTEIN, -k, 1 - forwards}}, .count = 2};
+    }
+    double n = 2 * first / (1 - first), least = first * (n - 1) / (n + 3), share = double_clamp((first * first - second) / (first * first - least), 0, 1);
+    return (Phase){.lobes = {{PHASE_POWER, n, share}, {PHASE_HENYEY_GREENSTEIN, first, 1 - share}}, .count = 2};
+}
+
+double phase_without_peak(const Phase *phase, Phase *rest) {
+    double moments[PHASE_MOMENTS];
+    phase_moments(phase, moments);
+    double peak = double_min(moments[3], MOST_PEAK);
+    *rest = *phase;
+    if (!(peak > LEAST_PEAK) || !(moments[1] > peak)) return 0;
+    *rest = phase_of_moments((moments[1] - peak) / (1 - peak), (moments[2] - peak) / (1 - peak));
+    return peak;
 }
 
 Vec3 phase_turn(Vec3 direction, double mu, double turn) {

@@ -128,9 +128,9 @@ static inline void affine_noise_lanes(AffineLanes *restrict out, const AffineLan
         length[l] = sqrt(square) * (1 + 0x1p-48), off[l] = sum * (1 + 0x1p-48);
     }
     /* Beyond, even a noise without a slope would not be known better than as a whole. */
-    double longest = sqrt(2 * half / known->curved);
+    double longest = 2 * half / known->curved;
     uint64_t some_short = 0;
-    AFFINE_EACH_LANE some_short |= length[l] < longest ? 1 : 0;
+    AFFINE_EACH_LANE some_short |= length[l] * length[l] < longest ? 1 : 0;
     if (!some_short) {
         AFFINE_EACH_LANE {
             out->centre[l] = middle, out->slope[l] = 0;

@@ -4,6 +4,8 @@
 
 #include "tape/noise_lattice.h"
 
+#include <string.h>
+
 enum { TAYLOR_LANES = 8 };
 
 /* Places at + s·way, s in [-1, 1], of TAYLOR_LANES pieces. */
@@ -50,19 +52,52 @@ static inline void taylor_locate(const double *restrict at, const double *restri
     }
 }
 
+/* Four rows of four numbers into four columns: numbers[j][first + l] = rowl[j]. Compilers do not find the shuffles themselves, which pay
+ * where a row is one vector. */
+#if defined(__AVX__) && defined(__has_builtin)
+#define TAYLOR_SHUFFLES __has_builtin(__builtin_shufflevector)
+#else
+#define TAYLOR_SHUFFLES 0
+#endif
+#if TAYLOR_SHUFFLES
+static inline void taylor_columns(const double *row0, const double *row1, const double *row2, const double *row3,
+                                  double numbers[4][TAYLOR_LANES], int first) {
+    typedef double Four __attribute__((vector_size(32)));
+    Four a, b, c, d;
+    memcpy(&a, row0, sizeof a), memcpy(&b, row1, sizeof b), memcpy(&c, row2, sizeof c), memcpy(&d, row3, sizeof d);
+    Four even = __builtin_shufflevector(a, b, 0, 4, 2, 6), odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    Four even_after = __builtin_shufflevector(c, d, 0, 4, 2, 6), odd_after = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    Four values = __builtin_shufflevector(even, even_after, 0, 1, 4, 5), along_y = __builtin_shufflevector(even, even_after, 2, 3, 6, 7);
+    Four along_x = __builtin_shufflevector(odd, odd_after, 0, 1, 4, 5), along_z = __builtin_shufflevector(odd, odd_after, 2, 3, 6, 7);
+    memcpy(&numbers[0][first], &values, sizeof values), memcpy(&numbers[1][first], &along_x, sizeof along_x);
+    memcpy(&numbers[2][first], &along_y, sizeof along_y), memcpy(&numbers[3][first], &along_z, sizeof along_z);
+}
+#else
+static inline void taylor_columns(const double *row0, const double *row1, const double *row2, const double *row3,
+                                  double numbers[4][TAYLOR_LANES], int first) {
+    for (int j = 0; j < 4; j++)
+        numbers[j][first] = row0[j], numbers[j][first + 1] = row1[j], numbers[j][first + 2] = row2[j], numbers[j][first + 3] = row3[j];
+}
+#endif
+
 static inline void taylor_along(const TaylorWay *way, LatticeFind *find, TaylorCurve *curve, TaylorTerms *restrict out) {
     TaylorAxis axes[3];
     double numbers[8][4][TAYLOR_LANES];
     int32_t cells[TAYLOR_LANES][4];
-    LatticeCorners corners;
+    LatticeCorners corners[TAYLOR_LANES];
+    int from[TAYLOR_LANES]; /* the lane whose corners are those of this one */
     for (int k = 0; k < 3; k++) taylor_locate(way->at[k], way->way[k], curve, &axes[k]);
     for (int l = 0; l < TAYLOR_LANES; l++)
         for (int k = 0; k < 3; k++) cells[l][k] = (int32_t)axes[k].cell[l];
     for (int l = 0; l < TAYLOR_LANES; l++) {
         const int32_t *cell = cells[l], *before = cells[l ? l - 1 : 0];
-        if (l == 0 || cell[0] != before[0] || cell[1] != before[1] || cell[2] != before[2]) find(cell, corners);
+        bool same = l > 0 && cell[0] == before[0] && cell[1] == before[1] && cell[2] == before[2];
+        from[l] = same ? from[l - 1] : l;
+        if (!same) find(cell, corners[l]);
+    }
+    for (int l = 0; l < TAYLOR_LANES; l += 4) {
         for (int c = 0; c < 8; c++)
-            for (int j = 0; j < 4; j++) numbers[c][j][l] = corners[c][j];
+            taylor_columns(corners[from[l]][c], corners[from[l + 1]][c], corners[from[l + 2]][c], corners[from[l + 3]][c], numbers[c], l);
     }
     for (int l = 0; l < TAYLOR_LANES; l++) {
         double room = axes[0].room[l] < axes[1].room[l] ? axes[0].room[l] : axes[1].room[l];

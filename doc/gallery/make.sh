@@ -44,6 +44,15 @@ clock_of() {
 frames_of() {
   case $1 in
     flag) echo '16 32 48 64 80 96' ;;
+    reeds) echo '14 22 28 34 42 56' ;;
+    aspens) echo '1 3 5 7 9 11' ;;
+  esac
+}
+
+sheet_size_of() {
+  case $1 in
+    flag) echo 256x192 ;;
+    *) echo 256x160 ;;
   esac
 }
 
@@ -51,8 +60,8 @@ draw_sheet() { # SCENE PICTURE FRAMES…
   local scene=$1 picture=$2 folder frame
   shift 2
   folder=$(mktemp -d)
-  for frame; do "$program" render "$scene" --size 256x192 -f "$frame" --output "$folder/$(printf %03d "$frame")#.png" --progress none; done
-  montage "$folder"/*.png -tile 3x -geometry +2+2 "$picture"
+  for frame; do "$program" render "$scene" --size "$(sheet_size_of "$(basename "$scene" .vts)")" -f "$frame" --output "$folder/$(printf %03d "$frame")#.png" --progress none; done
+  montage "$folder"/*.png -tile 3x -geometry +2+2 -quality 80 "$picture"
   rm -r "$folder"
 }
 

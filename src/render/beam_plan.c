@@ -15,20 +15,34 @@ static const double BEYOND_PLAN = 1.42;
 /* More triangles than this are left to the voxels. */
 enum { MOST_BEAM_TRIANGLES = 4000000 };
 
+/* Skins are drawn whole, however far they are, where no more triangles than this lie on what the view meets of all of them for each of the picture's pixels, once for the eye and once for each light: that
+ * takes about as long as building voxels and marching through them. At the default max_error; an error that is larger is worth fewer of them. */
+static const double ALL_TRIANGLES_A_PIXEL = 400, LEAST_WORTH = 0.1, MOST_WORTH = 2;
+
+/* How many tiles lie on the cell, and its area. */
+static double tiles_of_cell(const SkinCell *cell, double *area) {
+    double middle = cell->triangle ? 1.0 / 3 : 0.5, share = cell->triangle ? 0.5 : 1;
+    Mat3 j;
+    skin_cell_position(cell, middle, middle, 0, &j);
+    const double *u = cell->u.c, *v = cell->v.c;
+    double ua = u[1] + u[3] * middle, ub = u[2] + u[3] * middle, va = v[1] + v[3] * middle, vb = v[2] + v[3] * middle;
+    *area = share * vec3_length(vec3_cross(j.c[0], j.c[1]));
+    return share * fabs(ua * vb - ub * va);
+}
+
 /* Area of the surface against that of its tiles. */
 static double mean_tile_size(const CompiledSkin *skin) {
-    double area = 0, tiles = 0;
-    for (size_t i = 0; i < skin->cell_count; i++) {
-        const SkinCell *cell = &skin->cells[i];
-        double middle = cell->triangle ? 1.0 / 3 : 0.5, share = cell->triangle ? 0.5 : 1;
-        Mat3 j;
-        skin_cell_position(cell, middle, middle, 0, &j);
-        const double *u = cell->u.c, *v = cell->v.c;
-        double ua = u[1] + u[3] * middle, ub = u[2] + u[3] * middle, va = v[1] + v[3] * middle, vb = v[2] + v[3] * middle;
-        area += share * vec3_length(vec3_cross(j.c[0], j.c[1]));
-        tiles += share * fabs(ua * vb - ub * va);
-    }
+    double area = 0, tiles = 0, one;
+    for (size_t i = 0; i < skin->cell_count; i++) tiles += tiles_of_cell(&skin->cells[i], &one), area += one;
     return tiles > 0 && area > 0 ? sqrt(area / tiles) : 0;
+}
+
+/* Tiles on what the view meets of the skin. */
+static double tiles_in_view(const CompiledSkin *skin, const View *view) {
+    double tiles = 0, area;
+    for (size_t i = 0; i < skin->cell_count; i++)
+        if (!view_misses(view, skin->cells[i].bounds)) tiles += tiles_of_cell(&skin->cells[i], &area);
+    return fmax(tiles, 1);
 }
 
 static bool coordinates_singular(const CompiledSkin *skin) {
@@ -120,6 +134,39 @@ bool beam_build_skin(CompiledSkin *skin, bool everything, CompiledScene *compile
     return true;
 }
 
+/* Triangles that the picture is worth, each counted as often as it is drawn: for the eye, and for each light that casts shadows. */
+static double triangles_worth(const CompiledScene *compiled) {
+    const View *view = &compiled->view;
+    double worth = double_clamp(1 / (255 * compiled->max_error), LEAST_WORTH, MOST_WORTH);
+    int times = 1;
+    for (size_t i = 0; i < compiled->scene->light_count; i++) times += !compiled->scene->lights[i].shadowless;
+    return worth * ALL_TRIANGLES_A_PIXEL * view->width * view->height / times;
+}
+
+/* Takes the triangles on what the view meets of the skin from *left; *whole: there were as many. */
+static bool build_whole(CompiledSkin *skin, double *left, CompiledScene *compiled, DiagList *diags, bool *whole) {
+    double tiles = tiles_in_view(skin, &compiled->view), size = mean_tile_size(skin);
+    *whole = size > 0 && !coordinates_singular(skin);
+    for (size_t i = 0; i < skin->texel_count && *whole; i++) {
+        const PlacedTexel *placed = &skin->texels[i];
+        double share = tiles * placed->density / (double)placed->family_size;
+        for (size_t k = 0; k < placed->family_size && share > 0 && *whole; k++) {
+            if (!build_texel(placed->family[k], (size_t)fmin(*left / share, MOST_BEAM_TRIANGLES), compiled, diags)) return false;
+            if (placed->family[k]->beam) *left -= share * (double)placed->family[k]->beam->triangle_count;
+            *whole = placed->family[k]->beam && *left >= 0;
+        }
+    }
+    return true;
+}
+
+bool beam_build_whole(CompiledScene *compiled, DiagList *diags, bool *whole) {
+    double left = triangles_worth(compiled);
+    *whole = true;
+    for (size_t i = 0; i < compiled->skin_count && *whole; i++)
+        if (!compiled->skins[i].rigid && !build_whole(&compiled->skins[i], &left, compiled, diags, whole)) return false;
+    return true;
+}
+
 void beam_plan_skin(CompiledSkin *skin, bool everything, CompiledScene *compiled) {
     const View *view = &compiled->view;
     bool all = true;
@@ -130,7 +177,7 @@ void beam_plan_skin(CompiledSkin *skin, bool everything, CompiledScene *compiled
     double to = cone.spread > 0 ? width / cone.spread : cone.width <= width ? VTS_INFINITY : 0;
     seen_range(skin, view, &nearest, &farthest);
     bool out_of_sight = farthest == 0; /* its shadows may be seen */
-    if (everything || out_of_sight || 0.7 * to >= farthest) to = VTS_INFINITY;
+    if (everything || out_of_sight || 0.7 * to >= farthest ) to = VTS_INFINITY;
     if (BEYOND_PLAN * to <= nearest && !out_of_sight) return;
     Box3 *boxes = arena_new_array(compiled->arena, Box3, skin->cell_count);
     for (size_t i = 0; i < skin->cell_count; i++) boxes[i] = skin->cells[i].bounds;

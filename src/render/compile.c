@@ -106,12 +106,14 @@ static CompileStatus build_texels(const CompileOptions *options, Detail detail, 
     bool beams = flat && !options->exact && !options->texel_resolution && (detail == DETAIL_AUTO || detail == DETAIL_EXACT), voxels = !beams;
     out->exact_bounds = box3_empty();
     out->all_exact_to = out->nearest = VTS_INFINITY;
+    bool whole = detail == DETAIL_EXACT, failed = beams && !whole && !beam_build_whole(out, diags, &whole);
+    if (failed) return interrupted(options) ? COMPILE_INTERRUPTED : COMPILE_FAILED;
     for (size_t i = 0; i < out->skin_count && beams; i++) {
-        if (!beam_build_skin(&out->skins[i], detail == DETAIL_EXACT, out, diags)) return interrupted(options) ? COMPILE_INTERRUPTED : COMPILE_FAILED;
+        if (!beam_build_skin(&out->skins[i], detail == DETAIL_EXACT || (whole && !out->skins[i].rigid), out, diags)) return interrupted(options) ? COMPILE_INTERRUPTED : COMPILE_FAILED;
         if (interrupted(options)) return COMPILE_INTERRUPTED;
     }
     for (size_t i = 0; i < out->skin_count && beams; i++) {
-        beam_plan_skin(&out->skins[i], detail == DETAIL_EXACT, out);
+        beam_plan_skin(&out->skins[i], detail == DETAIL_EXACT || (whole && !out->skins[i].rigid), out);
     }
     if (beams) out->rigid = rigid_copies_build(out);
     for (size_t i = 0; i < out->skin_count && beams; i++) {

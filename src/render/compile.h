@@ -111,6 +111,9 @@ bool texel_build(BuiltTexel *texel, const CompileOptions *options, CompiledScene
 /* Triangles for beams of the skin's texels, as far as they may be seen nearer than voxels are planned to begin (`everything`: all); false after a
  * diagnostic or when interrupted. beam_plan.c */
 bool beam_build_skin(CompiledSkin *skin, bool everything, CompiledScene *compiled, DiagList *diags);
+/* Whether there is so little of all skins that are not rigid that drawing them whole takes no longer than voxels would; they then have triangles for beams. False after a
+ * diagnostic or when interrupted. beam_plan.c */
+bool beam_build_whole(CompiledScene *compiled, DiagList *diags, bool *whole);
 /* Up to which distance the skin is drawn as exact geometry; `everything`: to the last. After beam_build_skin. beam_plan.c */
 void beam_plan_skin(CompiledSkin *skin, bool everything, CompiledScene *compiled);
 /* Moves the distances at which voxels begin to where they are as right as max_error asks, by what a few pixels tell; sets voxel_error. When all

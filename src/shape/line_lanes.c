@@ -9,9 +9,6 @@ enum { AHEAD = 2 /* pieces divided together */, FEW_LANES = 24 };
 /* Pieces up to this many line_shortest() are left to halving, whose bounds' roundings are smaller. */
 static const double ALONE = 0x1p6;
 
-/* Of the width of what looks: a piece as short whose ends differ in sign is a root, whichever of several that is. */
-static const double NARROW = 0x1p-6;
-
 /* Terms of the sum are settled on a piece where their errors are less than SETTLES of what the sum may be off its middle: parts of the
  * piece take them as they are, until their errors come to STALE of that, or to half of all. */
 static const double SETTLES = 0x1p-7, STALE = 0x1p-5;
@@ -173,9 +170,6 @@ static bool search(Lanes *lanes, double *t, bool *falling) {
             lanes->count--;
             if (full) {
                 if (line_give_up(s, (LinePiece){piece.a, piece.b}, t, falling)) return true;
-            } else if (piece.b - piece.a <= NARROW * line_width(s->line, piece.a) &&
-                       line_place_between(s, piece.a, piece.b, t, falling)) {
-                return true;
             } else if (piece.b - piece.a <= ALONE * line_shortest(s->line, piece.b)) {
                 if (line_search_halves(s, piece.a, piece.b, t, falling)) return true;
             } else {

@@ -27,8 +27,6 @@ double line_value(LineSearch *s, double t);
 /* Bounds for that on [a, b] by the line's method. */
 AffineForm line_bounds(LineSearch *s, double a, double b);
 static inline bool line_is_wide(const Line *line) { return line->sum && (line->width.start > 0 || line->width.spread > 0); }
-/* The width of what looks at t; 0 where none counts. */
-static inline double line_width(const Line *line, double t) { return line_is_wide(line) ? line->width.start + t * line->width.spread : 0; }
 /* The place at middle + s·half along one axis, with the rounding of vec3_madd() and of the middle. */
 AffineForm line_place(double origin, double direction, double middle, double half);
 /* Cuts [a, b], where the form holds, to where centre + slope·s may be within the error of 0: equation 16. */

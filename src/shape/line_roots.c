@@ -78,16 +78,14 @@ static double value_on(const void *context, double t) {
     return line_value((LineSearch *)(uintptr_t)context, t);
 }
 
-/* Of the width of what looks: nearer than this no place need be known. */
-static const double NARROWEST = 0x1p-20;
-
 /* Once bounds leave a piece this short, one change is all that can be told. */
 bool line_place_between(LineSearch *s, double a, double b, double *t, bool *falling) {
     double at_a = line_value(s, a), at_b = line_value(s, b);
     if ((at_a <= 0) == (at_b <= 0)) return false;
     *falling = at_b <= 0;
-    double close = fmax(0x1p-52 * (fabs(a) + fabs(b)), NARROWEST * line_width(s->line, a));
-    *t = isfinite(at_a) && isfinite(at_b) ? roots_between(value_on, s, a, at_a, b, at_b, close) : b;
+    *t = isfinite(at_a) && isfinite(at_b)
+             ? roots_between(value_on, s, a, at_a, b, at_b, 0x1p-52 * (fabs(a) + fabs(b)))
+             : b;
     return true;
 }
 

@@ -104,7 +104,7 @@ static const WordRule rules[] = {
     {"jitter", WORD_MARK, FIELD(jitter), NULL, false},
     {"circular", WORD_MARK, FIELD(circular), NULL, false},
     {"orient", WORD_FLAG, FIELD(orient), NULL, false},
-    INERT("area_illumination"),
+    {"area_illumination", WORD_FLAG, FIELD(area_illumination), NULL, false},
     {"looks_like", WORD_CUSTOM, 0, read_looks_like, false},
     {"projected_through", WORD_CUSTOM, 0, read_projected, false},
     INERT("goniometric"),

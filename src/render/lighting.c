@@ -82,9 +82,8 @@ static void round_off(double *a, double *b) {
     *a *= scale, *b *= scale;
 }
 
-Vec3 light_place(const Light *light, Vec3 point, double u, double v) {
-    if (!light_is_area(light)) return light->location;
-    double a = row_place(u, light->size_u, light->jitter), b = row_place(v, light->size_v, light->jitter);
+/* In parts of the sides, from the middle. */
+static Vec3 place_at(const Light *light, Vec3 point, double a, double b) {
     Vec3 across = light->axis_u, along = light->axis_v;
     if (light->circular) round_off(&a, &b);
     if (light->orient) {
@@ -93,6 +92,21 @@ Vec3 light_place(const Light *light, Vec3 point, double u, double v) {
         across = vec3_scale(vec3_cross(turned, to), vec3_length(across));
     }
     return vec3_madd(vec3_madd(light->location, across, a), along, b);
+}
+
+Vec3 light_place(const Light *light, Vec3 point, double u, double v) {
+    if (!light_is_area(light)) return light->location;
+    return place_at(light, point, row_place(u, light->size_u, light->jitter), row_place(v, light->size_v, light->jitter));
+}
+
+/* All lights of a row, or the middles of parts of it. */
+static double row_member(int i, int count, int size) {
+    if (size < 2) return 0;
+    return count == size ? (double)i / (size - 1) - 0.5 : (i + 0.5) / count - 0.5;
+}
+
+Vec3 light_member(const Light *light, Vec3 point, const int at[2], const int counts[2]) {
+    return place_at(light, point, row_member(at[0], counts[0], light->size_u), row_member(at[1], counts[1], light->size_v));
 }
 
 bool light_shines_on(const Light *light, const LightGroup *group) {

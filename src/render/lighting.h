@@ -18,6 +18,8 @@ bool light_is_area(const Light *light);
 /* The place of the light at (u, v) of the unit square as it is seen from the point: evenly spread (u, v) give POV-Ray's mean. The middle
  * for a light without an area. */
 Vec3 light_place(const Light *light, Vec3 point, double u, double v);
+/* One of counts[0] × counts[1] places that count alike, of a light with an area: its own lights, where these are as many. */
+Vec3 light_member(const Light *light, Vec3 point, const int at[2], const int counts[2]);
 /* What comes from that place: direction and distance are those of a shadow ray. */
 LightRay light_ray_from(const Light *light, Vec3 point, Vec3 place);
 /* How much wider a cone towards the light grows per unit of length so that it ends as large as the light's area. */

@@ -134,24 +134,49 @@ static Vec3f own_light(SurfaceTracer *tracer, const Meeting *m) {
     return vec3f_add(ambient, glow);
 }
 
-static Vec3f light_from(SurfaceTracer *tracer, const Meeting *m, size_t number) {
-    const Scene *scene = tracer->compiled->scene;
-    const Light *light = &scene->lights[number];
+/* What all layers make of light that comes this way, unshadowed. */
+static Vec3f lit_along(const SurfaceTracer *tracer, const Meeting *m, const LightRay *way, size_t number) {
     Vec3f sum = {0, 0, 0};
-    if (!light_shines_on(light, m->hit->look->texture->group)) return sum;
-    LightRay way = light_ray(light, m->point);
-    if (!(most_of(way.color) > 0)) return sum;
+    if (!(most_of(way->color) > 0)) return sum;
     for (int i = 0; i < m->layer_count; i++) {
-        Vec3f one = surface_layer_light(&m->layers[i], m->leg->cone.direction, way.direction, m->hit->both_sides, scene->settings.irid_wavelength,
-                                        random_mix(m->seed + number));
+        Vec3f one = surface_layer_light(&m->layers[i], m->leg->cone.direction, way->direction, m->hit->both_sides,
+                                        tracer->compiled->scene->settings.irid_wavelength, random_mix(m->seed + number));
         sum = vec3f_add(sum, one);
     }
-    sum = vec3f_mul(sum, way.color);
-    if (sum.x == 0 && sum.y == 0 && sum.z == 0) return sum;
+    return vec3f_mul(sum, way->color);
+}
+
+static Vec3 off_surface(const Meeting *m, Vec3 direction) {
+    double side = vec3_dot(direction, m->hit->flat) > 0 ? m->clear : -m->clear;
+    return vec3_madd(m->point, m->hit->flat, side);
+}
+
+/* Of lights whose area counts in shading: as many places along each side as there are lights, and not more than so many. */
+enum { MOST_SHADING_PLACES = 9 };
+
+static Vec3f light_from_area(SurfaceTracer *tracer, const Meeting *m, const Light *light, size_t number) {
+    Vec3f sum = {0, 0, 0};
+    const int counts[2] = {int_min(light->size_u, MOST_SHADING_PLACES), int_min(light->size_v, MOST_SHADING_PLACES)};
+    int count = counts[0] * counts[1];
+    for (int k = 0; k < count; k++) {
+        const int at[2] = {k % counts[0], k / counts[0]};
+        LightRay way = light_ray_from(light, m->point, light_member(light, m->point, at, counts));
+        Vec3f one = lit_along(tracer, m, &way, number);
+        if (m->leg->weight * most_of(one) >= SHADOW_WORTH)
+            one = vec3f_mul(one, surface_shadow_way(tracer, light, &way, m->leg, off_surface(m, way.direction), m->clear));
+        sum = vec3f_add(sum, one);
+    }
+    return vec3f_scale(sum, 1 / (float)count);
+}
+
+static Vec3f light_from(SurfaceTracer *tracer, const Meeting *m, size_t number) {
+    const Light *light = &tracer->compiled->scene->lights[number];
+    if (!light_shines_on(light, m->hit->look->texture->group)) return vec3f(0, 0, 0);
+    if (light->area_illumination && light_is_area(light)) return light_from_area(tracer, m, light, number);
+    LightRay way = light_ray(light, m->point);
+    Vec3f sum = lit_along(tracer, m, &way, number);
     if (m->leg->weight * most_of(sum) < SHADOW_WORTH) return sum;
-    double side = vec3_dot(way.direction, m->hit->flat) > 0 ? m->clear : -m->clear;
-    Vec3 from = vec3_madd(m->point, m->hit->flat, side);
-    return vec3f_mul(sum, surface_shadow(tracer, light, &way, m->leg, from, m->clear, random_mix(m->seed ^ (number << 8))));
+    return vec3f_mul(sum, surface_shadow(tracer, light, &way, m->leg, off_surface(m, way.direction), m->clear, random_mix(m->seed ^ (number << 8))));
 }
 
 /* ---- further legs ---- */

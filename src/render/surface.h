@@ -99,8 +99,8 @@ int surface_enclosure(const Enclosure *enclosures, int count, const SurfaceHit *
 void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit, bool solids);
 /* What comes along the ray past explicit objects, volumes and media in objects, between `clear` and `distance`. */
 Vec3f surface_open(SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, double clear);
-/* The share of light from one place of the light, to a point within volumes. */
-Vec3f surface_shadow_way(SurfaceTracer *tracer, const Light *light, const LightRay *way, const Leg *leg, Vec3 point);
+/* The share of light from one place of the light, to a point within volumes (clear: 0) or beside a surface, near to which nothing is met. */
+Vec3f surface_shadow_way(SurfaceTracer *tracer, const Light *light, const LightRay *way, const Leg *leg, Vec3 point, double clear);
 /* The share of a light's colours that comes to the point, `bias` beside which rays begin; `width` and `spread`: of the cone that saw it. */
 Vec3f surface_shadow(SurfaceTracer *tracer, const Light *light, const LightRay *ray, const Leg *leg, Vec3 point, double bias,
                      uint64_t seed);

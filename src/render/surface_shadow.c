@@ -176,8 +176,9 @@ Vec3f surface_shadow(SurfaceTracer *tracer, const Light *light, const LightRay *
     return agreed ? mean : mean_of_places(tracer, light, leg, point, clear, width, MANY_PLACES, seed + 2, &agreed);
 }
 
-Vec3f surface_shadow_way(SurfaceTracer *tracer, const Light *light, const LightRay *way, const Leg *leg, Vec3 point) {
+Vec3f surface_shadow_way(SurfaceTracer *tracer, const Light *light, const LightRay *way, const Leg *leg, Vec3 point, double clear) {
     if (light->shadowless) return vec3f(1, 1, 1);
     Ray ray = {point, way->direction};
-    return one_way(tracer, light, &ray, way->distance, leg, 0, 0);
+    double width = clear > 0 ? cone_diameter(&leg->cone, vec3_length(vec3_sub(point, leg->cone.origin))) : 0;
+    return one_way(tracer, light, &ray, way->distance, leg, clear, width);
 }

@@ -95,7 +95,7 @@ static void fill_node(const LampFill *f, SurfaceTracer *tracer, Vec3 point, floa
         const Ray ray = {point, way.direction};
         Leg leg;
         surface_leg(&(Cone){point, way.direction, 0, 0}, &leg);
-        Vec3f share = surface_shadow_way(&past, lamp, &way, &leg, point);
+        Vec3f share = surface_shadow_way(&past, lamp, &way, &leg, point, 0);
         Vec3f passed = lamp->shadowless
                            ? vec3f(1, 1, 1)
                            : volumes_passing(compiled->volumes, &ray, 0, way.distance, RAY_MIRRORS);

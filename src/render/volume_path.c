@@ -62,7 +62,7 @@ Vec3f volume_lit(SurfaceTracer *tracer, const Light *light, const LightRay *way,
     surface_leg(&(Cone){point, way->direction, 0, 0}, &leg);
     SurfaceTracer past = *tracer;
     past.no_volumes = true;
-    Vec3f share = surface_shadow_way(&past, light, way, &leg, point);
+    Vec3f share = surface_shadow_way(&past, light, way, &leg, point, 0);
     if (light->shadowless || (share.x <= 0 && share.y <= 0 && share.z <= 0)) return share;
     return vec3f_mul(share, volumes_passing(tracer->compiled->volumes, &ray, 0, way->distance, RAY_MIRRORS));
 }

@@ -657,6 +657,7 @@ struct Light {
     Vec3 axis_u, axis_v;   /* area_light: its sides */
     int size_u, size_v;    /* rows of lights along both; 0: no area */
     bool jitter, circular, orient;
+    bool area_illumination; /* shading, too, is that by all of the area, not by its middle alone */
     const Object *looks_like, *projected_through; /* in the scene; or NULL */
     const LightGroup *group; /* shines on nothing else; NULL: on all */
     bool unscattered;        /* media do not scatter it */

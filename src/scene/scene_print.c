@@ -537,6 +537,7 @@ static void print_light(Printer *p, const Light *light) {
         strbuf_addf(p->out, " %d %d", light->size_u, light->size_v);
         add_flag(p, "jitter", light->jitter);
         add_flag(p, "circular", light->circular);
+        add_flag(p, "area_illumination", light->area_illumination);
         add_flag(p, "orient", light->orient);
     }
     add_flag(p, "media_interaction off", light->unscattered);

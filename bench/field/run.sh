@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # A field of 22,400 blades of grass: speed and error of vts beside plain ray casting of triangles through Embree.
 #
-#   bench/field/run.sh [--quick] [--scenes "lawn orchard"] [--runs N] [--vts PATH] [PEERS_DIR [OUT]]
+#   bench/field/run.sh [--quick] [--size WxH] [--scenes "lawn orchard"] [--runs N] [--vts PATH] [PEERS_DIR [OUT]]
 #
 # PEERS_DIR (or the variable VTS_PEERS) holds the peer: ref_field.c, which makes the scenes and renders them through Embree, and
 # to_vts.py, which writes them for vts. Scenes: lawn, 1400 rigid copies; near, mid and far, the same blades bent over a skin and seen
-# from three distances; orchard, 512 rigid trees. OUT (default: field-out) keeps what was built and the references, which are rendered once for each size;
+# from three distances; orchard, 512 rigid trees; forest, more and larger ones (only if it is named). OUT (default: field-out) keeps what was built and the references, which are rendered once for each size;
 # remove it to begin anew. --quick: 384 × 288 and coarser references; otherwise 768 × 576, half an hour.
 #
 # Times are user and system seconds of the whole process, the least of N runs (3), all with the same number of threads (2).
@@ -19,10 +19,11 @@ scenes="lawn near mid far orchard" size=768x576 truth=256 peer_truth=1024 runs=3
 while [ $# -gt 0 ]; do
   case $1 in
   --quick) size=384x288 truth=64 ;;
+  --size) size=$2 && shift ;;
   --scenes) scenes=$2 && shift ;;
   --runs) runs=$2 && shift ;;
   --vts) vts=$2 && shift ;;
-  -*) echo "usage: $0 [--quick] [--runs N] [--vts PATH] [PEERS_DIR [OUT]]" >&2 && exit 2 ;;
+  -*) echo "usage: $0 [--quick] [--size WxH] [--scenes \"NAME …\"] [--runs N] [--vts PATH] [PEERS_DIR [OUT]]" >&2 && exit 2 ;;
   *) break ;;
   esac
   shift
@@ -37,8 +38,8 @@ peer=$out/ref_field
 peer=$(readlink -f "$peer")
 csv=$out/field-$size.csv
 
-declare -A kind=([orchard]=orchard [lawn]=lawn [near]=lawn_skin [mid]=lawn_skin [far]=lawn_skin)
-declare -A view=([orchard]='' [lawn]='' [near]='' [mid]='-view 0 -40 12 0 15 2 40' [far]='-view 0 -400 60 0 17 2 30')
+declare -A kind=([orchard]=orchard [forest]=forest [lawn]=lawn [near]=lawn_skin [mid]=lawn_skin [far]=lawn_skin)
+declare -A view=([orchard]='' [forest]='' [lawn]='' [near]='' [mid]='-view 0 -40 12 0 15 2 40' [far]='-view 0 -400 60 0 17 2 30')
 
 # peer SCENE SAMPLES SEED PICTURE
 peer() {
@@ -102,7 +103,7 @@ for scene in $scenes; do
   t=$out/truth/$scene-$size
   echo "# $scene: facets $(awk "BEGIN {a = $(error "$t-peer1.pfm" "$t-vts"); b = $(rmse "$t-peer1.pfm" "$t-peer2.pfm"); e = a * a - b * b / 2; printf \"%.5f\", (e > 0 ? sqrt(e) : 0)}")," \
     "noise of the truths $(rmse "$t-peer1.pfm" "$t-peer2.pfm") and $(rmse "$t-vts1.pfm" "$t-vts2.pfm") between two"
-  for n in 1 4 16 64; do
+  for n in 1 4 16 64 256; do
     used=$(seconds peer $scene $n 1 "$out/pictures/$scene-peer-$n.pfm")
     point $scene embree "$n samples" "$out/pictures/$scene-peer-$n.pfm" "$used"
   done
@@ -117,4 +118,4 @@ for scene in $scenes; do
   done
 done
 rm -f "$out/log"
-command -v gnuplot >/dev/null && gnuplot -e "csv='$csv'; out='${csv%.csv}.svg'" "$here/plot.gp" && echo "curves: ${csv%.csv}.svg"
+command -v gnuplot >/dev/null && gnuplot -e "scenes='$scenes'; csv='$csv'; out='${csv%.csv}.svg'" "$here/plot.gp" && echo "curves: ${csv%.csv}.svg"

@@ -15,7 +15,7 @@ while [ $# -gt 0 ]; do
   --quick) quick=1 size=96x72 rays=64 repeat=1 ;;
   --only) only=" $2 " && shift ;;
   --vts) vts=$(readlink -f "$2") && shift ;;
-  --peers) peers=$2 && shift ;;
+  --peers) peers=$(readlink -f "$2") && shift ;;
   -*) echo "usage: $0 [--quick] [--only \"NAME …\"] [--vts PATH] [--peers FOLDER] [OUT]" >&2 && exit 2 ;;
   *) out=$1 ;;
   esac
@@ -23,6 +23,8 @@ while [ $# -gt 0 ]; do
 done
 [ -x "$vts" ] || { echo "$0: no program $vts" >&2; exit 2; }
 mkdir -p "$out/references"
+out=$(readlink -f "$out")
+cd "$here"
 failed=''
 small=400x300
 [ -z "$quick" ] || small=200x150
@@ -32,13 +34,13 @@ reference() {
   local seed
   for seed in 1 2; do
     [ -s "$out/references/$2-$seed.exr" ] || nice "$vts" reference "$1" -s "$size" --samples $((rays / 2)) --seed $seed --float-type float \
-      --allow-read "$here/examples" -o "$out/references/$2-$seed.exr" --progress none 2>"$out/said" || return 1
+      --allow-read examples -o "$out/references/$2-$seed.exr" --progress none 2>"$out/said" || return 1
   done
 }
 
 # chart NAME SCENE OPTION…
 chart() {
-  local name=$1 scene=$here/$2
+  local name=$1 scene=$2
   shift 2
   [ -z "$only" ] || [[ $only == *" $name "* ]] || return 0
   local stem=${scene##*/} given=() frames=''
@@ -50,7 +52,7 @@ chart() {
     given=(--samples "$rays" --keep "$out/references/$name-$size-$rays")
   fi
   echo "== $name"
-  nice "$vts" chart "$scene" -s "$size" "${given[@]}" --repeat $repeat --resume --progress none --allow-read "$here/examples" "$@" -o "$out/$name.svg" 2>"$out/said" ||
+  nice "$vts" chart "$scene" -s "$size" "${given[@]}" --repeat $repeat --resume --progress none --allow-read examples "$@" -o "$out/$name.svg" 2>"$out/said" ||
     { echo "$name: $(grep error "$out/said" | head -n 1)" >&2; failed+=" $name"; }
 }
 
@@ -73,7 +75,7 @@ chart cloud_rays         $charts/one_cloud.vts  --sweep volume.rays=1000,10000,1
 chart cloud_orders       $charts/one_cloud.vts  --sweep volume.orders=1,2,4,8,16,all
 chart cloud_error        $charts/one_cloud.vts  --sweep $errors
 chart cloud_method       $charts/one_cloud.vts  --methods volume.method=path --sweep volume.rays=1,4,16,64
-chart isosurface         $charts/fractal.vts    --methods isosurface.method=auto,interval,reduced_affine_optimised --sweep max_error=4/255,1/255
+chart isosurface         $charts/fractal.vts    --set samples=1 --methods isosurface.method=auto,interval,reduced_affine,reduced_affine_optimised
 chart isosurface_detail  $charts/fractal.vts    --methods isosurface.detail=auto,full --sweep max_error=4/255,2/255,1/255
 chart anti_aliasing      $charts/room.vts       --sweep samples=1,4,16,64,256 --sweep $errors
 rm -f "$out/said"
@@ -87,12 +89,12 @@ peer() { # NAME COMMAND…
   "$@" >"$out/$name.txt" 2>&1 || { echo "$name: $(tail -n 1 "$out/$name.txt")" >&2; failed+=" $name"; }
 }
 if command -v povray >/dev/null; then
-  peer povray_isosurface nice "$here/bench/isosurface.sh" "$vts" "$small" $repeat
+  peer povray_isosurface nice bench/isosurface.sh "$vts" "$small" $repeat
 else
   echo "povray_isosurface: left out, there is no program povray"
 fi
 if [ -f "$peers/ref_field.c" ]; then
-  peer embree_field nice "$here/bench/field/run.sh" ${quick:+--quick} --runs $repeat --vts "$vts" --scenes "lawn orchard forest" ${quick:+--size 192x144} "$peers" "$out/field"
+  peer embree_field nice bench/field/run.sh ${quick:+--quick} --runs $repeat --vts "$vts" --scenes "lawn orchard forest" ${quick:+--size 192x144} "$peers" "$out/field"
 else
   echo "embree_field: left out, no ref_field.c in '$peers' (--peers FOLDER)"
 fi

@@ -159,12 +159,13 @@ int chart_choose_axes(const Settings *settings, Chart *chart) {
 
 /* ---- afterwards ---- */
 
-/* Times of one and the same rendering differ by a few hundredths: what is better by less than that is not better. */
-static const double CLEARLY = 0.97;
+/* Times of one and the same rendering differ by a few hundredths: what is better by less than that is not better. Equal errors are printed with
+ * some digits, and read again. */
+static const double CLEARLY = 0.97, NEARLY = 1.001;
 
 static bool beats(const Chart *chart, const ChartPoint *a, const ChartPoint *b) {
     double ta = chart->x->value(a), tb = chart->x->value(b), ea = chart->y->value(a), eb = chart->y->value(b);
-    return a->done && ta <= tb && ea <= eb && (ta < CLEARLY * tb || ea < CLEARLY * eb);
+    return a->done && ta <= NEARLY * tb && ea <= NEARLY * eb && (ta < CLEARLY * tb || ea < CLEARLY * eb);
 }
 
 /* The scene as it is, say, and the value that it has anyway. */

@@ -40,11 +40,11 @@ static void moments_by_quantiles(const Phase *phase, int count, double *out) {
     }
 }
 
-/* What the peak's turns make of a distribution of the moments `m` and this value. */
-static double turned(double value, const double *m, const double *c, int count, double mu, double depth) {
+/* What the peak's turns make of a distribution of the moments `m` and this value; `more`: by how much each moment has more of it left than what is not turned. */
+static double turned(double value, const double *m, const double *more, int count, double mu, double depth) {
     double sum = 0, before = 0, here = 1;
     for (int l = 0; l < count; l++) {
-        sum += (2 * l + 1) * m[l] * (exp(-depth * (1 - c[l])) - exp(-depth)) * here;
+        sum += (2 * l + 1) * m[l] * more[l] * here;
         double next = ((2 * l + 1) * mu * here - l * before) / (l + 1);
         before = here, here = next;
     }
@@ -63,12 +63,15 @@ PhaseSpread *phase_spread_make(const Phase *phase, const Phase *rest, double pea
         turns[l] = double_clamp(off[l] / peak, -1, 1);
         if (fabs(whole[l]) > LEAST_MOMENT) count = l + 1;
     }
-    for (int d = 0; d < DEPTHS; d++)
+    for (int d = 0; d < DEPTHS; d++) {
+        double depth = depth_of(d), more[MOST_DEGREE];
+        for (int l = 0; l < count; l++) more[l] = exp(-depth * (1 - turns[l])) - exp(-depth);
         for (int a = 0; a <= ANGLES; a++) {
-            double mu = mu_of(a), depth = depth_of(d), value = double_max(phase_value(phase, mu), 1e-12), kept = (1 - peak) * phase_value(rest, mu);
-            out->rest[d][a] = (float)(turned(kept, left, turns, count, mu, depth) / value);
-            out->peak[d][a] = (float)(turned(value - kept, off, turns, count, mu, depth) / value);
+            double mu = mu_of(a), value = double_max(phase_value(phase, mu), 1e-12), kept = (1 - peak) * phase_value(rest, mu);
+            out->rest[d][a] = (float)(turned(kept, left, more, count, mu, depth) / value);
+            out->peak[d][a] = (float)(turned(value - kept, off, more, count, mu, depth) / value);
         }
+    }
     return out;
 }
 

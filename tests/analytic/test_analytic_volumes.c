@@ -1,0 +1,113 @@
+/* Volumes against closed forms: slabs by the equation of transfer, the furnace, Beer's and Lambert's law, what is lost and what comes out. */
+#include "analytic.h"
+#include "slab.h"
+
+static Picture draw(const Bench *b, int size, const char *settings, const char *scene) {
+    static char text[8192];
+    VtsOptions o = options_of_size(size, size);
+    o.reference_samples = 16;
+    snprintf(text, sizeof text, "global_settings { assumed_gamma 1 max_error 1/255 %s }\n%s", settings, scene);
+    return bench_render(b, &o, text);
+}
+
+/* Seen from where the light comes, and from behind. The slab ends so far off that little is lost. */
+static void check_slab(const Bench *b, double depth, double albedo) {
+    char scene[1024];
+    double back, on, seen[2], half = 10 + 8 / depth;
+    slab_radiance(depth, albedo, &back, &on);
+    for (int side = 0; side < 2; side++) {
+        snprintf(scene, sizeof scene,
+                 "camera { orthographic location <0, 0, %d> look_at 0 right %g*x up %g*y }\n"
+                 "light_source { <0, 0, -100>, rgb 1 parallel point_at 0 }\n"
+                 "volume { box { <-%g, -%g, 0>, <%g, %g, 1> } scattering rgb %.9g absorption rgb %.9g rays %d }\n",
+                 side ? 10 : -10, half, half, half, half, half, half, depth * albedo, depth * (1 - albedo), depth > 2 ? 120000 : 20000);
+        Picture p = draw(b, 8, "", scene);
+        seen[side] = picture_mean(&p);
+        picture_free(&p);
+    }
+    printf("slab %g, albedo %g: %.5f (%.5f), behind %.5f (%.5f)\n", depth, albedo, seen[0], back, seen[1], on);
+    if (fabs(seen[0] - back) > 0.01 * back + 1e-5) fail_msg("sent back");
+    if (fabs(seen[1] - on) > 0.01 * on + 0.001 * back + 1e-5) fail_msg("let on");
+}
+
+static void slabs_obey_the_equation_of_transfer(void **state) {
+    const double depths[] = {0.1, 1, 4};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(depths); i++) check_slab(*state, depths[i], 1);
+    check_slab(*state, 1, 0.9);
+    
+}
+
+/* What only scatters cannot be seen in even light. */
+static void furnace_is_invisible(void **state) {
+    static const char *const clouds[] = {
+        "volume { sphere { 0, 1 } scattering rgb 0.05 }",
+        "volume { box { -1, 1 } scattering rgb <1, 2, 3> phase { hazy } rays 60000 }",
+        "volume { box { -1, 1 } density { spherical } scattering rgb 4 phase { henyey_greenstein 0.9 } rays 60000 }",
+    };
+    char scene[1024];
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(clouds); i++) {
+        snprintf(scene, sizeof scene, "camera { location <0, 0, -4> look_at 0 angle 40 right x up y }\nsky_sphere { pigment { rgb 1 } }\n%s\n", clouds[i]);
+        Picture p = draw(*state, 12, "sky_light on", scene);
+        double mean = picture_mean(&p), squares = 0;
+        for (int k = 0; k < 3 * 12 * 12; k++) squares += pow((double)p.pixels[k] - 1, 2);
+        double rms = sqrt(squares / (3 * 12 * 12));
+        printf("furnace %zu: mean %.5f, rms %.4f\n", i, mean, rms);
+        if (fabs(mean - 1) > 0.005 || rms > 0.03) fail_msg("furnace %zu", i);
+        picture_free(&p);
+    }
+}
+
+/* exp(-absorption·length), each colour by itself, through what is between parallel faces. */
+static void absorption_is_exponential(void **state) {
+    const double depths[] = {1e-6, 0.01, 1, 5};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(depths); i++) {
+        char scene[512];
+        snprintf(scene, sizeof scene,
+                 "camera { orthographic location <0, 0, -10> look_at 0 right x up y }\nbackground { rgb 1 }\n"
+                 "volume { box { <-2, -2, 1>, <2, 2, 3> } density { function { 0.25 + 0.5*z/4 } } absorption rgb <%.9g, %.9g, 0> }\n",
+                 depths[i], depths[i] / 2);
+        Picture p = draw(*state, 8, "", scene);
+        for (int y = 0; y < 8; y++)
+            for (int x = 0; x < 8; x++) {
+                assert_float_equal(pixel_at(&p, x, y)[0], exp(-depths[i]), 1e-6);
+                assert_float_equal(pixel_at(&p, x, y)[1], exp(-depths[i] / 2), 1e-6);
+                assert_float_equal(pixel_at(&p, x, y)[2], 1, 0);
+            }
+        picture_free(&p);
+    }
+}
+
+/* A small thin ball lit from far away sends on what it takes out: its brightness over all directions is the optical depth that was lost. */
+static void thin_ball_sends_what_it_takes(void **state) {
+    static const char *const phases[] = {"murky", "henyey_greenstein 0.9"};
+    const double strength = 1e-3, ball = 4.0 / 3 * VTS_PI;
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(phases); i++) {
+        double sum = 0;
+        enum { ANGLES = 10 };
+        for (int k = 0; k < ANGLES; k++) { /* finer forwards and backwards */
+            double s = (k + 0.5) / ANGLES, angle = VTS_PI * s * s * (3 - 2 * s), mu = cos(angle);
+            double weight = 2 * VTS_PI * sin(angle) * VTS_PI * 6 * s * (1 - s) / ANGLES;
+            char scene[1024];
+            snprintf(scene, sizeof scene,
+                     "camera { orthographic location <%.9f, 0, %.9f> look_at 0 right 2*x up 2*y }\nlight_source { -1000*z, rgb 1 parallel point_at 0 }\n"
+                     "volume { sphere { 0, 1 } scattering rgb %g phase { %s } rays 100 }\n",
+                     50 * sqrt(1 - mu * mu), 50 * mu, strength, phases[i]);
+            Picture p = draw(*state, 8, "", scene);
+            sum += weight * picture_mean(&p) * 4;
+            picture_free(&p);
+        }
+        double taken = VTS_PI * strength * ball; /* irradiance pi */
+        printf("%s: sends %.4f of what it takes\n", phases[i], sum / taken);
+        if (fabs(sum / taken - 1) > 0.02) fail_msg("%s", phases[i]);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slabs_obey_the_equation_of_transfer),
+        cmocka_unit_test(furnace_is_invisible),
+        cmocka_unit_test(absorption_is_exponential),
+        cmocka_unit_test(thin_ball_sends_what_it_takes),
+    };
+    return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
+}

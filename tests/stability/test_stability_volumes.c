@@ -1,0 +1,104 @@
+/* Where methods for volumes fail: sharp phase functions, albedos 0 and 1, hardly any and very much matter, grids of one cell or of none, rays along the walls of cells, lamps within. */
+#include "stability.h"
+
+#define CAMERA "camera { location <0, 0.4, -5> look_at 0 angle 40 right x*image_width/image_height }\nlight_source { <30, 50, -20>, rgb 1 parallel point_at 0 }\n"
+
+/* Whatever it is: numbers, none negative, none beyond `most`. */
+static Picture drawn(const Bench *b, const char *scene, double most) {
+    static char text[4096];
+    VtsOptions o = options_of_size(12, 9);
+    snprintf(text, sizeof text, "global_settings { assumed_gamma 1 }\n%s", scene);
+    Picture p = bench_render(b, &o, text);
+    for (int i = 0; i < 3 * 12 * 9; i++)
+        if (!(p.pixels[i] >= 0 && (double)p.pixels[i] <= most)) fail_msg("%g in %s", (double)p.pixels[i], scene);
+    return p;
+}
+
+static void draw_with(const Bench *b, const char *format, const char *what, double most) {
+    char scene[2048];
+    snprintf(scene, sizeof scene, format, what);
+    Picture p = drawn(b, scene, most);
+    picture_free(&p);
+}
+
+static void sharp_phases_stay_finite(void **state) {
+    static const char *const phases[] = {"henyey_greenstein 0.9999", "henyey_greenstein -0.9999", "schlick 0.9999", "schlick -0.9999",
+                                         "sum { 1 phase { henyey_greenstein 0.99 } 1 phase { henyey_greenstein -0.99 } }", "henyey_greenstein 0.0000001"};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(phases); i++)
+        draw_with(*state, CAMERA "volume { box { -1, 1 } scattering rgb 2 rays 500 phase { %s } }", phases[i], 1e6);
+}
+
+/* With albedo 0 nothing is sent; from no matter to what nothing passes. */
+static void depths_from_none_to_all(void **state) {
+    static const char *const depths[] = {"1e-6", "1", "1e4"};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(depths); i++) {
+        draw_with(*state, CAMERA "background { rgb 0 }\nvolume { box { -1, 1 } scattering rgb %s rays 100 }", depths[i], 4);
+        draw_with(*state, CAMERA "background { rgb 0 }\nvolume { box { -1, 1 } absorption rgb %s rays 300 }", depths[i], 0);
+    }
+}
+
+static void grids_of_one_cell_and_of_none(void **state) {
+    draw_with(*state, CAMERA "volume { box { -1, 1 } density { function { %s } } scattering rgb 2 step 9 rays 2000 }", "0.5", 2);
+    draw_with(*state, CAMERA "background { rgb 0 }\nvolume { box { -1, 1 } density { function { %s } } scattering rgb 2 }", "0", 0);
+    draw_with(*state, CAMERA "background { rgb 0 }\nvolume { box { -1, 1 } density { function { %s } } scattering rgb 2 }", "-1", 0);
+    draw_with(*state, CAMERA "volume { box { -1, 1 } density { function { %s } } scattering rgb 2 rays 2000 step 0.5 }", "x > 0", 2);
+}
+
+/* The camera in the middle of cells' walls, looking along them: as bright as a little beside. */
+static void rays_along_walls_are_as_others(void **state) {
+    static const char scene[] = "camera { orthographic location <%s, -5> look_at <%s, 0> right 0.001*x up 0.001*y }\nlight_source { -100*z, rgb 1 parallel point_at 0 }\n"
+                                "volume { box { -1, 1 } density { function { 1 + x*0.1 } } step 0.25 scattering rgb 1 rays 4000 }";
+    static const char *const places[] = {"0, 0", "0.0131, 0.0077"};
+    double seen[2];
+    for (int i = 0; i < 2; i++) {
+        char text[1024];
+        snprintf(text, sizeof text, scene, places[i], places[i]);
+        Picture p = drawn(*state, text, 2);
+        seen[i] = picture_mean(&p);
+        picture_free(&p);
+    }
+    assert_true(seen[0] > 0.1 && fabs(seen[0] / seen[1] - 1) < 0.01);
+}
+
+/* A lamp within, in the middle of a node, and one on the rim. */
+static void lamps_within_stay_finite(void **state) {
+    static const char *const lamps[] = {"<0, 0, 0>", "<1, 0, 0>", "<0.025, 0.025, 0.025>"};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(lamps); i++)
+        draw_with(*state, "camera { location -4*z look_at 0 }\nlight_source { %s, rgb 1 fade_distance 0.5 fade_power 2 }\nvolume { box { -1, 1 } scattering rgb 1 rays 2000 }", lamps[i], 1e3);
+}
+
+/* Both ways, where the two passes had been wrong: peaks seen from the side and from behind, colours, overlaps, matter around something solid. */
+static const Trial AGREE[] = {
+    {"murky cloud from the side", CAMERA "volume { sphere { 0, 1 } scattering rgb 4 phase { murky } rays 20000 }", 0.03, 0.004, 0.02},
+    {"murky cloud before the sun", "camera { location -5*z look_at 0 angle 40 }\nlight_source { <4, 6, 30>, rgb 1 parallel point_at 0 }\n"
+                                   "volume { sphere { 0, 1 } scattering rgb 4 phase { murky } rays 20000 }", 0.06, 0.01, 0.02},
+    {"coloured, overlapping", CAMERA "volume { sphere { -0.4*x, 0.8 } scattering rgb <3, 2, 1> rays 20000 } volume { sphere { 0.4*x, 0.8 } scattering rgb <1, 2, 3> absorption rgb 0.2 }", 0.03, 0.004, 0.02},
+    {"around something solid", CAMERA "sphere { 0, 0.6 pigment { rgb 0.4 } } volume { box { -1, 1 } scattering rgb 1.2 rays 20000 }", 0.04, 0.006, 0.02},
+};
+
+static void two_passes_agree_with_paths(void **state) {
+    (void)state;
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(AGREE); i++) {
+        Bench b;
+        char text[4096];
+        VtsOptions o = options_of_size(16, 12);
+        o.reference_samples = 256;
+        snprintf(text, sizeof text, "global_settings { assumed_gamma 1 }\n%s", AGREE[i].scene);
+        bench_begin(&b);
+        Picture exact = reference_of(&b, &o, text), drawn_so = bench_render(&b, &o, text);
+        Difference d = picture_difference(&drawn_so, &exact);
+        printf("%-30s rms %.4f (%.3f), mean %+.4f (%.3f)\n", AGREE[i].name, d.rms, AGREE[i].rms, d.mean, AGREE[i].bias);
+        if (d.rms > AGREE[i].rms || fabs(d.mean) > AGREE[i].bias || deviation(&exact) < AGREE[i].least) fail_msg("%s", AGREE[i].name);
+        picture_free(&exact);
+        picture_free(&drawn_so);
+        bench_end(&b);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sharp_phases_stay_finite),       cmocka_unit_test(depths_from_none_to_all),  cmocka_unit_test(grids_of_one_cell_and_of_none),
+        cmocka_unit_test(rays_along_walls_are_as_others), cmocka_unit_test(lamps_within_stay_finite), cmocka_unit_test(two_passes_agree_with_paths),
+    };
+    return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
+}

@@ -11,11 +11,11 @@
 enum {
     TRIM_GRID = 128,
     TRIM_MOST_PLACES = 1 << 24,
-    TRIM_MOST_TRIANGLES = 200000,
+    TRIM_MOST_TRIANGLES = 4000000,
     TRIM_DIRECTIONS = TRIM_NODES * TRIM_NODES
 };
 /* Of some triangles half as many places each way are enough, of many every other direction: it is much matter. */
-enum { TRIM_SOME_TRIANGLES = 1000, TRIM_MANY_TRIANGLES = 10000 };
+enum { TRIM_SOME_TRIANGLES = 1000, TRIM_MANY_TRIANGLES = 10000, TRIM_VERY_MANY_TRIANGLES = 50000 };
 /* Rays through a level of so many voxels, per side and voxel, and at most, of a period half as many; their steps, in voxels, are as the
  * renderer's. */
 enum { TRIM_RAYS_A_VOXEL = 3, TRIM_LEAST_RAYS = 16, TRIM_MOST_RAYS = 24 };
@@ -58,9 +58,10 @@ static Vec3f trim_direction(int node) {
 
 static bool is_period(const VoxelLayer *layer) { return layer->cyclic[0] && layer->cyclic[2]; }
 
-/* A period needs fewer places than the wider view of what stands alone. */
+/* A period needs fewer places than the wider view of what stands alone; one of very many triangles more again, as these are small. */
 static int places_each_way(const TrimWork *work) {
-    return is_period(work->layer) && work->mesh->triangle_count > TRIM_SOME_TRIANGLES ? TRIM_GRID / 2 : TRIM_GRID;
+    if (!is_period(work->layer) || work->mesh->triangle_count <= TRIM_SOME_TRIANGLES) return TRIM_GRID;
+    return work->mesh->triangle_count > TRIM_VERY_MANY_TRIANGLES ? 2 * TRIM_GRID : TRIM_GRID / 2;
 }
 
 static bool is_even(int node) { return node % TRIM_NODES % 2 == 0 && node / TRIM_NODES % 2 == 0; }

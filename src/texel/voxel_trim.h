@@ -10,7 +10,7 @@
 #include "texel/texel.h"
 
 /* Factors are held within these. */
-#define TRIM_LEAST 0.5f
+#define TRIM_LEAST 0.015625f
 #define TRIM_MOST  2.0f
 
 /* Sets layer->trim, of OPACITY_CORRELATED, from the triangles. 1 throughout where there is nothing to compare: cyclic along y, more triangles

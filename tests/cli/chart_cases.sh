@@ -40,16 +40,16 @@ case_blocks() {
 camera { location <0, 0.3, -4> look_at <0, 0.3, 0> }
 light_source { <5, 10, -5> rgb 1 }
 volume { box { -1, 1 } scattering rgb 2 rays 300 orders 2 step auto }
-isosurface { function { y + 1 - 0.1*sin(9*x) } contained_by { box { -3, 3 } } pigment { rgb 0.5 } }
+isosurface { function { y + 1 - 0.1*sin(9*x) } contained_by { box { <-2, -1.2, 1>, <2, -0.8, 1.5> } } pigment { rgb 0.5 } }
 S
-  local size='fog.vts -s 12x9 --samples 4'
+  local size='fog.vts -s 8x6 --samples 4'
   run chart $size --sweep volume.orders=1,2 --methods isosurface.method=interval,auto --keep kept -o chart.svg; want_status 0
   want_column method_value 2 interval; want_column value 3 2; want_column curve 4 'isosurface.method auto'
   want_column rmse_measured 1 "$(column rmse_measured 5)" # two is what the scene has
   [ "$(column rmse_measured 4)" != "$(column rmse_measured 5)" ] || fail "one order is as good as two"
-  run render fog.vts -s 12x9 --set volume.orders=1 -o one.png; want_status 0
+  run render fog.vts -s 8x6 --set volume.orders=1 -o one.png; want_status 0
   run compare one.png kept/isosurface.method-auto-volume.orders-1.png --metric max; want_in out 'max 0'
-  run render fog.vts -s 12x9 --set 'volume.step=0.5' --set volume.rays=500 -o other.png; want_status 0
+  run render fog.vts -s 8x6 --set 'volume.step=0.5' --set volume.rays=500 -o other.png; want_status 0
   cmp -s one.png other.png && fail "settings of a block change nothing"
   # Before any picture is drawn.
   run chart $size --sweep volume.ordres=1,2; want_status 2; want_in err "no 'volume' that takes the word 'ordres'"
@@ -74,7 +74,7 @@ case_resume() {
   [ "$(column render_cpu_s 4)" = "$(column render_cpu_s 3 before.csv)" ] || fail "the point was measured anew"
   want_column rmse 2 "$(column rmse 2 before.csv)"
   # Another size, other settings, a scene that was changed, a broken file: nothing is taken over.
-  run chart $options --sweep samples=1,2 --resume -s 12x9; want_status 0; grep -q 'points are in' err && fail "points of another size were taken over"
+  run chart $options --sweep samples=1,2 --resume -s 8x6; want_status 0; grep -q 'points are in' err && fail "points of another size were taken over"
   run chart $options --sweep samples=1,2 --resume; grep -q 'points are in' err && fail "points of another size were taken over"
   run chart $options --sweep samples=1,2 --resume --set max_error=1/10; grep -q 'points are in' err && fail "points of other settings were taken over"
   touch -d '1 hour' scene.vts

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# manual.sh VTS ROOT: every ```vts block of README.md, doc and doc/reference passes `vts check` without a word. When the next
-# block of the page is ```output, `vts run` of it says exactly that (errors and warnings too) instead. doc/manual.md names
+# manual.sh VTS ROOT: every scene of examples passes `vts check` without a warning, and every ```vts block of README.md, doc
+# and doc/reference without a word. When the next block of the page is ```output, `vts run` of it says exactly that (errors and warnings too) instead. doc/manual.md names
 # every option of the program. Prints what does not hold; status 1 then. BLESS=1 writes what is said into the pages.
 set -u -o pipefail
 vts=$(realpath "$1") root=$(realpath "$2")
@@ -63,6 +63,12 @@ for page in "$root"/README.md "$root"/doc/*.md "$root"/doc/reference/*.md; do
   [ -z "${BLESS:-}" ] || { blessed_page "$page" > "$folder/page" && { cmp -s "$folder/page" "$page" || cp "$folder/page" "$page"; }; }
 done
 [ $count -gt 0 ] || { echo "no examples found"; exit 1; }
+
+for scene in "$root"/examples/*.vts; do
+  "$vts" check "$scene" > "$folder/said" 2>&1 && ! grep -qE ': (warning|error): ' "$folder/said" && continue
+  echo "${scene#"$root"/} does not pass:"; cat "$folder/said"
+  failed=1
+done
 echo "$count examples"
 
 # The table of options says what --help says exists.

@@ -34,7 +34,7 @@ static void slabs_obey_the_equation_of_transfer(void **state) {
     const double depths[] = {0.1, 1, 4};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(depths); i++) check_slab(*state, depths[i], 1);
     check_slab(*state, 1, 0.9);
-    
+
 }
 
 /* What only scatters cannot be seen in even light. */

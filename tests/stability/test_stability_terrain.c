@@ -191,7 +191,7 @@ static bool is_void(int column, int row) {
 }
 static double slope(int column, int row) { return 6.0 * column - 4.0 * row; }
 static double holed(int column, int row) {
-    static const double none[] = {-9999, 1e30, NAN, INFINITY, -INFINITY};
+    static const double none[] = {-9999, 1e30, (double)NAN, (double)INFINITY, -(double)INFINITY};
     return is_void(column, row) ? none[(column + 3 * row) % 5] : slope(column, row);
 }
 

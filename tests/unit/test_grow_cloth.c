@@ -269,7 +269,7 @@ static void states_go_on(void **state) {
     assert_true(net_load_state(second.cloth, numbers));
     net_follow(second.cloth, 1.3, NULL, cloth_mass_count(&second.spec), second.places);
     assert_memory_equal(second.places, through.places, through.bytes);
-    numbers[7] = NAN;
+    numbers[7] = (double)NAN;
     assert_false(net_load_state(first.cloth, numbers));
     free(numbers);
     fold(&through), fold(&first), fold(&second);

@@ -205,12 +205,12 @@ static void lying_down_is_the_lowest(void **state) {
     found = tips_height(foot, up, vec3_add(foot, pressed), pressed);
     assert_true(apart(found, pressed) < 1e-12);
     assert_true(apart(tips_height(foot, up, foot, pressed), pressed) == 0);
-    assert_true(apart(tips_height(foot, up, vec3(NAN, 0, 0), up), up) == 0);
+    assert_true(apart(tips_height(foot, up, vec3((double)NAN, 0, 0), up), up) == 0);
 }
 
 static void numbers_past_all_measure_do_no_harm(void **state) {
     (void)state;
-    static const double numbers[] = {0, 1e-300, 1e-12, 1e12, 1e300, INFINITY, NAN};
+    static const double numbers[] = {0, 1e-300, 1e-12, 1e12, 1e300, (double)INFINITY, (double)NAN};
     for (size_t a = 0; a < VTS_ARRAY_COUNT(numbers); a++)
         for (int which = 0; which < 6; which++) {
             Field f;

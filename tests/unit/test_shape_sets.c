@@ -271,7 +271,7 @@ static void rare_solids_have_their_volume(void **state) {
                2 * VTS_PI * 0.4 * 1.8);
     check_body(rare((Solid){.kind = SOLID_PRISM, .as.prism = {CURVE_LINEAR, false, false, 0, 2, square, 10}}), 1.5, 2 * 0.75 + 2 * 6);
     check_body(rare((Solid){.kind = SOLID_LATHE, .as.turned = {CURVE_LINEAR, cone, 3, false}}), VTS_PI / 3, VTS_PI * (1 + sqrt(2)));
-    check_body(rare((Solid){.kind = SOLID_BLOB, .as.blob = {0.25, arena_copy(&arena, &part, sizeof part), 1}}),
+    check_body(rare((Solid){.kind = SOLID_BLOB, .as.blob = {.threshold = 0.25, .parts = arena_copy(&arena, &part, sizeof part), .count = 1}}),
                4 * VTS_PI / 3 * r * r * r, 4 * VTS_PI * r * r);
     const Object *poly = rare((Solid){.kind = SOLID_POLYNOMIAL, .as.polynomial = {2, ball, 10}});
     check_body(SET(OBJECT_INTERSECTION, poly, plane(vec3(0, 1, 0), 0), box(vec3(-2, -2, -2), vec3(2, 2, 2))), 2 * VTS_PI / 3, 3 * VTS_PI);

@@ -92,7 +92,7 @@ static Object quartic_torus(double major, double minor) {
 
 static Object blob_of(const BlobPart *parts, size_t count, double threshold) {
     return solid_object((Solid){
-        .kind = SOLID_BLOB, .as.blob = {threshold, arena_copy(&arena, parts, count * sizeof *parts), count}});
+        .kind = SOLID_BLOB, .as.blob = {.threshold = threshold, .parts = arena_copy(&arena, parts, count * sizeof *parts), .count = count}});
 }
 
 static Object some_blob(void) {

@@ -75,3 +75,19 @@ double wind_wavelength(const WindField *wind) {
     if (wind->turbulence_amplitude != 0) shortest = fmin(shortest, ldexp(wind->turbulence_scale, 1 - wind->turbulence_octaves));
     return shortest;
 }
+
+/* Of 2·((1 + sin x)/2)^sharpness − 1: Wallis' integral. Beyond 10⁸ the Gamma functions lose each other's digits. */
+static double mean_gust(double sharpness) {
+    double ratio = sharpness < 1e8 ? exp(lgamma(sharpness + 0.5) - lgamma(sharpness + 1)) : 1 / sqrt(sharpness);
+    return 2 * ratio / sqrt(VTS_PI) - 1;
+}
+
+void wind_smooth(WindField *wind, double shortest) {
+    if (wind->gust_amplitude != 0 && wind->gust_wavelength < shortest) {
+        wind->gust_amplitude *= mean_gust(wind->gust_sharpness);
+        wind->gust_sharpness = 0; /* the same everywhere */
+        wind->gust_wavelength = HUGE_VAL;
+    }
+    while (wind->turbulence_octaves > 0 && ldexp(wind->turbulence_scale, 1 - wind->turbulence_octaves) < shortest) wind->turbulence_octaves--;
+    if (wind->turbulence_octaves == 0) wind->turbulence_amplitude = 0;
+}

@@ -9,6 +9,7 @@
 #include "render/skin_fold.h"
 #include "render/skin_rim.h"
 #include "render/skin_wind.h"
+#include "scene/scene_hash.h"
 #include "tape/noise.h"
 #include "texel/texel_content.h"
 #include "texel/texel_field.h"
@@ -467,20 +468,40 @@ double skin_longest_cell(const Skin *skin) {
     return wave > 0 ? wave : HUGE_VAL;
 }
 
+static bool make_mesh(const Skin *skin, CompiledScene *compiled, DiagList *diags, SurfaceMesh *mesh) {
+    SurfaceMeshOptions options = {.tolerance = 0.02 * skin->mapping.height, .longest_edge = longest_cell(skin)};
+    ShapeRefusal refusal;
+    if (surface_mesh_build(skin->surface, &options, compiled->arena, mesh, &refusal)) return true;
+    diag_error(diags, refusal.span, "this surface cannot carry a skin: %s", refusal.reason);
+    return false;
+}
+
+/* Waves shorter than two cells would not be drawn but sampled at random, and bend each cell's corners apart at great cost: the skin in a wind
+ * without them. NULL: there are none. */
+static const Skin *without_short_waves(const Skin *skin, const SurfaceMesh *mesh, Arena *arena, DiagList *diags) {
+    double shortest = 2 * mesh->shortest_cut;
+    if (!skin->wind || !(wind_wavelength(skin->wind) < shortest)) return NULL;
+    diag_warning(diags, skin->span, "the wind changes over %.3g units, less than two of the surface's cells, which cannot be cut below %.3g: "
+                 "the mean of such short waves takes their place", wind_wavelength(skin->wind), mesh->shortest_cut);
+    WindField *wind = arena_copy(arena, skin->wind, sizeof *wind);
+    wind_smooth(wind, shortest);
+    wind_rehash(wind);
+    Skin *smooth = arena_copy(arena, skin, sizeof *smooth);
+    smooth->wind = wind;
+    return smooth;
+}
+
 bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, CompiledSkin *out) {
     SurfaceMesh mesh;
-    ShapeRefusal refusal;
     *out = (CompiledSkin){.def = skin, .top = tallest_copy(skin)};
     if (skin->texel_count > MOST_SUPERIMPOSED) {
         diag_error(diags, skin->texels[MOST_SUPERIMPOSED].span, "a skin holds at most %d superimposed texels", MOST_SUPERIMPOSED);
         return false;
     }
-    SurfaceMeshOptions mesh_options = {.tolerance = 0.02 * skin->mapping.height, .longest_edge = longest_cell(skin)};
-    if (!surface_mesh_build(skin->surface, &mesh_options, compiled->arena, &mesh, &refusal)) {
-        diag_error(diags, refusal.span, "this surface cannot carry a skin: %s", refusal.reason);
-        return false;
-    }
-    if (!make_cells(skin, &mesh, compiled, out, diags)) return false;
+    if (!make_mesh(skin, compiled, diags, &mesh)) return false;
+    const Skin *smooth = without_short_waves(skin, &mesh, compiled->arena, diags);
+    if (smooth && !make_mesh(smooth, compiled, diags, &mesh)) return false;
+    if (!make_cells(smooth ? smooth : skin, &mesh, compiled, out, diags)) return false;
     out->texels = arena_new_array(compiled->arena, PlacedTexel, skin->texel_count * (skin->wang ? WANG_GRIDS + 1 : 1));
     for (size_t i = 0; i < skin->texel_count; i++) place_texel(i, compiled, diags, out);
     skin_rim_add(out, &mesh, compiled->arena);

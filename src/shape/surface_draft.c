@@ -185,10 +185,12 @@ static double longest_edge(const SurfaceDraft *draft) {
     return longest;
 }
 
-static int parts_for_edges(const Surface *surface, const SurfaceDraft *draft, double longest) {
+static int parts_for_edges(const Surface *surface, const SurfaceDraft *draft, double longest, double *shortest_cut) {
+    *shortest_cut = 0;
     if (!(longest > 0) || surface->subdivide > 0 || draft->cell_count == 0) return 1;
-    double wanted = ceil(longest_edge(draft) * tessellate_stretch(&surface->transform.linear) / longest);
-    double most = floor(sqrt((double)MOST_FINE_CELLS / (double)draft->cell_count));
+    double edge = longest_edge(draft) * tessellate_stretch(&surface->transform.linear), wanted = ceil(edge / longest);
+    double most = fmax(1, floor(sqrt((double)MOST_FINE_CELLS / (double)draft->cell_count)));
+    if (wanted > most) *shortest_cut = edge / most;
     return (int)fmax(1, fmin(wanted, most));
 }
 
@@ -238,8 +240,10 @@ bool surface_draft_build(const Surface *surface, const SurfaceMeshOptions *optio
         if (more == 1) break;
         parts *= more;
     }
-    int finer = parts_for_edges(surface, out, options->longest_edge);
+    double shortest_cut;
+    int finer = parts_for_edges(surface, out, options->longest_edge, &shortest_cut);
     if (finer > 1 && !draft_parts(surface, tolerance, parts * finer, arena, out, refusal)) return false;
+    out->shortest_cut = shortest_cut;
     if (surface->deform) deform_draft(surface->deform, arena, out);
     transform_draft(&surface->transform, arena, out);
     *refusal = (ShapeRefusal){surface->span, "a point of the surface is not a finite number"};

@@ -15,6 +15,7 @@ typedef struct SurfaceDraft {
         vertices; /* all with texture coordinates; the normal is zero where the cells shall tell it */
     DraftCell *cells;
     size_t cell_count;
+    double shortest_cut; /* as in SurfaceMesh */
 } SurfaceDraft;
 
 bool surface_draft_build(const Surface *surface, const SurfaceMeshOptions *options, Arena *arena,

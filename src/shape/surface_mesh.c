@@ -218,6 +218,7 @@ bool surface_mesh_build(const Surface *surface, const SurfaceMeshOptions *option
     SurfaceDraft draft;
     *out = (SurfaceMesh){0};
     if (!surface_draft_build(surface, options, arena, &draft, refusal)) return false;
+    out->shortest_cut = draft.shortest_cut;
     Assembly assembly = {.draft = &draft, .arena = arena, .out = out};
     bool *turned = arena_new_array(arena, bool, draft.cell_count);
     join_positions(&assembly);

@@ -43,6 +43,7 @@ typedef struct SurfaceMesh {
     size_t cell_count;
     const SurfaceNeighbour (*neighbours)[4]; /* per cell and edge; symmetric */
     Box3 bounds;                             /* of the vertices */
+    double shortest_cut; /* > 0: cells were to be cut finer, and had to stay about this long, as there would have been too many; scene units */
 } SurfaceMesh;
 
 typedef struct SurfaceMeshOptions {

@@ -43,6 +43,22 @@ static void flat(void **state) {
     try_trials(trials, VTS_ARRAY_COUNT(trials));
 }
 
+#define IN_WIND(WIND) GROUND FROM_ABOVE "skin { surface { Flat(4) } texel { Leaves(30, 0.12) } mapping { repeat <8, 8> height 0.5 } wind_field { direction <1, 0, 0.3> speed 4 " WIND " } }"
+
+/* Forces of all sizes, and such as are no number: height vectors keep their length. */
+static void winds(void **state) {
+    (void)state;
+    static const Trial trials[] = {
+        {"a gale", IN_WIND("strength 20 gust { wavelength 1.3 amplitude 0.6 sharpness 2 }"), .06, .02, .04},
+        {"a wind that lays everything flat", IN_WIND("strength 1e6"), .06, .02, .005},
+        {"a wind beyond all measure", IN_WIND("strength 1e300 turbulence { amplitude 1e300 scale 1e-3 octaves 5 }"), .06, .02, 0},
+        {"gusts shorter than a pixel", IN_WIND("strength 1 gust { wavelength 0.01 amplitude 1 sharpness 30 }"), .06, .02, .04},
+        {"no number here and there", IN_WIND("strength 0.5 function(x, y, z, t) { <sqrt(x), 1/(z - 0.5), ln(x)> }"), .06, .02, .04},
+        {"straight down", IN_WIND("strength 0 function(x, y, z, t) { <0, -3, 0> }"), .06, .02, 0},
+    };
+    try_trials(trials, VTS_ARRAY_COUNT(trials));
+}
+
 static void stretched(void **state) {
     (void)state;
     static const Trial trials[] = {
@@ -60,6 +76,7 @@ static void stretched(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(folded), cmocka_unit_test(crushed), cmocka_unit_test(flat), cmocka_unit_test(stretched)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(folded), cmocka_unit_test(crushed), cmocka_unit_test(flat), cmocka_unit_test(winds),
+                                       cmocka_unit_test(stretched)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -136,6 +136,36 @@ static void the_shortest_wave_is_known(void **state) {
     assert_true(isinf(wind_wavelength(&w)));
 }
 
+/* The mean over a wave, by sums. */
+static void short_waves_leave_their_mean(void **state) {
+    (void)state;
+    static const double sharpness[] = {0.01, 1, 2, 7.5, 30};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(sharpness); i++) {
+        WindField w = {.direction = {1, 0, 0}, .strength = 2, .gust_wavelength = 3, .gust_amplitude = 0.7, .gust_sharpness = sharpness[i],
+                       .turbulence_amplitude = 0.4, .turbulence_scale = 8, .turbulence_octaves = 4, .turbulence_seed = 5};
+        WindField bare = w, smooth = w;
+        bare.turbulence_amplitude = 0;
+        enum { STEPS = 100000 };
+        double sum = 0;
+        for (int k = 0; k < STEPS; k++) sum += wind_force(&bare, vec3(3.0 * (k + 0.5) / STEPS, 0, 0), 0).x;
+        wind_smooth(&smooth, 3.5);
+        assert_int_equal(smooth.turbulence_octaves, 2);
+        assert_true(wind_wavelength(&smooth) == 4);
+        wind_smooth(&smooth, 100);
+        assert_true(isinf(wind_wavelength(&smooth)));
+        for (int k = 0; k < 20; k++) {
+            Vec3 f = wind_force(&smooth, some_place((uint64_t)k, 40), k);
+            assert_true(fabs(f.x - sum / STEPS) < 1e-3 && f.y == 0 && f.z == 0);
+        }
+    }
+    WindField sharp = {.direction = {1, 0, 0}, .strength = 1, .gust_wavelength = 1, .gust_amplitude = 1, .gust_sharpness = 1e300};
+    wind_smooth(&sharp, 2);
+    assert_true(fabs(wind_force(&sharp, vec3(5, 0, 0), 0).x) < 1e-9);
+    WindField long_waves = {.strength = 1, .gust_wavelength = 3, .gust_amplitude = 0.7, .gust_sharpness = 2, .turbulence_octaves = 1, .turbulence_scale = 8}, same = long_waves;
+    wind_smooth(&same, 3);
+    assert_true(same.gust_amplitude == long_waves.gust_amplitude && same.gust_wavelength == 3 && same.turbulence_octaves == 1);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gusts_follow_the_formula),
@@ -144,6 +174,7 @@ int main(void) {
         cmocka_unit_test(bending_keeps_the_length_and_turns_towards_the_force),
         cmocka_unit_test(force_is_continuous_in_time),
         cmocka_unit_test(the_shortest_wave_is_known),
+        cmocka_unit_test(short_waves_leave_their_mean),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

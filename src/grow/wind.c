@@ -61,9 +61,14 @@ Vec3 wind_force(const WindField *wind, Vec3 p, double time) {
     return wind->function ? vec3_add(force, function_force(wind, p, time)) : force;
 }
 
+/* A hundredth of a degree above the ground: in flatter layers single precision no longer tells one thing from the next. */
+static const double MOST_PUSH = 1e4;
+
 Vec3 wind_bend(Vec3 h, Vec3 force, double stiffness) {
     double length = vec3_length(h);
-    Vec3 bent = vec3_madd(h, force, length / stiffness);
+    Vec3 push = vec3_scale(force, 1 / stiffness);
+    double largest = fmax(fabs(push.x), fmax(fabs(push.y), fabs(push.z)));
+    Vec3 bent = vec3_madd(h, push, largest > MOST_PUSH ? length * (MOST_PUSH / largest) : length);
     double bent_length = vec3_length(bent);
     return bent_length > 0 && isfinite(bent_length) ? vec3_scale(bent, length / bent_length) : h;
 }

@@ -19,7 +19,7 @@ double wind_make_cyclic(WindField *wind, double cycle);
 /* `time` in seconds. A function that yields no finite number adds nothing there. */
 Vec3 wind_force(const WindField *wind, Vec3 p, double time);
 
-/* The height vector h in a force: |h|·normalize(h + |h|·F/stiffness). Its foot stays, and its length; where the force takes
+/* The height vector h in a force: |h|·normalize(h + |h|·F/stiffness), with F/stiffness of 10⁴ at most. Its foot stays, and its length; where the force takes
  * all of h away, it is left as it is. */
 Vec3 wind_bend(Vec3 h, Vec3 force, double stiffness);
 

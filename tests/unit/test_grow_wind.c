@@ -136,6 +136,15 @@ static void the_shortest_wave_is_known(void **state) {
     assert_true(isinf(wind_wavelength(&w)));
 }
 
+static void the_strongest_forces_lay_flat(void **state) {
+    (void)state;
+    for (int exponent = 5; exponent <= 300; exponent += 5) {
+        Vec3 bent = wind_bend(vec3(0, 0.5, 0), vec3(0, 0, -pow(10, exponent)), 1);
+        assert_true(fabs(vec3_length(bent) - 0.5) < 1e-12 && bent.x == 0);
+        assert_true(fabs(bent.z + 0.5) < 1e-8 && bent.y > 4e-5 && bent.y < 6e-5);
+    }
+}
+
 /* The mean over a wave, by sums. */
 static void short_waves_leave_their_mean(void **state) {
     (void)state;
@@ -174,6 +183,7 @@ int main(void) {
         cmocka_unit_test(bending_keeps_the_length_and_turns_towards_the_force),
         cmocka_unit_test(force_is_continuous_in_time),
         cmocka_unit_test(the_shortest_wave_is_known),
+        cmocka_unit_test(the_strongest_forces_lay_flat),
         cmocka_unit_test(short_waves_leave_their_mean),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

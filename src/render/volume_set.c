@@ -113,8 +113,20 @@ static Transform cube_to_box(Vec3 a, Vec3 b) {
     return transform_then(&scale, &shift);
 }
 
+/* How many of a grid's cells a side of the volume's cube needs: where it is cut out of a greater grid, twice those that it goes through,
+ * for they need not begin where the grid's do. */
+static int cells_along(const DensityField *field, const Transform *local, int side) {
+    const Pigment *p = field->pattern;
+    const DensityGrid *grid = p->density;
+    if (p->warp_count || vec3_length_squared(p->turbulence) > 0) return grid->size[side];
+    Vec3 way = transform_vector_back(&p->transform, field->in_bounds ? vec3(side == 0, side == 1, side == 2) : local->linear.c[side]);
+    double met = vec3_length(vec3(way.x * grid->size[0], way.y * grid->size[1], way.z * grid->size[2]));
+    return 2 * met < grid->size[side] ? int_max(1, (int)ceil(2 * met)) : grid->size[side];
+}
+
 /* Sides in scene units. */
-static void choose_cells(const Volume *volume, const DensityGrid *grid, const Transform *cube, int size[3]) {
+static void choose_cells(const Volume *volume, const Transform *cube, const Transform *local, int size[3]) {
+    const DensityField *field = volume->density;
     double sides[3], longest = 0, total = 1;
     for (int k = 0; k < 3; k++) {
         sides[k] = vec3_length(cube->linear.c[k]);
@@ -125,7 +137,7 @@ static void choose_cells(const Volume *volume, const DensityGrid *grid, const Tr
     if (total > MOST_CELLS) step *= cbrt(total / MOST_CELLS);
     for (int k = 0; k < 3; k++) {
         size[k] = int_clamp((int)ceil(double_min(sides[k] / step, 4096) - 1e-9), 1, 4096);
-        if (grid && volume->step <= 0) size[k] = int_max(size[k], int_min(grid->size[k], 512));
+        if (field->pattern->density && volume->step <= 0) size[k] = int_max(size[k], int_min(cells_along(field, local, k), 512));
     }
 }
 
@@ -159,7 +171,7 @@ static void fill_row(void *context, size_t row, int worker) {
 static void fill_from_field(VolumeBuild *b, const Volume *volume, const Transform *cube, const Transform *local, Lattice *lattice) {
     const DensityField *field = volume->density;
     int size[3];
-    choose_cells(volume, field->pattern->density, cube, size);
+    choose_cells(volume, cube, local, size);
     lattice_init(lattice, size, b->compiled->arena);
     FieldFill fill = {.field = field, .cube = field->in_bounds ? NULL : local, .lattice = lattice};
     pool_run(b->compiled->options->pool, (size_t)size[1] * (size_t)size[2], fill_row, &fill);

@@ -1,6 +1,8 @@
 /* Where methods for volumes fail: sharp phase functions, albedos 0 and 1, hardly any and very much matter, grids of one cell or of none, rays along the walls of cells, lamps within. */
 #include "stability.h"
 
+#include <unistd.h>
+
 #define CAMERA "camera { location <0, 0.4, -5> look_at 0 angle 40 right x*image_width/image_height }\nlight_source { <30, 50, -20>, rgb 1 parallel point_at 0 }\n"
 
 /* Whatever it is: numbers, none negative, none beyond `most`. */
@@ -42,6 +44,24 @@ static void grids_of_one_cell_and_of_none(void **state) {
     draw_with(*state, CAMERA "background { rgb 0 }\nvolume { box { -1, 1 } density { function { %s } } scattering rgb 2 }", "0", 0);
     draw_with(*state, CAMERA "background { rgb 0 }\nvolume { box { -1, 1 } density { function { %s } } scattering rgb 2 }", "-1", 0);
     draw_with(*state, CAMERA "volume { box { -1, 1 } density { function { %s } } scattering rgb 2 rays 2000 step 0.5 }", "x > 0", 2);
+}
+
+/* A 64th of a grid of 512 x 512 numbers is filled: what the rest would take does not fit into memory, and its pattern is seen as it is. */
+static void pieces_of_grids_cost_what_they_hold(void **state) {
+    const Bench *b = *state;
+    static unsigned char file[6 + 512 * 512] = {2, 0, 2, 0, 0, 1};
+    char path[512], text[1024];
+    for (int i = 0; i < 512 * 512; i++) file[6 + i] = (i / 4 + i / 512 / 4) % 2 ? 255 : 0;
+    snprintf(path, sizeof path, "%s/waves.df3", b->folder);
+    FILE *f = fopen(path, "wb");
+    assert_true(f && fwrite(file, sizeof file, 1, f) == 1 && fclose(f) == 0);
+    snprintf(text, sizeof text, CAMERA "volume { box { -1, 1 } density { df3 \"%s\" translate -0.5 scale 64 } scattering 2 rays 2000 }", path);
+    VtsOptions o = options_of_size(12, 9);
+    o.memory_limit = (size_t)96 << 20;
+    Picture p = bench_render(b, &o, text);
+    assert_true(picture_mean(&p) > 0.05);
+    picture_free(&p);
+    unlink(path);
 }
 
 /* The camera in the middle of cells' walls, looking along them: as bright as a little beside. */
@@ -99,6 +119,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sharp_phases_stay_finite),       cmocka_unit_test(depths_from_none_to_all),  cmocka_unit_test(grids_of_one_cell_and_of_none),
         cmocka_unit_test(rays_along_walls_are_as_others), cmocka_unit_test(lamps_within_stay_finite), cmocka_unit_test(two_passes_agree_with_paths),
+        cmocka_unit_test(pieces_of_grids_cost_what_they_hold),
     };
     return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
 }

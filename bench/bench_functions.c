@@ -2,8 +2,7 @@
  * processor, through the batch evaluator: the plane z = 0 over the unit square, as POV-Ray's image_map { function … } samples
  * it. Prints seconds and the sum of the values. */
 #include "base/stopwatch.h"
-#include "eval/eval.h"
-#include "hooks.h"
+#include "bench_scene.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,30 +32,10 @@ static double measure(const Tape *tape, size_t side, double *sum) {
     return stopwatch_cpu() - start;
 }
 
-static const Scene *load(const char *path, const char *stdlib, Arena arenas[3], DiagList *diags,
-                         SourceSet *sources, Interner *names) {
-    for (int k = 0; k < 3; k++) arena_init(&arenas[k], NULL, 0);
-    EvalGeometry geometry = hooks_geometry(&arenas[0], NULL);
-    EvalOptions options = {.stdlib_dir = stdlib,
-                           .image_width = 4,
-                           .image_height = 4,
-                           .limits = eval_limits_default(),
-                           .geometry = &geometry};
-    const Scene *scene = NULL;
-    source_set_init(sources, &arenas[0]);
-    diag_init(diags, &arenas[0], sources);
-    interner_init(names, &arenas[0]);
-    bool ok = eval_file(path, &options, sources, diags, names, &arenas[1], &arenas[2], &scene) == EVAL_OK;
-    return ok ? scene : NULL;
-}
-
 int main(int argc, char **argv) {
     if (argc != 4) return fprintf(stderr, "usage: bench_functions SCENE SIDE STDLIB\n"), 2;
-    Arena arenas[3];
-    DiagList diags;
-    SourceSet sources;
-    Interner names;
-    const Scene *scene = load(argv[1], argv[3], arenas, &diags, &sources, &names);
+    BenchScene bench;
+    const Scene *scene = bench_scene_load(&bench, argv[1], argv[3], 4, 4);
     const Tape *tape = scene ? function_of(scene) : NULL;
     if (!tape) return fprintf(stderr, "bench_functions: no function in %s\n", argv[1]), 1;
     size_t side = (size_t)strtoul(argv[2], NULL, 10);

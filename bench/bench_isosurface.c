@@ -2,8 +2,7 @@
  * 800 × 600 picture, every STEP-th of each row and column, in tiles of 32 as the renderer has them. Prints seconds, rays, rays a
  * second, how many hit, and the sum of their distances. */
 #include "base/stopwatch.h"
-#include "eval/eval.h"
-#include "hooks.h"
+#include "bench_scene.h"
 #include "shape/body.h"
 
 #include <stdio.h>
@@ -14,23 +13,6 @@ enum { WIDTH = 800, HEIGHT = 600, TILE = 32 };
 typedef struct Count {
     double rays, hits, sum;
 } Count;
-
-static const Scene *load(const char *path, const char *stdlib, Arena arenas[3], DiagList *diags,
-                         SourceSet *sources, Interner *names) {
-    for (int k = 0; k < 3; k++) arena_init(&arenas[k], NULL, 0);
-    EvalGeometry geometry = hooks_geometry(&arenas[0], NULL);
-    EvalOptions options = {.stdlib_dir = stdlib,
-                           .image_width = WIDTH,
-                           .image_height = HEIGHT,
-                           .limits = eval_limits_default(),
-                           .geometry = &geometry};
-    const Scene *scene = NULL;
-    source_set_init(sources, &arenas[0]);
-    diag_init(diags, &arenas[0], sources);
-    interner_init(names, &arenas[0]);
-    return eval_file(path, &options, sources, diags, names, &arenas[1], &arenas[2], &scene) == EVAL_OK ? scene
-                                                                                                       : NULL;
-}
 
 static Ray ray_of(const Camera *camera, int x, int y) {
     double u = (x + 0.5) / WIDTH - 0.5, v = 0.5 - (y + 0.5) / HEIGHT;
@@ -51,15 +33,12 @@ static void tile(const Scene *scene, const Body *body, int left, int top, int st
 
 int main(int argc, char **argv) {
     if (argc < 3) return fprintf(stderr, "usage: bench_isosurface SCENE STDLIB [STEP]\n"), 2;
-    Arena arenas[3];
-    DiagList diags;
-    SourceSet sources;
-    Interner names;
+    BenchScene bench;
     int step = argc > 3 ? atoi(argv[3]) : 4;
-    const Scene *scene = load(argv[1], argv[2], arenas, &diags, &sources, &names);
+    const Scene *scene = bench_scene_load(&bench, argv[1], argv[2], WIDTH, HEIGHT);
     if (!scene || !scene->object_count || step < 1)
         return fprintf(stderr, "bench_isosurface: no object in %s\n", argv[1]), 1;
-    const Body *body = body_of(shape_tracer_create(&arenas[0]), scene->objects[0]);
+    const Body *body = body_of(shape_tracer_create(&bench.arenas[0]), scene->objects[0]);
     Count count = {0, 0, 0};
     double start = stopwatch_cpu();
     for (int top = 0; top < HEIGHT; top += TILE)

@@ -6,8 +6,7 @@
  * neither. Roundings are not counted here, as in the paper; those of isosurface's methods are. */
 #include "base/random.h"
 #include "base/stopwatch.h"
-#include "eval/eval.h"
-#include "hooks.h"
+#include "bench_scene.h"
 #include "shape/line_roots.h"
 #include "tape/noise.h"
 #include "tape/noise_nodes.h"
@@ -505,33 +504,13 @@ static int check(uint64_t spans) {
     return sound ? 0 : 1;
 }
 
-static const Scene *load(const char *path, const char *stdlib, Arena arenas[3], DiagList *diags,
-                         SourceSet *sources, Interner *names) {
-    for (int k = 0; k < 3; k++) arena_init(&arenas[k], NULL, 0);
-    EvalGeometry geometry = hooks_geometry(&arenas[0], NULL);
-    EvalOptions options = {.stdlib_dir = stdlib,
-                           .image_width = WIDTH,
-                           .image_height = HEIGHT,
-                           .limits = eval_limits_default(),
-                           .geometry = &geometry};
-    const Scene *scene = NULL;
-    source_set_init(sources, &arenas[0]);
-    diag_init(diags, &arenas[0], sources);
-    interner_init(names, &arenas[0]);
-    return eval_file(path, &options, sources, diags, names, &arenas[1], &arenas[2], &scene) == EVAL_OK ? scene
-                                                                                                       : NULL;
-}
-
 int main(int argc, char **argv) {
     if (argc < 3)
         return fprintf(stderr, "usage: gamito SCENE STDLIB [STEP [NOISE [METHODS]]] | gamito check SPANS\n"),
                2;
     if (strcmp(argv[1], "check") == 0) return check(strtoull(argv[2], NULL, 10));
-    Arena arenas[3];
-    DiagList diags;
-    SourceSet sources;
-    Interner names;
-    const Scene *scene = load(argv[1], argv[2], arenas, &diags, &sources, &names);
+    BenchScene bench;
+    const Scene *scene = bench_scene_load(&bench, argv[1], argv[2], WIDTH, HEIGHT);
     int step = argc > 3 ? atoi(argv[3]) : 16;
     if (!scene || scene->object_count < 3 || step < 1)
         return fprintf(stderr, "gamito: no three isosurfaces in %s\n", argv[1]), 1;

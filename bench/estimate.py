@@ -10,20 +10,13 @@ estimate, the true RMSE (linear light, clamped to [0,1]) and their ratio, and at
 Scenes that cannot be drawn, or whose estimate is null, count as failures.
 """
 import argparse
-import array
 import json
 import math
 import os
 import subprocess
 import tempfile
 
-
-def read_pfm(path):
-    with open(path, "rb") as f:
-        f.readline(), f.readline(), f.readline()
-        values = array.array("f")
-        values.frombytes(f.read())
-    return [min(max(v, 0), 1) for v in values]
+from pfm import read_pfm
 
 
 def draw(options, folder, verb, scene, name, *more):

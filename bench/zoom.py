@@ -9,11 +9,12 @@ frame: CPU seconds, the RMSE against the truth, the mean difference, and the fli
 change from one frame to the next of (picture - truth); the truth's noise is taken off. OUT (default zoom-out) keeps the pictures.
 """
 import argparse
-import array
 import glob
 import math
 import os
 import subprocess
+
+from pfm import read_pfm
 
 SCENE = """
 camera { location <0, D, -D> look_at <0, 0, 0> right x*image_width/image_height angle 40 }
@@ -32,14 +33,6 @@ background { rgb <0.5, 0.7, 1> }
 object { Land }
 skin { surface { Land } texel { Grass } mapping { repeat <40000, 40000> height 0.5 } }
 """
-
-
-def read_pfm(path):
-    with open(path, "rb") as f:
-        f.readline(), f.readline(), f.readline()
-        values = array.array("f")
-        values.frombytes(f.read())
-    return [min(max(v, 0), 1) for v in values]
 
 
 def rms(values):

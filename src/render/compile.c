@@ -173,7 +173,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
                   path_of(scene->settings.ray_path), out);
     out->march.slab = out->shadow_march.slab = detail_of(scene->settings.detail) == DETAIL_SLAB;
     const TerrainViewOptions terrains = {options->pool, out->max_error, options->exact, MOST_TERRAIN_VERTICES, skin_longest_cell};
-    out->scene = scene = terrains_as_seen(scene, &out->view, &terrains, &out->scratch, arena, diags);
+    out->scene = scene = terrains_as_seen(scene, &out->view, &terrains, &out->scratch, arena, diags, &out->terrains);
     if (!scene) return COMPILE_FAILED;
     out->hierarchy = hierarchy_build(scene, arena, diags);
     if (!out->hierarchy) return COMPILE_FAILED;
@@ -234,6 +234,10 @@ void compiled_scene_print(const CompiledScene *compiled, StrBuf *out) {
         const BuiltTexel *t = compiled->texels[i];
         strbuf_addf(out, "texel %s asked %d needed %d built %d layers %zu voxels %zu bytes %zu\n", t->def->name, t->asked,
                     t->needed, t->built, t->matter_count, t->voxel_count, t->bytes);
+    }
+    for (size_t i = 0; i < compiled->terrains.count; i++) {
+        const BuiltTerrain *t = &compiled->terrains.items[i];
+        strbuf_addf(out, "terrain %s posts %dx%d triangles needed %zu built %zu bytes %zu\n", t->terrain->file, t->columns, t->rows, t->needed, t->triangles, t->bytes);
     }
     for (size_t i = 0; i < compiled->skin_count; i++) {
         const CompiledSkin *s = &compiled->skins[i];

@@ -8,6 +8,7 @@
 #include "render/hierarchy.h"
 #include "render/skin.h"
 #include "render/skin_march.h"
+#include "render/terrain_view.h"
 #include "render/view.h"
 #include "shape/box_tree.h"
 #include "texel/texel_cache.h"
@@ -60,6 +61,7 @@ typedef struct CompiledScene {
     bool exact_paths;     /* one path of light through volumes for each sample, of which there are many */
     BuiltTexel **texels;  /* every texel built, for the report */
     size_t texel_count;
+    BuiltTerrains terrains; /* for the report, too */
     MarchSettings march, shadow_march;
     Quadrature quadrature;
     TexelFiltering filtering;

@@ -20,6 +20,19 @@ static void add_texels(StrBuf *out, const CompiledScene *compiled) {
     strbuf_addc(out, ']');
 }
 
+static void add_terrains(StrBuf *out, const BuiltTerrains *terrains) {
+    strbuf_adds(out, ",\"terrains\":[");
+    for (size_t i = 0; i < terrains->count; i++) {
+        const BuiltTerrain *t = &terrains->items[i];
+        if (i) strbuf_addc(out, ',');
+        strbuf_addc(out, '{');
+        add_text(out, "name", t->terrain->file);
+        strbuf_addf(out, ",\"posts\":[%d,%d],\"asked\":\"%s\",\"needed\":%zu,\"built\":%zu,\"bytes\":%zu,\"build_s\":%.4f}", t->columns, t->rows,
+                    t->terrain->every_post ? "full" : "auto", t->needed, t->triangles, t->bytes, t->seconds);
+    }
+    strbuf_addc(out, ']');
+}
+
 static void add_functions(StrBuf *out, const SolidWork *w) {
     strbuf_addf(out, "\"function_evaluations\":%llu,\"function_rays\":%llu,\"evaluations_per_ray\":%.4g,", (unsigned long long)w->evaluations,
                 (unsigned long long)w->lines, w->lines ? (double)w->evaluations / (double)w->lines : 0);
@@ -37,6 +50,7 @@ void report_add_frame(StrBuf *out, const FrameReport *f) {
                 (unsigned long long)c->camera_rays, (unsigned long long)c->shadow_rays, (unsigned long long)c->voxels_visited);
     add_functions(out, &c->functions);
     add_texels(out, f->compiled);
+    add_terrains(out, &f->compiled->terrains);
     if (f->stats->error_estimate >= 0) strbuf_addf(out, ",\"error_estimate\":%.6f", f->stats->error_estimate);
     else strbuf_adds(out, ",\"error_estimate\":null");
     strbuf_addf(out, ",\"error_noise\":%.6f", f->stats->noise_estimate);

@@ -1,5 +1,6 @@
 #include "render/terrain_view.h"
 
+#include "base/stopwatch.h"
 #include "scene/scene_hash.h"
 #include "shape/tessellate.h"
 #include "terrain/ground.h"
@@ -34,6 +35,7 @@ typedef struct Lowering {
     const TerrainViewOptions *options;
     Arena *arena, *scratch;
     DiagList *diags;
+    BuiltTerrains *built;
     struct { Stand *items; size_t count, capacity; } stands;
     struct { SeenGroup *items; size_t count, capacity; } groups; /* open addressing */
     double spread, width; /* of the narrowest pixel: growth with the distance, and at the camera */
@@ -79,6 +81,14 @@ static double pixels_off(const TerrainViewOptions *options) {
     return double_clamp(PIXELS_OFF * options->max_error / DEFAULT_MAX_ERROR, PIXELS_OFF_EXACT, 2);
 }
 
+static void keep_account(Lowering *l, const Stand *stand, size_t needed, double seconds) {
+    const Ground *ground = stand->terrain->ground;
+    const MeshData *mesh = stand->mesh;
+    const size_t bytes = mesh->vertex_count * 3 * sizeof(Vec3) + mesh->triangle_count * sizeof *mesh->triangles;
+    *list_push(l->arena, l->built) = (BuiltTerrain){.terrain = stand->terrain, .columns = ground->source.columns, .rows = ground->source.rows,
+        .needed = needed, .triangles = mesh->triangle_count, .bytes = bytes, .seconds = seconds};
+}
+
 static const MeshData *mesh_of(Lowering *l, Stand *stand) {
     if (stand->mesh) return stand->mesh;
     const Ground *ground = stand->terrain->ground;
@@ -86,16 +96,20 @@ static const MeshData *mesh_of(Lowering *l, Stand *stand) {
     const GroundDetail detail = {.allow = allow, .context = &allowance, .every_post = stand->terrain->every_post, .most_vertices = l->options->most_vertices};
     MeshData *mesh = arena_new(l->arena, MeshData);
     GroundErrors errors;
+    size_t needed;
+    const double start = stopwatch_wall();
     ArenaMark mark = arena_mark(l->scratch);
     ground_errors_build(&ground->source, l->options->pool, l->scratch, &errors);
-    if (!ground_mesh_build(&ground->source, &errors, &detail, l->scratch, l->arena, mesh)) {
+    if (!ground_mesh_build(&ground->source, &errors, &detail, l->scratch, l->arena, mesh, &needed)) {
         Diagnostic *d = diag_error(l->diags, stand->terrain->span, "this terrain needs more than %zu vertices", l->options->most_vertices);
         if (stand->terrain->every_post) diag_hint(l->diags, d, "it has %d x %d posts: 'detail auto' draws those that are seen", ground->source.columns, ground->source.rows);
         l->failed = true;
     }
     arena_reset_to(l->scratch, mark);
     mesh_rehash(mesh);
-    return stand->mesh = mesh;
+    stand->mesh = mesh;
+    keep_account(l, stand, needed, stopwatch_wall() - start);
+    return mesh;
 }
 
 /* ---- what stands where ---- */
@@ -210,10 +224,10 @@ static const Skin *lower_skin(Lowering *l, const Skin *skin) {
 }
 
 const Scene *terrains_as_seen(const Scene *scene, const View *view, const TerrainViewOptions *options, Arena *scratch, Arena *arena,
-                              DiagList *diags) {
+                              DiagList *diags, BuiltTerrains *built) {
     const Transform identity = transform_identity();
     if (!scene->has_terrain) return scene;
-    Lowering l = {.scene = scene, .view = view, .options = options, .arena = arena, .scratch = scratch, .diags = diags};
+    Lowering l = {.scene = scene, .view = view, .options = options, .arena = arena, .scratch = scratch, .diags = diags, .built = built};
     measure_pixels(&l);
     for (size_t i = 0; i < scene->skin_count; i++) ask_for_cells(&l, scene->skins[i]);
     const Object **objects = arena_new_array(arena, const Object *, scene->object_count);

@@ -14,9 +14,23 @@ typedef struct TerrainViewOptions {
     double (*skin_side)(const Skin *skin); /* the longest cells that a skin can do with; 0: none is short enough; HUGE_VAL: any */
 } TerrainViewOptions;
 
+/* A terrain as triangles, for the report. */
+typedef struct BuiltTerrain {
+    const Terrain *terrain;
+    int columns, rows; /* posts of its map */
+    size_t needed;     /* triangles that errors ask for; built are those too that keep cracks closed */
+    size_t triangles, bytes;
+    double seconds;    /* of building them */
+} BuiltTerrain;
+
+typedef struct BuiltTerrains {
+    BuiltTerrain *items;
+    size_t count, capacity;
+} BuiltTerrains;
+
 /* The scene with meshes in place of its terrains, in `arena` (`scratch` is another, and reset); the scene itself if it has none. What stands at the same place, the ground
- * and the surface of its skin, is the same mesh. NULL after a diagnostic. */
+ * and the surface of its skin, is the same mesh. Each one is added to `built`. NULL after a diagnostic. */
 const Scene *terrains_as_seen(const Scene *scene, const View *view, const TerrainViewOptions *options, Arena *scratch, Arena *arena,
-                              DiagList *diags);
+                              DiagList *diags, BuiltTerrains *built);
 
 #endif

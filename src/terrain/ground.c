@@ -155,7 +155,7 @@ static bool even_mesh(const Ground *g, double tolerance, size_t most_vertices, A
     GroundErrors errors;
     const GroundDetail detail = {.allow = allow_evenly, .context = &tolerance, .most_vertices = most_vertices};
     ground_errors_build(&g->source, NULL, arena, &errors);
-    return ground_mesh_build(&g->source, &errors, &detail, arena, arena, out);
+    return ground_mesh_build(&g->source, &errors, &detail, arena, arena, out, NULL);
 }
 
 const TerrainOps ground_ops = {.height = height_at, .meet = ground_meet, .normal = normal_at, .mesh = even_mesh};

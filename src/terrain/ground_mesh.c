@@ -9,6 +9,7 @@ typedef struct Refinement {
     const GroundDetail *detail;
     GroundNodes nodes;
     uint32_t right, bottom, last; /* of the map, and of the square of all triangles; in parts */
+    size_t halvings;              /* that errors asked for */
 } Refinement;
 
 /* Nodes: the ends of the longest side, and the right angle. */
@@ -154,6 +155,7 @@ static void refine(Refinement *r, Triangle t) {
     uint32_t middle = halved_at(r, &t), x, y;
     if (middle == GROUND_NO_NODE) {
         if (!middle_of(r, &t, &x, &y) || !wants_halving(r, &t)) return;
+        r->halvings++;
         activate(r, x, y);
         middle = ground_node_find(&r->nodes, x, y);
     }
@@ -316,7 +318,7 @@ static void keep_mesh(const Output *out, Arena *arena, MeshData *mesh) {
 }
 
 bool ground_mesh_build(const GroundSource *source, const GroundErrors *errors, const GroundDetail *detail, Arena *scratch, Arena *arena,
-                       MeshData *mesh) {
+                       MeshData *mesh, size_t *needed) {
     Refinement r = {.source = source, .errors = errors, .detail = detail, .last = (uint32_t)GROUND_PARTS << errors->levels};
     r.right = (uint32_t)(source->columns - 1) << GROUND_PART_BITS;
     r.bottom = (uint32_t)(source->rows - 1) << GROUND_PART_BITS;
@@ -330,6 +332,7 @@ bool ground_mesh_build(const GroundSource *source, const GroundErrors *errors, c
     }
     const Triangle roots[2] = {{corner[0], corner[3], corner[1]}, {corner[3], corner[0], corner[2]}};
     for (int i = 0; i < 2; i++) refine(&r, roots[i]);
+    if (needed) *needed = 2 + r.halvings;
     bool fits = !too_many(&r);
     Output out = {.r = &r, .scratch = scratch};
     for (int i = 0; i < 2 && fits; i++) emit_leaves(&out, roots[i]);

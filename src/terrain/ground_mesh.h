@@ -20,8 +20,8 @@ typedef struct GroundDetail {
 /* Builds the mesh in `arena`; its texture coordinates are x and z. Normals are slopes of the ground over as
  * much of it as the triangles reach (ground_normals.h).
  * False when there are more vertices than allowed; *out is then empty. `scratch` is reset to where it was, unless
- * it is `arena`. */
+ * it is `arena`. *needed (or NULL): how many triangles the errors ask for, those apart that are halved for a neighbour's sake alone. */
 bool ground_mesh_build(const GroundSource *source, const GroundErrors *errors, const GroundDetail *detail, Arena *scratch, Arena *arena,
-                       MeshData *out);
+                       MeshData *out, size_t *needed);
 
 #endif

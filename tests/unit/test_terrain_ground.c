@@ -81,7 +81,7 @@ static MeshData build(Arenas *arenas, const GroundSource *source, const Allowanc
     MeshData mesh;
     const GroundDetail detail = {.allow = allow, .context = allowance, .every_post = every_post};
     ground_errors_build(source, NULL, &arenas->kept, &errors);
-    assert_true(ground_mesh_build(source, &errors, &detail, &arenas->scratch, &arenas->kept, &mesh));
+    assert_true(ground_mesh_build(source, &errors, &detail, &arenas->scratch, &arenas->kept, &mesh, NULL));
     return mesh;
 }
 
@@ -239,7 +239,7 @@ static void meshes_are_the_same_each_time_and_limits_hold(void **state) {
     Arenas *arenas = *state;
     ground_errors_build(&source, NULL, &arenas->kept, &errors);
     const GroundDetail little = {.allow = allow, .context = &near, .most_vertices = 100};
-    assert_false(ground_mesh_build(&source, &errors, &little, &arenas->scratch, &arenas->kept, &a));
+    assert_false(ground_mesh_build(&source, &errors, &little, &arenas->scratch, &arenas->kept, &a, NULL));
     assert_int_equal(a.triangle_count, 0);
 }
 

@@ -3,15 +3,17 @@
 #include "base/stopwatch.h"
 #include "scene/scene_hash.h"
 #include "shape/tessellate.h"
-#include "terrain/ground.h"
+#include "terrain/ground_horizon.h"
 
 #include <string.h>
 
 /* How far the ground may be from where it is drawn, in pixels, for the default error (slopes, and with them the light, then are off by
- * about three quarters of that error; both fall alike); what is out of the picture shows by its shadows,
- * in mirrors, and through its skin. */
+ * about three quarters of that error; both fall alike); what is out of the picture or hidden behind nearer ground shows by its shadows and
+ * in mirrors. */
 static const double PIXELS_OFF = 0.2, PIXELS_OFF_EXACT = 0.05, DEFAULT_MAX_ERROR = 1.0 / 255;
 static const double OUTSIDE = 8;
+/* What stands on the ground is seen over it: a skin's height, and as much for functions that make it higher, wind and jitter. */
+static const double RISE = 2;
 /* Cells of skins: what changes along a skin changes over them. */
 static const double CELL_PIXELS = 8;
 
@@ -20,6 +22,7 @@ typedef struct Stand {
     const Terrain *terrain;
     Transform to_world;
     double longest_side; /* of cells, scene units; HUGE_VAL: no skin on it */
+    double rise;         /* of its skins, scene units */
     const MeshData *mesh;
 } Stand;
 
@@ -61,17 +64,23 @@ static void measure_pixels(Lowering *l) {
 typedef struct Allowance {
     const Lowering *lowering;
     const Stand *stand;
+    GroundHorizon *horizon; /* or NULL */
     double stretch, pixels_off;
 } Allowance;
 
-static void allow(const void *context, Vec3 centre, double radius, double *error, double *side) {
+static bool is_hidden(const Allowance *a, const GroundSpot *spot) {
+    const double rise = a->stand->rise / a->stretch;
+    return a->horizon && ground_horizon_hides(a->horizon, spot->centre, spot->radius + rise, spot->top + rise, a->lowering->spread);
+}
+
+static void allow(const void *context, const GroundSpot *spot, double *error, double *side) {
     const Allowance *a = context;
     const Lowering *l = a->lowering;
-    Vec3 at = transform_point(&a->stand->to_world, centre);
-    double reach = radius * a->stretch, distance = fmax(0, vec3_length(vec3_sub(at, l->view->camera.location)) - reach);
+    Vec3 at = transform_point(&a->stand->to_world, spot->centre);
+    double reach = spot->radius * a->stretch, distance = fmax(0, vec3_length(vec3_sub(at, l->view->camera.location)) - reach);
     double pixel = (l->width + l->spread * distance) / a->stretch;
     const Box3 box = {vec3_sub(at, vec3_splat(reach)), vec3_add(at, vec3_splat(reach))};
-    if (!l->options->exact && view_misses(l->view, box)) pixel *= OUTSIDE;
+    if (!l->options->exact && (view_misses(l->view, box) || is_hidden(a, spot))) pixel *= OUTSIDE;
     *error = pixel * a->pixels_off;
     *side = isfinite(a->stand->longest_side) ? fmax(CELL_PIXELS * pixel, a->stand->longest_side / a->stretch) : HUGE_VAL;
 }
@@ -79,6 +88,15 @@ static void allow(const void *context, Vec3 centre, double radius, double *error
 static double pixels_off(const TerrainViewOptions *options) {
     if (options->exact) return PIXELS_OFF_EXACT;
     return double_clamp(PIXELS_OFF * options->max_error / DEFAULT_MAX_ERROR, PIXELS_OFF_EXACT, 2);
+}
+
+/* Of what lines of sight that begin at one point alone meet. */
+static GroundHorizon *horizon_of(const Lowering *l, const Stand *stand) {
+    const View *view = l->view;
+    const bool point = view->camera.kind != CAMERA_ORTHOGRAPHIC && view->camera.kind < CAMERA_CYLINDER_1 && !view_has_lens(view);
+    if (l->options->exact || stand->terrain->every_post || !point || transform_is_singular(&stand->to_world)) return NULL;
+    const Transform back = transform_inverse(&stand->to_world);
+    return ground_horizon_create(stand->terrain->ground, transform_point(&back, view->camera.location), l->scratch);
 }
 
 static void keep_account(Lowering *l, const Stand *stand, size_t needed, double seconds) {
@@ -92,13 +110,13 @@ static void keep_account(Lowering *l, const Stand *stand, size_t needed, double 
 static const MeshData *mesh_of(Lowering *l, Stand *stand) {
     if (stand->mesh) return stand->mesh;
     const Ground *ground = stand->terrain->ground;
-    const Allowance allowance = {l, stand, tessellate_stretch(&stand->to_world.linear), pixels_off(l->options)};
+    const double start = stopwatch_wall();
+    ArenaMark mark = arena_mark(l->scratch);
+    const Allowance allowance = {l, stand, horizon_of(l, stand), tessellate_stretch(&stand->to_world.linear), pixels_off(l->options)};
     const GroundDetail detail = {.allow = allow, .context = &allowance, .every_post = stand->terrain->every_post, .most_vertices = l->options->most_vertices};
     MeshData *mesh = arena_new(l->arena, MeshData);
     GroundErrors errors;
     size_t needed;
-    const double start = stopwatch_wall();
-    ArenaMark mark = arena_mark(l->scratch);
     ground_errors_build(&ground->source, l->options->pool, l->scratch, &errors);
     if (!ground_mesh_build(&ground->source, &errors, &detail, l->scratch, l->arena, mesh, &needed)) {
         Diagnostic *d = diag_error(l->diags, stand->terrain->span, "this terrain needs more than %zu vertices", l->options->most_vertices);
@@ -124,7 +142,7 @@ static Stand *stand_of(Lowering *l, const Terrain *terrain, const Transform *to_
         if (stand->terrain == terrain && same_transform(&stand->to_world, to_world)) return stand;
     }
     Stand *stand = list_push(l->arena, &l->stands);
-    *stand = (Stand){terrain, *to_world, HUGE_VAL, NULL};
+    *stand = (Stand){terrain, *to_world, HUGE_VAL, 0, NULL};
     return stand;
 }
 
@@ -213,6 +231,7 @@ static void ask_for_cells(Lowering *l, const Skin *skin) {
     if (s->kind != SURFACE_TERRAIN) return;
     Stand *stand = stand_of(l, s->terrain, &s->transform);
     stand->longest_side = fmin(stand->longest_side, l->options->skin_side(skin));
+    stand->rise = fmax(stand->rise, RISE * fabs(skin->mapping.height));
 }
 
 static const Skin *lower_skin(Lowering *l, const Skin *skin) {

@@ -145,8 +145,8 @@ static Vec3 normal_at(const Ground *g, Vec3 p) {
     return vec3_dot(n, up) < 0 ? vec3_negate(n) : n;
 }
 
-static void allow_evenly(const void *context, Vec3 centre, double radius, double *error, double *side) {
-    (void)centre, (void)radius;
+static void allow_evenly(const void *context, const GroundSpot *spot, double *error, double *side) {
+    (void)spot;
     *error = *(const double *)context;
     *side = HUGE_VAL;
 }

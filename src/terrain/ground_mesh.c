@@ -123,11 +123,14 @@ static bool wants_halving(const Refinement *r, const Triangle *t) {
     if (r->detail->every_post) return at.level >= 1;
     if (at.level <= 1 - GROUND_PART_BITS) return false;
     const GroundNode *n[3] = {node(r, t->a), node(r, t->b), node(r, t->apex)};
-    Vec3 centre = vec3_scale(vec3_add(vec3_add(n[0]->place, n[1]->place), n[2]->place), 1.0 / 3);
-    double length = r->source->spacing * ldexp(at.diagonal ? sqrt(2) : 1, at.level), radius = 0;
+    GroundSpot spot = {.centre = vec3_scale(vec3_add(vec3_add(n[0]->place, n[1]->place), n[2]->place), 1.0 / 3), .top = -HUGE_VAL};
+    double length = r->source->spacing * ldexp(at.diagonal ? sqrt(2) : 1, at.level);
     double error = triangle_error(r, t, &at) + r->source->bend * length * length, allowed, side;
-    for (int i = 0; i < 3; i++) radius = fmax(radius, vec3_length(vec3_sub(n[i]->place, centre)));
-    r->detail->allow(r->detail->context, centre, radius + error, &allowed, &side);
+    for (int i = 0; i < 3; i++) {
+        spot.radius = fmax(spot.radius, error + vec3_length(vec3_sub(n[i]->place, spot.centre)));
+        spot.top = fmax(spot.top, error + n[i]->place.y);
+    }
+    r->detail->allow(r->detail->context, &spot, &allowed, &side);
     return error > allowed || (length > side && at.level >= 1);
 }
 

@@ -8,10 +8,16 @@
 #include "scene/scene.h"
 #include "terrain/ground_errors.h"
 
+/* Where a triangle is, and the ground that it stands for, in the frame of the source's places. */
+typedef struct GroundSpot {
+    Vec3 centre;
+    double radius; /* nothing of it is further away */
+    double top;    /* or above this y */
+} GroundSpot;
+
 typedef struct GroundDetail {
-    /* How far triangles about `centre`, none of them further than `radius`, may be from the ground, and how long their sides may be, in
-     * metres; in the frame of the source's places. */
-    void (*allow)(const void *context, Vec3 centre, double radius, double *error, double *side);
+    /* How far a triangle there may be from the ground, and how long its sides may be, in metres. */
+    void (*allow)(const void *context, const GroundSpot *spot, double *error, double *side);
     const void *context;
     bool every_post;      /* all posts, and nothing between them */
     size_t most_vertices; /* 0: no limit */

@@ -69,9 +69,9 @@ typedef struct Allowance {
     double even, by_distance, side;
 } Allowance;
 
-static void allow(const void *context, Vec3 centre, double radius, double *error, double *side) {
+static void allow(const void *context, const GroundSpot *spot, double *error, double *side) {
     const Allowance *a = context;
-    double distance = fmax(0, vec3_length(vec3_sub(centre, a->eye)) - radius);
+    double distance = fmax(0, vec3_length(vec3_sub(spot->centre, a->eye)) - spot->radius);
     *error = a->even + a->by_distance * distance;
     *side = a->side;
 }

@@ -25,7 +25,7 @@
 /* The format's version; and the builder's: to be raised when the same contents give other voxels than before, so that caches
  * do not keep the old ones. Version 1 had another law of opacity, from 0 to 1 in steps of 1/21: it is read, and its gammas become those that
  * hide as much. Versions before 3 have no factors of coarse levels: they are 1; those before 4 no pairs. */
-enum { TEXEL_FILE_VERSION = 4, TEXEL_FILE_OLDEST = 1, TEXEL_BUILDER_VERSION = 5, TEXEL_FILE_MOST_LAYERS = 256 };
+enum { TEXEL_FILE_VERSION = 4, TEXEL_FILE_OLDEST = 1, TEXEL_BUILDER_VERSION = 6, TEXEL_FILE_MOST_LAYERS = 256 };
 
 typedef struct TexelFileLayer {
     VoxelLayer *voxels;

@@ -47,21 +47,28 @@ static int wrapped(float place, int grid) {
     return whole < 0 ? whole + grid : whole;
 }
 
-/* The share of what `eye` sees that lies open to `light`: in its view nothing is higher at the same place. */
-static float lit_share(const PairView *eye, const PairView *light, int grid, const float size[2]) {
-    float cell_x = size[0] / (float)grid, cell_z = size[1] / (float)grid, flat = sqrtf(light->slope_x * light->slope_x + light->slope_z * light->slope_z);
+/* The share of what `eye` sees that lies open to `light`: in its view nothing is higher at the same place. Of every `step`th place each way. */
+static float lit_share_of(const PairView *eye, const PairView *light, int grid, const float size[2], int step) {
+    float cell_x = (float)step * size[0] / (float)grid, cell_z = (float)step * size[1] / (float)grid,
+          flat = sqrtf(light->slope_x * light->slope_x + light->slope_z * light->slope_z);
     float own = float_max(cell_x, cell_z) * float_min(OWN_HEIGHT * (1 + 1 / (flat + 1e-3f)), MOST_OWN_HEIGHT);
     float x_per = (eye->slope_x - light->slope_x) / cell_x, z_per = (eye->slope_z - light->slope_z) / cell_z;
-    int seen = 0, lit = 0;
-    for (int row = 0; row < grid; row += LIT_STRIDE)
-        for (int column = row / LIT_STRIDE % LIT_STRIDE; column < grid; column += LIT_STRIDE) {
-            float height = eye->top[row * grid + column];
+    int seen = 0, lit = 0, places = grid / step;
+    for (int row = 0; row < places; row += LIT_STRIDE)
+        for (int column = row / LIT_STRIDE % LIT_STRIDE; column < places; column += LIT_STRIDE) {
+            float height = eye->top[step * (row * grid + column)];
             if (height < 0) continue;
-            int x = wrapped((float)column + height * x_per, grid), z = wrapped((float)row + height * z_per, grid);
+            int x = wrapped((float)column + height * x_per, places), z = wrapped((float)row + height * z_per, places);
             seen++;
-            lit += light->top[z * grid + x] <= height + own;
+            lit += light->top[step * (z * grid + x)] <= height + own;
         }
     return seen ? (float)lit / (float)seen : 1;
+}
+
+/* What lies within `own` of the surface shades nothing: the error falls as the cells do, and with every other place is twice as large. */
+static float lit_share(const PairView *eye, const PairView *light, int grid, const float size[2]) {
+    float fine = lit_share_of(eye, light, grid, size, 1), coarse = lit_share_of(eye, light, grid, size, 2);
+    return float_clamp(2 * fine - coarse, 0, 1);
 }
 
 /* Where eye and light look along one line all that is seen is lit; but a few degrees beside it that is over, far less than the way to the next node: the

@@ -6,16 +6,17 @@
 
 #include <stdlib.h>
 
-/* Places at which the triangles are looked for, at most, per side of the picture; triangles that cover more than so many of them, over and
- * over, are no texel's. */
+/* Places at which the triangles are looked for, per side of the picture; triangles that cover more than so many of them, over and over, are
+ * no texel's. */
 enum {
     TRIM_GRID = 128,
-    TRIM_MOST_PLACES = 1 << 24,
+    TRIM_PLACES = TRIM_GRID * TRIM_GRID,
+    TRIM_MOST_WORK = 1 << 26,
     TRIM_MOST_TRIANGLES = 4000000,
     TRIM_DIRECTIONS = TRIM_NODES * TRIM_NODES
 };
-/* Of some triangles half as many places each way are enough, of many every other direction: it is much matter. */
-enum { TRIM_SOME_TRIANGLES = 1000, TRIM_MANY_TRIANGLES = 10000, TRIM_VERY_MANY_TRIANGLES = 50000 };
+/* Of many triangles every other direction is enough: it is much matter. */
+enum { TRIM_MANY_TRIANGLES = 10000 };
 /* Rays through a level of so many voxels, per side and voxel, and at most, of a period half as many; their steps, in voxels, are as the
  * renderer's. */
 enum { TRIM_RAYS_A_VOXEL = 3, TRIM_LEAST_RAYS = 16, TRIM_MOST_RAYS = 24 };
@@ -31,7 +32,6 @@ typedef struct TrimView {
     float slope_x, slope_z; /* d / d.y */
     float origin[2], size[2];
     bool cyclic[2];
-    int grid;       /* places each way */
     float shift[2]; /* of a place's middle, in places */
 } TrimView;
 
@@ -58,12 +58,6 @@ static Vec3f trim_direction(int node) {
 
 static bool is_period(const VoxelLayer *layer) { return layer->cyclic[0] && layer->cyclic[2]; }
 
-/* A period needs fewer places than the wider view of what stands alone; one of very many triangles more again, as these are small. */
-static int places_each_way(const TrimWork *work) {
-    if (!is_period(work->layer) || work->mesh->triangle_count <= TRIM_SOME_TRIANGLES) return TRIM_GRID;
-    return work->mesh->triangle_count > TRIM_VERY_MANY_TRIANGLES ? 2 * TRIM_GRID : TRIM_GRID / 2;
-}
-
 static bool is_even(int node) { return node % TRIM_NODES % 2 == 0 && node / TRIM_NODES % 2 == 0; }
 
 /* Of an even node, its number among those. */
@@ -75,7 +69,6 @@ static TrimView look_along(const TrimWork *work, Vec3f d, uint64_t number, bool 
                   .extent = work->extent,
                   .slope_x = d.x / d.y,
                   .slope_z = d.z / d.y,
-                  .grid = places_each_way(work),
                   .shift = {random_unitf(bits), random_unitf(random_mix(bits))}};
     const float slope[2] = {v.slope_x, v.slope_z}, extent[2] = {work->extent.x, work->extent.z};
     for (int k = 0; k < 2; k++) {
@@ -116,9 +109,9 @@ static float turns_away(const TrimWork *work, const TrimView *v, int k) {
 
 /* Where the vertices are seen. False if some are so far off that no texel has them there. */
 static bool project(const TrimWork *work, const TrimView *v, TrimCorner *corners) {
-    float per_column = (float)v->grid / v->size[0], per_row = (float)v->grid / v->size[1],
+    float per_column = (float)TRIM_GRID / v->size[0], per_row = (float)TRIM_GRID / v->size[1],
           left = v->origin[0] + turns_away(work, v, 0), front = v->origin[1] + turns_away(work, v, 1);
-    const float far = 64 * (float)v->grid;
+    const float far = 64 * (float)TRIM_GRID;
     bool known = true;
     for (size_t i = 0; i < work->mesh->vertex_count; i++) {
         Vec3f q = work->mesh->vertices[i];
@@ -136,8 +129,8 @@ static bool within(const TrimView *v, float at, float y, int k) {
 }
 
 /* The grid is a power of two. */
-static int wrapped_place(int i, int grid, bool cyclic) {
-    return cyclic ? i & (grid - 1) : i >= 0 && i < grid ? i : -1;
+static int wrapped_place(int i, bool cyclic) {
+    return cyclic ? i & (TRIM_GRID - 1) : i >= 0 && i < TRIM_GRID ? i : -1;
 }
 
 static int least_not_below(float x) {
@@ -145,75 +138,117 @@ static int least_not_below(float x) {
     return whole + ((float)whole < x);
 }
 
-/* Where a row is between two edges of a triangle. */
-typedef struct TrimSpan {
-    float column[2], height[2];
-} TrimSpan;
+/* A triangle on the grid: lines of places are its rows, or its columns where it crosses fewer of these. */
+typedef struct TrimOutline {
+    float line[3], place[3]; /* of its corners, along ascending lines */
+    float place_per_line[3]; /* of its edges: from the first corner to the last, to the middle one, and from that */
+    float height, per_column, per_row; /* of its plane, over the first of its corners as it was given */
+    float least, most;                 /* heights of its corners */
+    const TrimCorner *origin;
+    bool by_columns;
+} TrimOutline;
 
-static bool cut_row(const TrimCorner *const p[3], float row, TrimSpan *span) {
-    *span = (TrimSpan){{INFINITY, -INFINITY}, {0, 0}};
+static float slope_of(float rise, float run) { return run > 0 ? rise / run : 0; }
+
+/* False if it has no area here. */
+static bool outline_plane(const TrimCorner *const p[3], TrimOutline *out) {
+    float ac = p[1]->column - p[0]->column, ar = p[1]->row - p[0]->row, ah = p[1]->height - p[0]->height,
+          bc = p[2]->column - p[0]->column, br = p[2]->row - p[0]->row, bh = p[2]->height - p[0]->height;
+    float per = 1 / (ac * br - ar * bc);
+    out->origin = p[0];
+    out->height = p[0]->height;
+    out->per_column = (ah * br - ar * bh) * per;
+    out->per_row = (ac * bh - ah * bc) * per;
+    out->least = float_min(p[0]->height, float_min(p[1]->height, p[2]->height));
+    out->most = float_max(p[0]->height, float_max(p[1]->height, p[2]->height));
+    return isfinite(out->per_column) && isfinite(out->per_row);
+}
+
+static void outline_edges(const TrimCorner *const p[3], TrimOutline *out) {
+    int order[3] = {0, 1, 2};
+    float line[3], place[3];
     for (int i = 0; i < 3; i++) {
-        const TrimCorner *a = p[i], *b = p[i < 2 ? i + 1 : 0];
-        if ((a->row <= row) == (b->row <= row)) continue;
-        float t = (row - a->row) / (b->row - a->row), column = a->column + t * (b->column - a->column),
-              height = a->height + t * (b->height - a->height);
-        if (column < span->column[0]) span->column[0] = column, span->height[0] = height;
-        if (column > span->column[1]) span->column[1] = column, span->height[1] = height;
+        line[i] = out->by_columns ? p[i]->column : p[i]->row;
+        place[i] = out->by_columns ? p[i]->row : p[i]->column;
     }
-    return span->column[0] < span->column[1];
+    if (line[order[0]] > line[order[1]]) order[0] = 1, order[1] = 0;
+    if (line[order[1]] > line[2]) order[2] = order[1], order[1] = 2;
+    if (line[order[0]] > line[order[1]]) {
+        int first = order[0];
+        order[0] = order[1], order[1] = first;
+    }
+    for (int i = 0; i < 3; i++) out->line[i] = line[order[i]], out->place[i] = place[order[i]];
+    out->place_per_line[0] = slope_of(out->place[2] - out->place[0], out->line[2] - out->line[0]);
+    out->place_per_line[1] = slope_of(out->place[1] - out->place[0], out->line[1] - out->line[0]);
+    out->place_per_line[2] = slope_of(out->place[2] - out->place[1], out->line[2] - out->line[1]);
 }
 
-/* Of a row, the places within the extent: the height of what is met first from above. */
-static void mark_row(const TrimWork *work, const TrimView *v, int row, const TrimSpan *span, float *top) {
-    int line = wrapped_place(row, v->grid, v->cyclic[1]);
-    if (line < 0) return;
-    float cell_x = v->size[0] / (float)v->grid, cell_z = v->size[1] / (float)v->grid;
-    int first = least_not_below(span->column[0]), end = least_not_below(span->column[1]);
-    for (int i = first; i < end; i++) {
-        int column = wrapped_place(i, v->grid, v->cyclic[0]);
-        float t = ((float)i - span->column[0]) / (span->column[1] - span->column[0]),
-              height = span->height[0] + t * (span->height[1] - span->height[0]);
-        if (column < 0) continue;
-        if (!work->contained &&
-            (!(height >= 0 && height <= v->extent.y) ||
-             !within(v, v->origin[0] + ((float)i + v->shift[0]) * cell_x, height, 0) ||
-             !within(v, v->origin[1] + ((float)row + v->shift[1]) * cell_z, height, 1)))
-            continue;
-        float *place = &top[line * v->grid + column];
-        *place = float_max(*place, float_max(height, 0));
+/* Where a line is between the edges. */
+static void cut_line(const TrimOutline *t, float line, float *lo, float *hi) {
+    int part = line < t->line[1] ? 0 : 1;
+    float whole = t->place[0] + (line - t->line[0]) * t->place_per_line[0],
+          bent = t->place[part] + (line - t->line[part]) * t->place_per_line[part + 1];
+    *lo = float_min(whole, bent);
+    *hi = float_max(whole, bent);
+}
+
+/* Whether what is seen at a place lies within the extent. */
+static bool is_within(const TrimWork *work, const TrimView *v, int column, int row, float height) {
+    float cell_x = v->size[0] / (float)TRIM_GRID, cell_z = v->size[1] / (float)TRIM_GRID;
+    return work->contained || (height >= 0 && height <= v->extent.y &&
+                               within(v, v->origin[0] + ((float)column + v->shift[0]) * cell_x, height, 0) &&
+                               within(v, v->origin[1] + ((float)row + v->shift[1]) * cell_z, height, 1));
+}
+
+/* Of a line, the places within the extent: the height of what is met first from above. */
+static void mark_line(const TrimWork *work, const TrimView *v, const TrimOutline *t, int line, int first, int end, float *top) {
+    int fixed = wrapped_place(line, v->cyclic[t->by_columns ? 0 : 1]);
+    bool cyclic = v->cyclic[t->by_columns ? 1 : 0];
+    for (int i = first; fixed >= 0 && i < end; i++) {
+        int place = wrapped_place(i, cyclic), column = t->by_columns ? line : i, row = t->by_columns ? i : line;
+        float height = t->height + ((float)column - t->origin->column) * t->per_column + ((float)row - t->origin->row) * t->per_row;
+        height = float_clamp(height, t->least, t->most);
+        if (place < 0 || !is_within(work, v, column, row, height)) continue;
+        float *seen = &top[t->by_columns ? place * TRIM_GRID + fixed : fixed * TRIM_GRID + place];
+        *seen = float_max(*seen, float_max(height, 0));
     }
 }
 
-/* Marks the places where a triangle is seen; many have none. Returns how much work that was. */
+/* Marks the places where a triangle is seen; many have none. Returns how much work that was, in lines and places. */
 static int64_t mark_triangle(const TrimWork *work, const TrimView *v, const TrimCorner *const p[3], float *top) {
-    float left = float_min(p[0]->column, float_min(p[1]->column, p[2]->column)),
-          right = float_max(p[0]->column, float_max(p[1]->column, p[2]->column)),
-          front = float_min(p[0]->row, float_min(p[1]->row, p[2]->row)),
-          back = float_max(p[0]->row, float_max(p[1]->row, p[2]->row));
-    int columns = least_not_below(right) - least_not_below(left), first = least_not_below(front), end = least_not_below(back);
-    if (columns <= 0) return 1;
-    for (int row = first; row < end; row++) {
-        TrimSpan span;
-        if (cut_row(p, (float)row, &span)) mark_row(work, v, row, &span, top);
+    int left = least_not_below(float_min(p[0]->column, float_min(p[1]->column, p[2]->column))),
+        right = least_not_below(float_max(p[0]->column, float_max(p[1]->column, p[2]->column))),
+        front = least_not_below(float_min(p[0]->row, float_min(p[1]->row, p[2]->row))),
+        back = least_not_below(float_max(p[0]->row, float_max(p[1]->row, p[2]->row)));
+    TrimOutline t = {.by_columns = right - left < back - front};
+    if (left >= right || front >= back || !outline_plane(p, &t)) return 1;
+    outline_edges(p, &t);
+    int64_t spent = 1;
+    for (int line = t.by_columns ? left : front; line < (t.by_columns ? right : back); line++) {
+        float lo, hi;
+        cut_line(&t, (float)line, &lo, &hi);
+        int first = least_not_below(lo), end = least_not_below(hi);
+        mark_line(work, v, &t, line, first, end, top);
+        spent += 1 + end - first;
     }
-    return 1 + (int64_t)columns * (end - first);
+    return spent;
 }
 
 /* The share of the view that the triangles hide; < 0 where that is not known. `top` gets the heights, below 0 where nothing is. */
 static double hidden_by_triangles(const TrimWork *work, const TrimView *v, float *top) {
     const TexelMesh *mesh = work->mesh;
-    size_t places = (size_t)(v->grid * v->grid), hidden = 0;
+    size_t hidden = 0;
     int64_t spent = 0;
     TrimCorner *corners = malloc(mesh->vertex_count * sizeof *corners);
     bool known = corners && project(work, v, corners);
-    for (size_t i = 0; i < places; i++) top[i] = -1;
-    for (size_t t = 0; known && t < mesh->triangle_count && spent < TRIM_MOST_PLACES; t++) {
+    for (size_t i = 0; i < TRIM_PLACES; i++) top[i] = -1;
+    for (size_t t = 0; known && t < mesh->triangle_count && spent < TRIM_MOST_WORK; t++) {
         const uint32_t *at = mesh->triangles[t];
         spent += mark_triangle(work, v, (const TrimCorner *const[3]){&corners[at[0]], &corners[at[1]], &corners[at[2]]}, top);
     }
-    for (size_t i = 0; i < places; i++) hidden += top[i] >= 0;
+    for (size_t i = 0; i < TRIM_PLACES; i++) hidden += top[i] >= 0;
     free(corners);
-    return known && spent < TRIM_MOST_PLACES ? (double)hidden / (double)places : -1;
+    return known && spent < TRIM_MOST_WORK ? (double)hidden / (double)TRIM_PLACES : -1;
 }
 
 /* ---- voxels ---- */
@@ -278,16 +313,15 @@ static float trim_level(const VoxelLayer *layer, int level, const TrimView *v, d
     return find_factor(depths, side * side, hidden);
 }
 
-/* Room for what the view sees: kept with the pair, or to be freed. */
-static float *room_for_view(const TrimWork *work, const TrimView *view, int kept) {
-    size_t places = (size_t)(view->grid * view->grid);
-    return kept >= 0 && work->tops ? work->tops + (size_t)kept * places : malloc(places * sizeof(float));
+/* Room for what a view sees: kept with the pair, or to be freed. */
+static float *room_for_view(const TrimWork *work, int kept) {
+    return kept >= 0 && work->tops ? work->tops + (size_t)kept * TRIM_PLACES : malloc(TRIM_PLACES * sizeof(float));
 }
 
 static void look_at_spot(TrimWork *work, int spot) {
     if (!work->tops) return;
     TrimView view = look_along_spot(work, spot);
-    float *top = room_for_view(work, &view, PAIR_NODES + spot);
+    float *top = room_for_view(work, PAIR_NODES + spot);
     work->spots[spot] = (PairView){view.slope_x, view.slope_z, hidden_by_triangles(work, &view, top) >= 0 ? top : NULL};
 }
 
@@ -297,7 +331,7 @@ static void look_at_node(TrimWork *work, int node) {
     if (work->coarse && !is_even(node)) return; /* between others */
     TrimView view = look_along_node(work, node);
     int kept = work->paired && is_even(node) ? pair_node(node) : -1;
-    float *top = room_for_view(work, &view, kept);
+    float *top = room_for_view(work, kept);
     double hidden = top ? hidden_by_triangles(work, &view, top) : -1;
     work->known[node] = hidden >= 0;
     if (kept >= 0) work->pairs[kept] = (PairView){view.slope_x, view.slope_z, top};
@@ -378,17 +412,15 @@ static bool find_bounds(TrimWork *work) {
 
 /* Without room pairs stay unknown. */
 static void keep_views(TrimWork *work) {
-    size_t grid = (size_t)places_each_way(work);
-    work->tops = malloc((PAIR_NODES + SPOT_GROUPS * SPOT_VIEWS) * grid * grid * sizeof *work->tops);
+    work->tops = malloc((PAIR_NODES + SPOT_GROUPS * SPOT_VIEWS) * (size_t)TRIM_PLACES * sizeof *work->tops);
     work->paired = work->tops && is_period(work->layer);
 }
 
 static void compare_views(const TrimWork *work) {
     bool seen = work->tops != NULL;
-    int grid = places_each_way(work);
     for (int i = 0; i < SPOT_GROUPS * SPOT_VIEWS; i++) seen &= work->spots[i].top != NULL;
-    if (seen) voxel_layer_find_spot(work->layer, work->spots, grid);
-    if (work->paired) voxel_layer_pair(work->layer, work->pairs, grid, (float[2]){work->extent.x, work->extent.z});
+    if (seen) voxel_layer_find_spot(work->layer, work->spots, TRIM_GRID);
+    if (work->paired) voxel_layer_pair(work->layer, work->pairs, TRIM_GRID, (float[2]){work->extent.x, work->extent.z});
 }
 
 void voxel_layer_trim(VoxelLayer *layer, const TexelMesh *mesh, Vec3f extent, Pool *pool) {

@@ -106,6 +106,17 @@ static void test_factors_are_those_of_directions(void **state) {
     scene_free(&mesh);
 }
 
+/* Tall blades, of which each crosses many lines of places from a low direction. */
+static void test_dense_grass_is_trimmed(void **state) {
+    (void)state;
+    TestMesh mesh = scene_grass(2400, .6, .006, 4);
+    VoxelLayer *layer = trimmed(&mesh, 32, TEXEL_CYCLIC_X | TEXEL_CYCLIC_Z);
+    assert_true(voxel_layer_is_trimmed(layer));
+    assert_true(voxel_layer_trim_at(layer, 5, vec3f(.9f, .3f, .2f)) < .5f); /* much of it stands behind the rest */
+    voxel_layer_destroy(layer);
+    scene_free(&mesh);
+}
+
 static void test_nothing_to_compare(void **state) {
     (void)state;
     TestMesh up = scene_grass(20, .6, .02, 4), far = {0}, none = {0};
@@ -126,6 +137,7 @@ static void test_nothing_to_compare(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_coarse_levels_hide_what_triangles_hide),
-                                       cmocka_unit_test(test_factors_are_those_of_directions), cmocka_unit_test(test_nothing_to_compare)};
+                                       cmocka_unit_test(test_factors_are_those_of_directions), cmocka_unit_test(test_dense_grass_is_trimmed),
+                                       cmocka_unit_test(test_nothing_to_compare)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -97,7 +97,6 @@ static const char *what_happens(const BuildContext *context, const char *word) {
     } effects[] = {
         {"area_light", "is drawn as a point light"},
         {"mesh_camera", "is drawn as a perspective camera"},
-        {"method published", "is drawn as 'method two_pass'"},
     };
     for (size_t i = 0; i < VTS_ARRAY_COUNT(effects); i++)
         if (strcmp(effects[i].word, word) == 0) return effects[i].text;

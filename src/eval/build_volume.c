@@ -63,7 +63,6 @@ static void read_method(Reader *reader, const Word *word, void *target) {
     static const char *const words[] = {"two_pass", "published", "path"};
     VolumeDraft *draft = target;
     draft->volume.method = (VolumeMethod)read_choice(reader, word, words, 3, "two_pass, published or path");
-    if (draft->volume.method == VOLUME_PUBLISHED) inert_add(reader->context, &draft->common.rest.inert, "method published", word->span);
 }
 
 static void read_storage(Reader *reader, const Word *word, void *target) {

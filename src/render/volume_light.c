@@ -1,6 +1,7 @@
 #include "render/volume_light.h"
 
 #include "render/integrate.h"
+#include "render/volume_published.h"
 #include "render/volume_shoot.h"
 
 /* ---- spherical harmonics ---- */
@@ -204,6 +205,7 @@ static bool light_set(CompiledScene *compiled, VolumeSet *set) {
 bool volumes_light(CompiledScene *compiled) {
     VolumeSet *set = compiled->volumes;
     if (set->method == VOLUME_PATH) return true;
+    if (set->method == VOLUME_PUBLISHED) return volumes_light_published(compiled);
     VolumeSet *smooth = volumes_without_peaks(set, compiled->arena);
     compiled->volumes = smooth;
     bool done = light_set(compiled, smooth);

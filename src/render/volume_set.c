@@ -2,6 +2,7 @@
 
 #include "base/random.h"
 #include "render/media.h"
+#include "render/volume_published.h"
 #include "scene/scene_bounds.h"
 #include "volume/field.h"
 
@@ -200,7 +201,7 @@ static void fill(VolumeBuild *b, const Volume *volume, const Transform *cube, co
         fill_from_field(b, volume, cube, local, lattice);
     }
     lattice_finish(lattice);
-    simplify(lattice, arena);
+    if (volume->method != VOLUME_PUBLISHED) simplify(lattice, arena); /* which stores light in the density's cells */
 }
 
 static void channels(Color c, double out[3]) { out[0] = c.red, out[1] = c.green, out[2] = c.blue; }
@@ -309,7 +310,9 @@ bool volumes_compile(CompiledScene *compiled, DiagList *diags) {
     for (size_t i = 0; i < set->count; i++) set->bounds = box3_union(set->bounds, set->items[i].bounds);
     set->method = compiled->options->exact ? VOLUME_PATH : method_of(set);
     set->orders = orders_of(set);
-    for (size_t i = 0; i < set->count; i++) see_peak(&set->items[i], set->orders != 0, compiled->arena);
+    if (set->method == VOLUME_PUBLISHED) volumes_publish(set);
+    else
+        for (size_t i = 0; i < set->count; i++) see_peak(&set->items[i], set->orders != 0, compiled->arena);
     compiled->volumes = set;
     return true;
 }
@@ -345,7 +348,9 @@ static Air volumes_alone(SurfaceTracer *tracer, const Cone *cone, double t_max, 
     Air air = {{1, 1, 1}, {0, 0, 0}, 0};
     *mean_t = 0;
     if (!set || !box3_clip_ray(set->bounds, &ray, &near, &far)) return air;
-    air = set->method == VOLUME_PATH ? path_air(tracer, cone, t_max, mean_t) : volumes_gather(tracer, cone, t_max, mean_t);
+    if (set->method == VOLUME_PATH) air = path_air(tracer, cone, t_max, mean_t);
+    else if (set->method == VOLUME_PUBLISHED) air = volumes_gather_published(tracer, cone, t_max, mean_t);
+    else air = volumes_gather(tracer, cone, t_max, mean_t);
     air.cover = 1 - (air.keep.x + air.keep.y + air.keep.z) / 3;
     return air;
 }
@@ -369,7 +374,7 @@ static Air volumes_in_fog(SurfaceTracer *tracer, const Cone *cone, double t_max,
     if (!tracer->compiled->volumes) return far;
     double mean_t;
     Air volumes = volumes_alone(tracer, cone, t_max, &mean_t);
-    if (!(volumes.cover > 0)) return far;
+    if (!(volumes.cover > 0) && !(volumes.add.x + volumes.add.y + volumes.add.z > 0)) return far;
     Air near = fog ? air_between(scene, &ray, mean_t) : nothing;
     Vec3f keep = volumes.keep, rest = vec3f_sub(vec3f(1, 1, 1), keep);
     Air out = {.keep = vec3f_mul(far.keep, keep), .add = vec3f_mul(far.add, keep), .cover = volumes.cover};

@@ -258,10 +258,11 @@ static bool read_trim(FormatReader *r, VoxelLayer *layer, size_t number) {
     if (!next_is(r, SECTION_TRIM)) return true;
     const unsigned char *at = open_section(r, SECTION_TRIM, number, 0);
     if (!at) return false;
-    if (r->section.size != sizeof layer->trim) return refuse_section(r, "has not the size that it should have");
-    memcpy(layer->trim, at, sizeof layer->trim);
+    size_t size = (size_t)r->section.size; /* older files have fewer levels */
+    if (size > sizeof layer->trim || size % sizeof *layer->trim) return refuse_section(r, "has not the size that it should have");
+    memcpy(layer->trim[0], at, size);
     const float *factors = layer->trim[0];
-    for (size_t i = 0; i < sizeof layer->trim / sizeof(float); i++)
+    for (size_t i = 0; i < size / sizeof(float); i++)
         if (!(factors[i] >= TRIM_LEAST && factors[i] <= TRIM_MOST)) return refuse_section(r, "holds what it should not");
     return true;
 }

@@ -7,7 +7,7 @@
 
 enum { BRICK_SIDE = 8, BRICK_VOXELS = 512 };
 /* Levels of up to 8 voxels, and directions each way, for which it is known how much they have to be trimmed. */
-enum { TRIM_LEVELS = 4, TRIM_NODES = 9 };
+enum { TRIM_LEVELS = 7, TRIM_NODES = 9 };
 /* Every other of those directions, in pairs. */
 enum { PAIR_SIDE = (TRIM_NODES + 1) / 2, PAIR_NODES = PAIR_SIDE * PAIR_SIDE };
 

@@ -19,8 +19,10 @@ enum {
 enum { TRIM_MANY_TRIANGLES = 10000 };
 /* Rays through a level of so many voxels, per side and voxel, and at most, of a period half as many; their steps, in voxels, are as the
  * renderer's. */
-enum { TRIM_RAYS_A_VOXEL = 3, TRIM_LEAST_RAYS = 16, TRIM_MOST_RAYS = 24 };
+enum { TRIM_RAYS_A_VOXEL = 3, TRIM_LEAST_RAYS = 16, TRIM_MOST_RAYS = 32 };
 static const float TRIM_STEP = 0.8f;
+enum { LEAST_TRIM_LEVELS = 4 };
+static const float LEVELS_OF_TRIANGLES = 1.3f;
 /* Ways along the layer are looked along from a little above. */
 static const float TRIM_LOWEST = 0.3f;
 /* How much of the view has to depend on a factor for it to be told from 1. */
@@ -41,6 +43,7 @@ typedef struct TrimWork {
     Vec3f extent, low; /* low: the least coordinates of the mesh */
     bool contained;    /* nothing of it lies beyond the extent, but along cyclic axes */
     bool coarse;       /* many triangles */
+    int levels;        /* that are trimmed */
     bool known[TRIM_DIRECTIONS];
     bool paired;       /* what even nodes see is kept: of a period */
     PairView pairs[PAIR_NODES], spots[SPOT_GROUPS * SPOT_VIEWS];
@@ -336,7 +339,7 @@ static void look_at_node(TrimWork *work, int node) {
     work->known[node] = hidden >= 0;
     if (kept >= 0) work->pairs[kept] = (PairView){view.slope_x, view.slope_z, top};
     else free(top);
-    for (int i = 0; work->known[node] && i < TRIM_LEVELS && i < layer->levels; i++)
+    for (int i = 0; work->known[node] && i < work->levels; i++)
         layer->trim[i][node] = trim_level(layer, layer->levels - 1 - i, &view, hidden);
 }
 
@@ -423,6 +426,12 @@ static void compare_views(const TrimWork *work) {
     if (work->paired) voxel_layer_pair(work->layer, work->pairs, TRIM_GRID, (float[2]){work->extent.x, work->extent.z});
 }
 
+/* Voxels that are not much larger than triangles need no factors; of N triangles in a layer they are about so many levels below the coarsest. */
+static int levels_to_trim(const VoxelLayer *layer, size_t triangles) {
+    int levels = (int)ceilf(0.5f * log2f((float)triangles + 1) - LEVELS_OF_TRIANGLES);
+    return int_min(layer->levels, int_clamp(levels, LEAST_TRIM_LEVELS, TRIM_LEVELS));
+}
+
 void voxel_layer_trim(VoxelLayer *layer, const TexelMesh *mesh, Vec3f extent, Pool *pool) {
     voxel_layer_forget_trim(layer);
     voxel_layer_forget_pairs(layer);
@@ -430,7 +439,7 @@ void voxel_layer_trim(VoxelLayer *layer, const TexelMesh *mesh, Vec3f extent, Po
         mesh->triangle_count > TRIM_MOST_TRIANGLES || voxel_layer_is_empty(layer))
         return;
     TrimWork work = {
-        .layer = layer, .mesh = mesh, .extent = extent, .coarse = mesh->triangle_count > TRIM_MANY_TRIANGLES};
+        .layer = layer, .mesh = mesh, .extent = extent, .coarse = mesh->triangle_count > TRIM_MANY_TRIANGLES, .levels = levels_to_trim(layer, mesh->triangle_count)};
     keep_views(&work);
     bool known = find_bounds(&work) && pool_run(pool, TRIM_DIRECTIONS + SPOT_GROUPS * SPOT_VIEWS, look_through, &work);
     for (int node = 0; node < TRIM_DIRECTIONS; node++) known &= work.known[node];

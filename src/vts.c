@@ -119,12 +119,12 @@ static void end_call(VtsSession *session) {
     tile_file_close(session->kept, false);
     session->preview = NULL;
     session->kept = NULL;
-    session->scene_name = NULL;
+    session->kept_at = session->scene_name = NULL;
     compiled_scene_destroy(&session->compiled);
     image_free(&session->picture);
-    image_free(&session->blurred);
-    image_free(&session->between);
-    session->picture = session->blurred = session->between = (Image){0};
+    moment_mean_free(&session->blurred);
+    moment_mean_free(&session->scout);
+    session->picture = (Image){0};
     arena_destroy(&session->parse);
     arena_destroy(&session->scene_arena);
     arena_destroy(&session->compiled_arena);
@@ -395,16 +395,22 @@ Preview *session_connect_preview(VtsSession *session) {
     return preview;
 }
 
+void session_region(const VtsSession *session, int out[4]) {
+    const VtsOptions *o = &session->options;
+    memcpy(out, o->region, sizeof o->region);
+    if (out[2] == 0) out[2] = o->width, out[3] = o->height;
+}
+
 VtsStatus session_draw(VtsSession *session, bool exact, const MomentPlan *plan, RenderStats *stats) {
     const VtsOptions *o = &session->options;
     RenderOptions options = {.pool = session->pool, .progress = &session->progress, .interrupted = &session->interrupted,
                              .samples = exact ? o->reference_samples : session->scene->settings.samples,
-                             .seed = o->seed ^ plan->seed, .noise = plan->noise, .tiles = plan->tiles, .kept = session->kept, .exposure = o->exposure, .alpha = o->alpha};
+                             .seed = o->seed ^ plan->seed, .noise = plan->noise, .tiles = plan->tiles, .kept = plan->apart ? NULL : session->kept, .exposure = o->exposure, .alpha = o->alpha};
     if (plan->samples) options.samples = plan->samples;
     snprintf(session->stage, sizeof session->stage, "picture");
     if (o->aovs && !plan->unseen) options.aovs = &session->aovs;
-    memcpy(options.region, o->region, sizeof options.region);
-    if (options.region[2] == 0) options.region[2] = o->width, options.region[3] = o->height;
+    if (plan->region) memcpy(options.region, plan->region, sizeof options.region);
+    else session_region(session, options.region);
     if (!session->interrupted && o->preview && !plan->unseen) options.preview = session->preview = session_connect_preview(session);
     options.name = session->scene_name ? session->scene_name : "vts";
     bool done = !session->interrupted && (exact ? reference_picture : render_picture)(&session->compiled, &options, &session->memory,
@@ -455,19 +461,19 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
     strbuf_free(&error);
     if (status == VTS_OK) status = session_spare_sources(session, output_path);
     if (status != VTS_OK) return status;
+    session->key = session_key(session, exact);
     double parsed = stopwatch_wall();
     if ((status = session_compile_frame(session, scene_path, exact)) != VTS_OK) return status;
     double built = stopwatch_wall();
     RenderStats stats;
-    session_keep_tiles(session, output_path, exact);
+    session_keep_tiles(session, output_path);
     session->audits = !exact && !o->unreported;
     if ((status = session_expose(session, scene_path, exact, &stats)) != VTS_OK) return status;
-    stats.kept_tiles = tile_file_taken(session->kept);
+    stats.kept_tiles = session->tiles_taken + tile_file_taken(session->kept);
     double rendered = stopwatch_wall();
-    session_mark_part(session, exact);
+    session_mark_part(session);
     if ((status = session_save_picture(session, scene_path, output_path)) != VTS_OK) return status;
-    tile_file_close(session->kept, true);
-    session->kept = NULL;
+    session_forget_tiles(session);
     double written = stopwatch_wall();
     FrameReport report = {.frame = o->frame, .clock = o->clock, .output = output_path, .wall_s = written - session->started_wall,
                           .cpu_s = stopwatch_cpu() - session->started_cpu, .parse_s = parsed - session->started_wall,
@@ -549,6 +555,7 @@ static VtsStatus guarded(VtsSession *session, const Call *call) {
     session->started_cpu = stopwatch_cpu();
     session->probing = session->silent = session->audits = false;
     session->moment = 0;
+    session->tiles_taken = 0;
     session->pilot = (PilotResult){.known = false};
     if (session->interrupted) return VTS_INTERRUPTED;
     arena_init(&session->parse, &session->memory, 0);

@@ -3,6 +3,7 @@
 #define VTS_VTS_SESSION_H
 
 #include "vts.h"
+#include "vts_moments.h"
 
 #include "eval/eval.h"
 #include "grow/spring_net.h"
@@ -42,7 +43,7 @@ struct VtsSession {
     Scene scene_with_settings;
     CompiledScene compiled;
     Image picture;
-    Image blurred, between; /* the mean over moments so far, and the sum over those between them */
+    MomentMean blurred, scout; /* vts_shutter.c */
     struct VolumeMemo *volume_memo; /* of films */
     PilotResult pilot;
     struct FilmPilot {
@@ -51,7 +52,11 @@ struct VtsSession {
         PilotResult result;   /* not known where nothing of it was needed */
     } film_pilot;
     struct KeptStates *nets; /* followed so far; NULL: none */
-    TileFile *kept; /* what is done of the picture that is being drawn; or NULL */
+    uint64_t key;   /* of the picture that is being drawn: session_key() */
+    TileFile *kept; /* what is done of it; or NULL */
+    const char *kept_at; /* and of pictures of moments: beside this picture; or NULL */
+    double keeps_from;   /* moments, on the wall's clock */
+    uint64_t tiles_taken; /* over from another run, of pictures of moments that are done */
     float *last_error; /* of the picture that vts_measure() drew last, NULL: none */
     int last_error_size[2];
     double started_wall, started_cpu;
@@ -75,8 +80,10 @@ typedef struct MomentPlan {
     uint64_t seed;
     double noise;
     const bool *tiles;
+    const int *region; /* NULL: as in the options */
     int samples;  /* 0: the usual */
     bool unseen;  /* by viewers */
+    bool apart;   /* nothing of it is kept for other runs */
 } MomentPlan;
 /* Draws session->compiled into session->picture. */
 VtsStatus session_draw(VtsSession *session, bool exact, const MomentPlan *plan, RenderStats *stats);
@@ -93,12 +100,32 @@ NetStates session_net_states(VtsSession *session);
 /* Before a frame: lets go what the last one did not ask for; all of it. */
 void session_trim_nets(VtsSession *session, bool all);
 
-/* vts_resume.c: a file beside the picture for what is done of it, closed by end of the call; of blurred pictures none. */
-void session_keep_tiles(VtsSession *session, const char *output_path, bool exact);
+/* Pixels of the picture that are wanted: x0, y0, x1, y1. */
+void session_region(const VtsSession *session, int out[4]);
+/* Whether the picture is exposed for more than a moment. */
+bool session_is_blurred(const VtsSession *session);
+
+/* vts_resume.c: a file beside the picture for what is done of it, closed by end of the call. */
+void session_keep_tiles(VtsSession *session, const char *output_path);
+/* Of blurred pictures: the same for the next of their moments, of the tiles that the region holds. */
+void session_keep_moment(VtsSession *session, int moment, const int region[4]);
+/* What the moments have made so far of such a picture, between two of them. */
+typedef struct ExposureState {
+    int *moments;
+    bool *scouting;
+    RenderStats *stats;
+    MomentMean *mean, *scout;
+} ExposureState;
+/* Keeps it in another file, from time to time; takes it over from there, or leaves it as it is. */
+void session_save_moments(VtsSession *session, const ExposureState *state, const int region[4]);
+void session_restore_moments(VtsSession *session, const ExposureState *state, const int region[4]);
+/* The picture is written, and the files go. */
+void session_forget_tiles(VtsSession *session);
+
 /* vts_stitch.c: of the texts that were read and of every option that pixels depend on, but the region. */
 uint64_t session_key(const VtsSession *session, bool exact);
 /* The picture says which part it is, if it is one. */
-void session_mark_part(VtsSession *session, bool exact);
+void session_mark_part(VtsSession *session);
 VtsStatus session_save_picture(VtsSession *session, const char *scene_path, const char *output_path);
 /* VTS_ERROR_FILE, reported, when the output is a file that the scene was read from. */
 VtsStatus session_spare_sources(VtsSession *session, const char *output_path);

@@ -43,12 +43,12 @@ uint64_t session_key(const VtsSession *session, bool exact) {
     return hash.lo ^ hash.hi;
 }
 
-void session_mark_part(VtsSession *session, bool exact) {
+void session_mark_part(VtsSession *session) {
     const VtsOptions *o = &session->options;
     const int *r = o->region;
     if (r[2] == 0) return;
     image_part_set(&session->picture, &(ImagePart){.x = r[0], .y = r[1], .width = r[2] - r[0], .height = r[3] - r[1], .whole_width = o->width,
-                                                   .whole_height = o->height, .key = session_key(session, exact)});
+                                                   .whole_height = o->height, .key = session->key});
 }
 
 VtsStatus vts_stitch(const char *const *part_paths, size_t count, const char *output_path, char *error, size_t error_size) {

@@ -97,13 +97,18 @@ static void expose_tile(void *context, size_t index, int worker) {
     pthread_mutex_unlock(&film->progress_lock);
 }
 
-/* R G B, A if wanted, and the further channels. */
+int film_channels(bool alpha, const AovPlan *aovs, const char *names[FILM_MOST_CHANNELS]) {
+    static const char *const light[] = {"R", "G", "B", "A"};
+    int count = alpha ? 4 : 3;
+    memcpy(names, light, sizeof light);
+    for (int i = 0; aovs && i < aovs->channels; i++) names[count++] = aovs->names[i];
+    return count;
+}
+
 static bool init_image(const RenderOptions *options, MemoryBudget *memory, Image *out, StrBuf *error) {
-    const char *names[4 + AOV_MOST_CHANNELS] = {"R", "G", "B"};
-    int width = options->region[2] - options->region[0], height = options->region[3] - options->region[1], count = 3;
-    if (options->alpha) names[count++] = "A";
-    for (int i = 0; options->aovs && i < options->aovs->channels; i++) names[count++] = options->aovs->names[i];
-    return image_init(out, width, height, count, names, memory, error);
+    const char *names[FILM_MOST_CHANNELS];
+    int width = options->region[2] - options->region[0], height = options->region[3] - options->region[1];
+    return image_init(out, width, height, film_channels(options->alpha, options->aovs, names), names, memory, error);
 }
 
 bool film_expose(const RenderOptions *options, double gamma, const char *stage, FilmTile *tile, void *context, MemoryBudget *memory, Image *out,

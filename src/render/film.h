@@ -33,11 +33,14 @@ typedef struct RenderOptions {
     const char *name;        /* of the picture, there */
 } RenderOptions;
 
-enum { FILM_TILE = 32 };
+enum { FILM_TILE = 32, FILM_MOST_CHANNELS = 4 + AOV_MOST_CHANNELS };
 
 /* How many tiles a region touches, across and down. */
 static inline int film_tiles_x(const int region[4]) { return (region[2] - 1) / FILM_TILE - region[0] / FILM_TILE + 1; }
 static inline int film_tiles_y(const int region[4]) { return (region[3] - 1) / FILM_TILE - region[1] / FILM_TILE + 1; }
+
+/* The names of a picture's channels: R G B, A if wanted, and the further ones (NULL: none). Returns how many. */
+int film_channels(bool alpha, const AovPlan *aovs, const char *names[FILM_MOST_CHANNELS]);
 
 /* What the pixels of [x0, x1) × [y0, y1), at most FILM_TILE each way, see: rows of x1 − x0 in `out`, and in `aovs` (NULL: not
  * wanted; comes as zeros). Called by worker `worker` of the pool; must not depend on it. */

@@ -228,6 +228,41 @@ case_resume_tiles() {
   [ -e "same.png.tmp-vts-$mark-$pid-0" ] || fail "a file of another machine is gone"
 }
 
+# So does a blurred one, moment by moment and tile by tile.
+case_resume_moments() {
+  scene
+  echo 'animation { shutter 1 } sphere { <2*clock, 1, -1>, 0.2 pigment { rgb z } }' >>scene.vts
+  local call_options="scene.vts -s 160x120 --max-error 0.06 --clock 0 --aov depth"
+  run $call_options -o whole.exr --report r.json; want_status 0
+  grep -q '"kept_moments":0' r.json || fail "moments kept of nothing"
+  local tries=0 kept=0 wait=5
+  until [ -s part.exr ] || [ $((++tries)) -gt 60 ]; do
+    "$vts" $call_options -o part.exr --resume --report r.json >out 2>err </dev/null &
+    local pid=$!
+    sleep "0.$(printf %02d $((RANDOM % 10 + wait)))"
+    wait=$((wait < 80 ? wait + 3 : wait))
+    kill -s KILL $pid 2>/dev/null
+    wait $pid 2>/dev/null
+    [ -s part.exr.moments-vts ] && kept=1
+  done
+  cmp -s part.exr whole.exr || fail "another picture after $tries kills"
+  [ $kept = 1 ] || fail "nothing was kept"
+  want_only scene.vts whole.exr part.exr r.json
+  # Broken or of another picture, a file of moments is not believed.
+  local end
+  for end in 1 2; do
+    "$vts" $call_options -o other.exr --resume >out 2>err </dev/null &
+    pid=$!
+    until [ -s other.exr ] || [ -s other.exr.moments-vts ] || ! kill -0 $pid 2>/dev/null; do sleep 0.01; done
+    kill -s KILL $pid 2>/dev/null; wait $pid 2>/dev/null; rm -f other.exr
+    [ -s other.exr.moments-vts ] || continue
+    [ $end = 1 ] && printf 'broken' | dd of=other.exr.moments-vts bs=1 seek=4000 conv=notrunc status=none
+    if [ $end = 1 ]; then run $call_options -o other.exr --resume; cmp -s other.exr whole.exr || fail "broken moments were believed"
+    else run $call_options --alpha -o other.exr --resume --report r.json; grep -q '"kept_moments":0' r.json || fail "moments of another picture"; fi
+    rm -f other.exr*
+  done
+}
+
 # A cloth's frame is the same whether it follows the one before, a state in the cache, or the beginning.
 case_cloth() {
   cat >cloth.vts <<'S'

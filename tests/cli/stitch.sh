@@ -38,6 +38,20 @@ S
   done
 }
 
+# Where something flies through, no part knows less of it than the whole: it takes as many moments in each tile.
+case_blurred() {
+  scene
+  cat >>scene.vts <<'S'
+animation { shutter 1 }
+sphere { <-3 + 8*clock, 1.2, 1>, 0.15 pigment { rgb <0.9, 0.9, 0.2> } }
+box { <-1, 0, -1.2>, <-0.9, 0.8, -1.1> rotate 40*clock*y pigment { rgb z } }
+S
+  draw_parts pfm --clock 0 --alpha --max-error 0.02
+  run stitch p3.pfm p1.pfm p2.pfm -o j.pfm; want_status 0
+  cmp -s w.pfm j.pfm || fail "joined parts are not the whole"
+  run scene.vts -s 70x50 -o sharp.pfm --clock 0 --shutter 0 --alpha --max-error 0.02; cmp -s sharp.pfm w.pfm && fail "nothing is blurred"
+}
+
 # A part is a picture like any other for those who do not stitch.
 case_readable() {
   scene

@@ -1,0 +1,147 @@
+#include "vts_moments.h"
+
+#include "base/vec.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A block of pixels may be off by so many times the error that is accepted of a tile. */
+static const double MOST_IN_BLOCK = 3;
+
+MomentPlace moment_place(int number) {
+    if (number < 2) return (MomentPlace){.index = number, .moment = number};
+    int intervals = 1;
+    while (2 * intervals <= number - 1) intervals *= 2;
+    int index = number - 1 - intervals;
+    return (MomentPlace){intervals, index, (index + 0.5) / intervals};
+}
+
+void moment_mean_lay(MomentMean *m, int width, int height, Arena *arena) {
+    m->width = width, m->height = height;
+    m->tiles_x = (m->x0 + width - 1) / m->tile - m->x0 / m->tile + 1;
+    m->tiles_y = (m->y0 + height - 1) / m->tile - m->y0 / m->tile + 1;
+    size_t count = (size_t)m->tiles_x * (size_t)m->tiles_y;
+    m->open = arena_new_array(arena, bool, count);
+    m->moving = arena_new_array(arena, bool, count);
+    memset(m->open, true, count * sizeof *m->open);
+}
+
+/* ---- sums ---- */
+
+/* into = a·into + b·other, in the channels of light. */
+static void mix(const MomentMean *m, Image *into, float a, const Image *other, float b) {
+    size_t pixels = (size_t)into->width * (size_t)into->height;
+    for (size_t i = 0; i < pixels; i++) {
+        float *x = into->pixels + i * (size_t)into->channels;
+        const float *y = other->pixels + i * (size_t)other->channels;
+        for (int c = 0; c < m->channels; c++) x[c] = a * x[c] + b * y[c];
+    }
+}
+
+static void drop(Image *image) {
+    image_free(image);
+    *image = (Image){0};
+}
+
+void moment_mean_add(MomentMean *m, MomentPlace place, Image *picture) {
+    Image *into = place.intervals ? &m->between : &m->mean;
+    float part = place.intervals ? 1 / (float)place.intervals : 0.5f;
+    if (place.index == 0) {
+        drop(into);
+        *into = *picture;
+        *picture = (Image){0};
+        mix(m, into, 0, into, part);
+        return;
+    }
+    mix(m, into, 1, picture, part);
+    drop(picture);
+}
+
+void moment_mean_free(MomentMean *m) {
+    drop(&m->mean);
+    drop(&m->between);
+}
+
+/* ---- tiles ---- */
+
+typedef struct Rectangle {
+    int x0, y0, x1, y1; /* of the images */
+} Rectangle;
+
+static Rectangle tile_at(const MomentMean *m, int tx, int ty) {
+    int x = (m->x0 / m->tile + tx) * m->tile - m->x0, y = (m->y0 / m->tile + ty) * m->tile - m->y0;
+    return (Rectangle){int_max(x, 0), int_max(y, 0), int_min(x + m->tile, m->width), int_min(y + m->tile, m->height)};
+}
+
+/* Sum of the squares of what the two means differ by. */
+static double squared_difference(const MomentMean *m, Rectangle r) {
+    double sum = 0;
+    for (int y = r.y0; y < r.y1; y++)
+        for (int x = r.x0; x < r.x1; x++) {
+            const float *a = image_pixel(&m->mean, x, y), *b = image_pixel(&m->between, x, y);
+            for (int c = 0; c < m->channels; c++) {
+                double d = (double)float_clamp(a[c], 0, 1) - (double)float_clamp(b[c], 0, 1);
+                sum += d * d;
+            }
+        }
+    return sum;
+}
+
+/* Whether the mean of both may still be off by more than is accepted. */
+static bool tile_moves(const MomentMean *m, Rectangle r, double accepted) {
+    double sum = 0, most = MOST_IN_BLOCK * m->block * accepted;
+    for (int y = r.y0; y < r.y1; y += m->block)
+        for (int x = r.x0; x < r.x1; x += m->block) {
+            Rectangle block = {x, y, int_min(x + m->block, r.x1), int_min(y + m->block, r.y1)};
+            double square = squared_difference(m, block) / 4;
+            if (square > most * most * m->channels) return true;
+            sum += square;
+        }
+    return sum > accepted * accepted * (r.x1 - r.x0) * (r.y1 - r.y0) * m->channels;
+}
+
+static void take_in(MomentMean *m, Rectangle r) {
+    for (int y = r.y0; y < r.y1; y++)
+        for (int x = r.x0; x < r.x1; x++) {
+            float *mean = image_pixel(&m->mean, x, y);
+            const float *between = image_pixel(&m->between, x, y);
+            for (int c = 0; c < m->channels; c++) mean[c] = 0.5f * (mean[c] + between[c]);
+        }
+}
+
+void moment_mean_finish(MomentMean *m, double accepted) {
+    for (int i = 0; i < m->tiles_x * m->tiles_y; i++) {
+        Rectangle r = tile_at(m, i % m->tiles_x, i / m->tiles_x);
+        m->moving[i] = m->open[i] && tile_moves(m, r, accepted);
+        if (m->open[i]) take_in(m, r);
+    }
+    drop(&m->between);
+}
+
+/* How far, in tiles, things may go between two moments: those that cross the part of the picture where anything moves. */
+static int reach_of(const MomentMean *m, int intervals) {
+    Rectangle r = {m->tiles_x, m->tiles_y, -1, -1};
+    for (int y = 0; y < m->tiles_y; y++)
+        for (int x = 0; x < m->tiles_x; x++)
+            if (m->moving[y * m->tiles_x + x]) r = (Rectangle){int_min(r.x0, x), int_min(r.y0, y), int_max(r.x1, x), int_max(r.y1, y)};
+    return r.x1 < 0 ? 0 : 1 + (int)ceil(hypot(r.x1 - r.x0, r.y1 - r.y0) / intervals);
+}
+
+static bool moves_near(const MomentMean *m, int tx, int ty, int reach) {
+    for (int y = int_max(ty - reach, 0); y <= int_min(ty + reach, m->tiles_y - 1); y++)
+        for (int x = int_max(tx - reach, 0); x <= int_min(tx + reach, m->tiles_x - 1); x++)
+            if (m->moving[y * m->tiles_x + x]) return true;
+    return false;
+}
+
+bool moment_mean_close(MomentMean *m, const MomentMean *scout, int first_x, int first_y, int intervals) {
+    int reach = scout ? reach_of(scout, intervals) : 0;
+    bool any = false;
+    for (int y = 0; y < m->tiles_y; y++)
+        for (int x = 0; x < m->tiles_x; x++) {
+            int i = y * m->tiles_x + x;
+            m->open[i] = m->open[i] && (m->moving[i] || (scout && moves_near(scout, first_x + x, first_y + y, reach)));
+            any |= m->open[i];
+        }
+    return any;
+}

@@ -107,7 +107,8 @@ static inline void affine_sqrt_lanes(AffineLanes *restrict out, const AffineLane
 typedef struct NoiseBounds {
     double low, high;               /* of the noise */
     double steepest, curved, third; /* of its derivatives along unit directions */
-    bool smooth;                    /* `third` holds across cells, too */
+    double jump;                    /* of the second derivative along an axis, from cell to cell across it */
+    bool cut;                       /* to its range, where what is expanded gets beyond */
 } NoiseBounds;
 
 typedef void NoiseTaylor(const TaylorWay *way, TaylorTerms *out);
@@ -139,18 +140,15 @@ static inline void affine_noise_lanes(AffineLanes *restrict out, const AffineLan
         return;
     }
     noise(&way, &terms);
-    double anywhere = known->smooth ? 1 : 0;
     AFFINE_EACH_LANE {
         double square = length[l] * length[l], bend = known->curved / 2 * square;
-        double third = fabs(terms.second[l]) / 2 + known->third / 6 * square * length[l];
-        third = terms.room[l] + anywhere > 0x1p-40 ? third : HUGE_VAL;
+        double rest = known->third / 6 * square * length[l] + known->jump / 2 * terms.outside[l], third = fabs(terms.second[l]) / 2 + rest;
         double shift = third < bend ? terms.second[l] / 2 : 0, least = third < bend ? third : bend;
         double first = terms.first[l], value = terms.value[l] + shift;
         double error = affine_lane_error(least + off[l] * known->steepest, 256);
-        /* What lies beyond the noise's range is cut off: the form moves by half of that, which it then may be off. */
-        double reach = fabs(first) + error, above = (value + reach) - known->high,
-               below = known->low - (value - reach);
-        above = above > 0 ? above / 2 : 0, below = below > 0 ? below / 2 : 0;
+        /* A noise that is cut to its range may be below the form by what that gets above it, and above by what it gets below. */
+        double reach = fabs(first) + error, above = (value + reach) - known->high, below = known->low - (value - reach);
+        above = known->cut && above > 0 ? above / 2 : 0, below = known->cut && below > 0 ? below / 2 : 0;
         double centre = (value - above) + below, total = error + above + below;
         /* Places too far away for cells have no value. */
         error = value == value ? error : HUGE_VAL;

@@ -16,7 +16,7 @@ typedef struct TaylorWay {
 /* Of the noise there: value + first·s + second·s² and what follows. NaN where a coordinate is too large for cells of 32 bits. */
 typedef struct TaylorTerms {
     double value[TAYLOR_LANES], first[TAYLOR_LANES], second[TAYLOR_LANES];
-    double room[TAYLOR_LANES]; /* above 0: all of the piece is this far from the borders of its cell of the lattice, at least */
+    double outside[TAYLOR_LANES]; /* how far the piece's ends lie beyond its middle's cell of the lattice, along each axis: the sum of the squares */
 } TaylorTerms;
 
 void noise_perlin_taylor(const TaylorWay *way, TaylorTerms *out);
@@ -24,11 +24,15 @@ void noise_perlin_taylor(const TaylorWay *way, TaylorTerms *out);
 void noise_pov_taylor(const TaylorWay *way, TaylorTerms *out);
 
 /* Bounds for the first and third derivatives along any unit direction, whatever the lattices hold: NOISE_…_CURVATURE in noise.h is that
- * of the second. Those of POV-Ray's noise hold within a cell: its second derivative jumps from one to the next. bench/prove_noise.c proves them. */
+ * of the second. Those of POV-Ray's noise hold within a cell; bench/prove_noise.c proves them. From one cell to the next its second derivative
+ * along the axis across their wall jumps, by no more than NOISE_POV_JUMP: at the wall it is -6 times the difference between the corners' functions before it and
+ * +6 times that behind it. The functions that belong to corners of the wall are the same; the other two are 1/2 + 1 + 1/2 + 1/2 at most, by half of a value
+ * and by components in [-1, 1] of gradients along ways of 1 and, weighted by the curves, of 1/2 twice. No other second derivative jumps. */
 #define NOISE_PERLIN_STEEPEST 3.76
 #define NOISE_PERLIN_THIRD    151.0
 #define NOISE_POV_STEEPEST    (5.01 * 0.48985582)
 #define NOISE_POV_THIRD       (103.0 * 0.48985582)
+#define NOISE_POV_JUMP        (30.0 * 0.48985582)
 
 /* ---- for the files of the noises ---- */
 
@@ -37,7 +41,7 @@ typedef void TaylorCurve(double t, double out[3]);
 
 typedef struct TaylorAxis {
     double cell[TAYLOR_LANES], place[TAYLOR_LANES], curve[3][TAYLOR_LANES];
-    double room[TAYLOR_LANES]; /* to the nearer border of the cell, less the way */
+    double outside[TAYLOR_LANES]; /* the way, less that to the nearer border of the cell, or 0: squared */
 } TaylorAxis;
 
 static inline void taylor_locate(const double *restrict at, const double *restrict way, TaylorCurve *curve, TaylorAxis *restrict axis) {
@@ -48,7 +52,8 @@ static inline void taylor_locate(const double *restrict at, const double *restri
         curve(t, c);
         axis->cell[l] = near ? whole : 0, axis->place[l] = t;
         axis->curve[0][l] = c[0], axis->curve[1][l] = c[1] * w, axis->curve[2][l] = c[2] * w * w;
-        axis->room[l] = (t < 0.5 ? t : 1 - t) - fabs(w);
+        double beyond = fabs(w) - (t < 0.5 ? t : 1 - t);
+        axis->outside[l] = beyond > 0 ? beyond * beyond : 0;
     }
 }
 
@@ -99,10 +104,7 @@ static inline void taylor_along(const TaylorWay *way, LatticeFind *find, TaylorC
         for (int c = 0; c < 8; c++)
             taylor_columns(corners[from[l]][c], corners[from[l + 1]][c], corners[from[l + 2]][c], corners[from[l + 3]][c], numbers[c], l);
     }
-    for (int l = 0; l < TAYLOR_LANES; l++) {
-        double room = axes[0].room[l] < axes[1].room[l] ? axes[0].room[l] : axes[1].room[l];
-        out->room[l] = room < axes[2].room[l] ? room : axes[2].room[l];
-    }
+    for (int l = 0; l < TAYLOR_LANES; l++) out->outside[l] = (axes[0].outside[l] + axes[1].outside[l]) + axes[2].outside[l];
     for (int l = 0; l < TAYLOR_LANES; l++) {
         double value[8][3], row[4][3], plane[2][3], all[3];
         const double x[2] = {axes[0].place[l], axes[0].place[l] - 1}, y[2] = {axes[1].place[l], axes[1].place[l] - 1},

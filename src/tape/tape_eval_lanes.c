@@ -80,8 +80,8 @@ static void loop(const Tape *tape, const TapeLoop *loop_, const TapeStep *step, 
 }
 
 static const NoiseBounds perlin = {-NOISE_PERLIN_MOST,     NOISE_PERLIN_MOST,  NOISE_PERLIN_STEEPEST,
-                                   NOISE_PERLIN_CURVATURE, NOISE_PERLIN_THIRD, true};
-static const NoiseBounds pov = {0, 1, NOISE_POV_STEEPEST, NOISE_POV_CURVATURE, NOISE_POV_THIRD, false};
+                                   NOISE_PERLIN_CURVATURE, NOISE_PERLIN_THIRD, 0, false};
+static const NoiseBounds pov = {0, 1, NOISE_POV_STEEPEST, NOISE_POV_CURVATURE, NOISE_POV_THIRD, NOISE_POV_JUMP, true};
 
 static void general(const Tape *tape, const TapeStep *step, AffineLanes *slots) {
     int arity = tape_op_arity((TapeOp)step->op);

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { JOB_BRICKS_PER_AXIS = 8, SCRATCH_CELLS = BRICK_VOXELS * (1 + PYRAMID_CHILDREN * TEXEL_MAX_LEVELS) };
+enum { CACHE_LINE = 64, JOB_BRICKS_PER_AXIS = 8, SCRATCH_CELLS = BRICK_VOXELS * (1 + PYRAMID_CHILDREN * TEXEL_MAX_LEVELS) };
 
 typedef struct Build {
     Pyramid pyramid;
@@ -113,7 +113,7 @@ static bool take_scratch(Build *b) {
     for (size_t i = 0; i <= b->jobs; i++)
         b->outputs[i].bricks.memory = b->outputs[i].codes.memory = b->options->memory;
     for (size_t i = 0; i < workers; i++)
-        if (!(b->scratch[i] = malloc(bytes))) return false;
+        if (!(b->scratch[i] = aligned_alloc(CACHE_LINE, bytes))) return false;
     return true;
 }
 

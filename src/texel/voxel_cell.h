@@ -13,13 +13,13 @@ typedef struct VoxelCell {
     float sheet, solid; /* area of open sheets; of walls of solids, both walls counted */
     float normals[6];   /* sum of area · n nᵗ: xx yy zz xy xz yz. With TEXEL_FILTER_PUBLISHED, in an open merged cell: sum of area · Q⁻¹ */
     float fill;         /* the share of it that lies within solids, of the finest voxels' middles */
-    float met[3];       /* how often the rays along an axis met anything, on the mean over them */
     float net[3];       /* until the finest cell is closed: walls that its rays left a solid by, less those that they entered by */
-    float walls;        /* walls that the finest level's rays met in the cell */
-    float single;       /* of these, without the other one of their pair in the cell */
-    float
-        apart; /* the same while pairs had to be in the same child; both are valid once the cell is closed */
+    float single;       /* of `walls`, without the other one of their pair in the cell */
+    float apart;        /* the same while pairs had to be in the same child; both are valid once the cell is closed */
     float odd, joined;  /* rays kept that left a child inside a solid, and those of them that met again */
+    /* What rays change, beside each other: 64 bytes. */
+    float walls;        /* walls that the finest level's rays met in the cell */
+    float met[3];       /* how often the rays along an axis met anything, on the mean over them */
     uint64_t cover[3];  /* rays that met anything: a byte of columns for each of eight rows, along voxel_ray_columns() and voxel_ray_rows() */
     uint64_t inside[3]; /* rays that met an odd number of walls */
 } VoxelCell;

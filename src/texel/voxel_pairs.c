@@ -42,9 +42,11 @@ void voxel_layer_find_spot(VoxelLayer *layer, const PairView views[SPOT_GROUPS *
     layer->pairs.spot = correlation > 1e-3 ? float_min(WIDEST_SPOT, SPOT_OFFSET / (float)-log(double_min(correlation, 0.99))) : 0;
 }
 
-static int wrapped(float place, int grid) {
-    int whole = (int)floorf(place + 0.5f) % grid;
-    return whole < 0 ? whole + grid : whole;
+/* `places` is a power of two. */
+static int wrapped(float place, int places) {
+    float middle = place + 0.5f;
+    int whole = (int)middle;
+    return (whole - ((float)whole > middle)) & (places - 1);
 }
 
 /* The share of what `eye` sees that lies open to `light`: in its view nothing is higher at the same place. Of every `step`th place each way. */

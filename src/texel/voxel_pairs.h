@@ -15,7 +15,7 @@ typedef struct PairView {
     const float *top;       /* [grid × grid], along x first: height of what is met first from above; below 0 nothing */
 } PairView;
 
-/* Sets layer->pairs.lit from views along the directions of even nodes. `size`: of the period along x and z; the middle of the first place is the
+/* Sets layer->pairs.lit from views along the directions of even nodes. `grid`: a power of two; `size`: of the period along x and z; the middle of the first place is the
  * same in all views. */
 void voxel_layer_pair(VoxelLayer *layer, const PairView views[PAIR_NODES], int grid, const float size[2]);
 /* Sets layer->pairs.spot from groups of SPOT_VIEWS views: one along a direction, the others with slopes that differ by SPOT_OFFSET from its. */

@@ -48,14 +48,14 @@ static double ray_offset(int row) {
     return offsets[row & 7];
 }
 
-/* turn: +1 or −1, which way the triangle faces. */
-static void meet(VoxelCell *cell, int axis, uint64_t rays, bool solid, float turn) {
-    float count = (float)count_bits(rays);
+/* `count` rays meet the triangle; turn: +1 or −1, which way it faces. */
+static void meet(VoxelCell *cell, int axis, uint64_t rays, int count, bool solid, float turn) {
+    float met = (float)count;
     cell->cover[axis] |= rays;
-    cell->met[axis] += count;
+    cell->met[axis] += met;
     if (!solid) return;
-    cell->walls += count;
-    cell->net[axis] += turn * count;
+    cell->walls += met;
+    cell->net[axis] += turn * met;
     cell->inside[axis] ^= rays;
 }
 
@@ -69,23 +69,34 @@ typedef struct RayRow {
 /* Planes so steep, or so far off, that they cannot be met within a brick but by rounding. */
 static bool fits_depth(double x) { return x > -0x1p20 && x < 0x1p20; }
 
+/* Columns `begin` to `end` of one voxel across, along which the depth goes from one voxel to another. first: the row's first bit. */
+static void add_steep(VoxelCell *cells, const RayRow *r, int begin, int end, int64_t depth, uint64_t limit, uint64_t first, bool solid, int axis,
+                      int along) {
+    while (begin < end) {
+        int64_t deep = depth >> 32;
+        int column = begin;
+        do column++, depth += r->step;
+        while (column < end && depth >> 32 == deep);
+        if ((uint64_t)deep < limit >> 32)
+            meet(&cells[deep << along], axis, first * ((1u << (column - begin)) - 1) << (begin & 7), column - begin, solid, r->turn);
+        begin = column;
+    }
+}
+
 static void add_row(VoxelCell *cells, const RayRow *r, bool solid, const int size[3], int axis) {
     static const int shifts[3] = {0, 3, 6}; /* of a cell's index, along each axis */
-    int along = shifts[axis], across = shifts[voxel_ray_columns(axis)], current = -1;
-    int base = r->row >> 3 << shifts[voxel_ray_rows(axis)];
-    uint64_t rays = 0, first = (uint64_t)1 << ((r->row & 7) * 8), limit = (uint64_t)size[axis] << 32;
+    int along = shifts[axis], across = shifts[voxel_ray_columns(axis)];
+    cells += r->row >> 3 << shifts[voxel_ray_rows(axis)];
+    uint64_t first = (uint64_t)1 << ((r->row & 7) * 8), limit = (uint64_t)size[axis] << 32;
     int64_t depth = r->depth;
-    for (int column = r->begin; column < r->end; column++, depth += r->step) {
-        if ((uint64_t)depth >= limit) continue;
-        int cell = base + ((int)(depth >> 32) << along) + (column >> 3 << across);
-        if (cell != current) {
-            if (rays) meet(&cells[current], axis, rays, solid, r->turn);
-            current = cell;
-            rays = 0;
-        }
-        rays |= first << (column & 7);
+    for (int column = r->begin, end; column < r->end; depth += (end - column) * r->step, column = end) {
+        VoxelCell *row = cells + (column >> 3 << across);
+        end = int_min((column | 7) + 1, r->end);
+        if (depth >> 32 != (depth + (end - column - 1) * r->step) >> 32)
+            add_steep(row, r, column, end, depth, limit, first, solid, axis, along);
+        else if ((uint64_t)depth < limit)
+            meet(&row[depth >> 32 << along], axis, first * ((1u << (end - column)) - 1) << (column & 7), end - column, solid, r->turn);
     }
-    if (rays) meet(&cells[current], axis, rays, solid, r->turn);
 }
 
 static void add_rays(VoxelCell *cells, const ClipPolygon *t, bool solid, const int size[3], int axis) {

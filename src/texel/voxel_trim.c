@@ -3,18 +3,11 @@
 #include "base/random.h"
 #include "texel/opacity.h"
 #include "texel/voxel_pairs.h"
+#include "texel/voxel_view.h"
 
 #include <stdlib.h>
 
-/* Places at which the triangles are looked for, per side of the picture; triangles that cover more than so many of them, over and over, are
- * no texel's. */
-enum {
-    TRIM_GRID = 128,
-    TRIM_PLACES = TRIM_GRID * TRIM_GRID,
-    TRIM_MOST_WORK = 1 << 26,
-    TRIM_MOST_TRIANGLES = 4000000,
-    TRIM_DIRECTIONS = TRIM_NODES * TRIM_NODES
-};
+enum { TRIM_MOST_TRIANGLES = 4000000, TRIM_DIRECTIONS = TRIM_NODES * TRIM_NODES };
 /* Of many triangles every other direction is enough: it is much matter. */
 enum { TRIM_MANY_TRIANGLES = 10000 };
 /* Rays through a level of so many voxels, per side and voxel, and at most, of a period half as many; their steps, in voxels, are as the
@@ -27,15 +20,6 @@ static const float LEVELS_OF_TRIANGLES = 1.3f;
 static const float TRIM_LOWEST = 0.3f;
 /* How much of the view has to depend on a factor for it to be told from 1. */
 static const double TRIM_INERTIA = 0.005;
-
-/* The layer seen along d (d.y > 0), on the plane y = 0: from `origin`, `size` wide; a period of what is cyclic. */
-typedef struct TrimView {
-    Vec3f d, extent;
-    float slope_x, slope_z; /* d / d.y */
-    float origin[2], size[2];
-    bool cyclic[2];
-    float shift[2]; /* of a place's middle, in places */
-} TrimView;
 
 typedef struct TrimWork {
     VoxelLayer *layer;
@@ -66,30 +50,32 @@ static bool is_even(int node) { return node % TRIM_NODES % 2 == 0 && node / TRIM
 /* Of an even node, its number among those. */
 static int pair_node(int node) { return node / TRIM_NODES / 2 * PAIR_SIDE + node % TRIM_NODES / 2; }
 
-static TrimView look_along(const TrimWork *work, Vec3f d, uint64_t number, bool cyclic) {
+static LayerView look_along(const TrimWork *work, Vec3f d, uint64_t number, bool cyclic) {
     uint64_t bits = random_hash(number, 0, 0, 0);
-    TrimView v = {.d = d,
-                  .extent = work->extent,
-                  .slope_x = d.x / d.y,
-                  .slope_z = d.z / d.y,
-                  .shift = {random_unitf(bits), random_unitf(random_mix(bits))}};
-    const float slope[2] = {v.slope_x, v.slope_z}, extent[2] = {work->extent.x, work->extent.z};
+    LayerView v = {.d = d,
+                   .extent = work->extent,
+                   .slope_x = d.x / d.y,
+                   .slope_z = d.z / d.y,
+                   .contained = work->contained,
+                   .shift = {random_unitf(bits), random_unitf(random_mix(bits))}};
+    const float slope[2] = {v.slope_x, v.slope_z}, extent[2] = {work->extent.x, work->extent.z}, low[2] = {work->low.x, work->low.z};
     for (int k = 0; k < 2; k++) {
         v.cyclic[k] = cyclic || work->layer->cyclic[2 * k];
         float reach = -slope[k] * work->extent.y;
         v.origin[k] = v.cyclic[k] ? 0 : float_min(0, reach);
         v.size[k] = v.cyclic[k] ? extent[k] : extent[k] + fabsf(reach);
+        v.turned[k] = v.cyclic[k] ? floorf(low[k] / extent[k]) * extent[k] : 0;
     }
     return v;
 }
 
 /* Of a node; of a period place by place as of all others. */
-static TrimView look_along_node(const TrimWork *work, int node) {
+static LayerView look_along_node(const TrimWork *work, int node) {
     return look_along(work, trim_direction(node), work->paired ? 0 : (uint64_t)node, false);
 }
 
 /* Once around at a steep slope, and a little beside that, along it and across. */
-static TrimView look_along_spot(const TrimWork *work, int spot) {
+static LayerView look_along_spot(const TrimWork *work, int spot) {
     static const float slope[SPOT_GROUPS][2] = {{0.8f, 0.3f}, {-0.3f, 0.8f}, {-0.8f, -0.3f}, {0.3f, -0.8f}};
     const float *at = slope[spot / SPOT_VIEWS];
     int beside = spot % SPOT_VIEWS;
@@ -97,168 +83,11 @@ static TrimView look_along_spot(const TrimWork *work, int spot) {
     return look_along(work, vec3f_normalize(vec3f(x, 1, z)), 0, true);
 }
 
-/* ---- triangles ---- */
-
-/* A vertex on the grid of places, whose middles have whole numbers, and its height. */
-typedef struct TrimCorner {
-    float column, row, height;
-} TrimCorner;
-
-/* Whole turns along a cyclic axis that the least of the mesh lies away from the extent. */
-static float turns_away(const TrimWork *work, const TrimView *v, int k) {
-    float size = k ? v->extent.z : v->extent.x, least = k ? work->low.z : work->low.x;
-    return v->cyclic[k] ? floorf(least / size) * size : 0;
-}
-
-/* Where the vertices are seen. False if some are so far off that no texel has them there. */
-static bool project(const TrimWork *work, const TrimView *v, TrimCorner *corners) {
-    float per_column = (float)TRIM_GRID / v->size[0], per_row = (float)TRIM_GRID / v->size[1],
-          left = v->origin[0] + turns_away(work, v, 0), front = v->origin[1] + turns_away(work, v, 1);
-    const float far = 64 * (float)TRIM_GRID;
-    bool known = true;
-    for (size_t i = 0; i < work->mesh->vertex_count; i++) {
-        Vec3f q = work->mesh->vertices[i];
-        float column = (q.x - q.y * v->slope_x - left) * per_column - v->shift[0],
-              row = (q.z - q.y * v->slope_z - front) * per_row - v->shift[1];
-        corners[i] = (TrimCorner){column, row, q.y};
-        known &= fabsf(column) < far && fabsf(row) < far;
-    }
-    return known;
-}
-
-static bool within(const TrimView *v, float at, float y, int k) {
-    float x = at + y * (k ? v->slope_z : v->slope_x);
-    return v->cyclic[k] || (x >= 0 && x <= (k ? v->extent.z : v->extent.x));
-}
-
-/* The grid is a power of two. */
-static int wrapped_place(int i, bool cyclic) {
-    return cyclic ? i & (TRIM_GRID - 1) : i >= 0 && i < TRIM_GRID ? i : -1;
-}
-
-static int least_not_below(float x) {
-    int whole = (int)x;
-    return whole + ((float)whole < x);
-}
-
-/* A triangle on the grid: lines of places are its rows, or its columns where it crosses fewer of these. */
-typedef struct TrimOutline {
-    float line[3], place[3]; /* of its corners, along ascending lines */
-    float place_per_line[3]; /* of its edges: from the first corner to the last, to the middle one, and from that */
-    float height, per_column, per_row; /* of its plane, over the first of its corners as it was given */
-    float least, most;                 /* heights of its corners */
-    const TrimCorner *origin;
-    bool by_columns;
-} TrimOutline;
-
-static float slope_of(float rise, float run) { return run > 0 ? rise / run : 0; }
-
-/* False if it has no area here. */
-static bool outline_plane(const TrimCorner *const p[3], TrimOutline *out) {
-    float ac = p[1]->column - p[0]->column, ar = p[1]->row - p[0]->row, ah = p[1]->height - p[0]->height,
-          bc = p[2]->column - p[0]->column, br = p[2]->row - p[0]->row, bh = p[2]->height - p[0]->height;
-    float per = 1 / (ac * br - ar * bc);
-    out->origin = p[0];
-    out->height = p[0]->height;
-    out->per_column = (ah * br - ar * bh) * per;
-    out->per_row = (ac * bh - ah * bc) * per;
-    out->least = float_min(p[0]->height, float_min(p[1]->height, p[2]->height));
-    out->most = float_max(p[0]->height, float_max(p[1]->height, p[2]->height));
-    return isfinite(out->per_column) && isfinite(out->per_row);
-}
-
-static void outline_edges(const TrimCorner *const p[3], TrimOutline *out) {
-    int order[3] = {0, 1, 2};
-    float line[3], place[3];
-    for (int i = 0; i < 3; i++) {
-        line[i] = out->by_columns ? p[i]->column : p[i]->row;
-        place[i] = out->by_columns ? p[i]->row : p[i]->column;
-    }
-    if (line[order[0]] > line[order[1]]) order[0] = 1, order[1] = 0;
-    if (line[order[1]] > line[2]) order[2] = order[1], order[1] = 2;
-    if (line[order[0]] > line[order[1]]) {
-        int first = order[0];
-        order[0] = order[1], order[1] = first;
-    }
-    for (int i = 0; i < 3; i++) out->line[i] = line[order[i]], out->place[i] = place[order[i]];
-    out->place_per_line[0] = slope_of(out->place[2] - out->place[0], out->line[2] - out->line[0]);
-    out->place_per_line[1] = slope_of(out->place[1] - out->place[0], out->line[1] - out->line[0]);
-    out->place_per_line[2] = slope_of(out->place[2] - out->place[1], out->line[2] - out->line[1]);
-}
-
-/* Where a line is between the edges. */
-static void cut_line(const TrimOutline *t, float line, float *lo, float *hi) {
-    int part = line < t->line[1] ? 0 : 1;
-    float whole = t->place[0] + (line - t->line[0]) * t->place_per_line[0],
-          bent = t->place[part] + (line - t->line[part]) * t->place_per_line[part + 1];
-    *lo = float_min(whole, bent);
-    *hi = float_max(whole, bent);
-}
-
-/* Whether what is seen at a place lies within the extent. */
-static bool is_within(const TrimWork *work, const TrimView *v, int column, int row, float height) {
-    float cell_x = v->size[0] / (float)TRIM_GRID, cell_z = v->size[1] / (float)TRIM_GRID;
-    return work->contained || (height >= 0 && height <= v->extent.y &&
-                               within(v, v->origin[0] + ((float)column + v->shift[0]) * cell_x, height, 0) &&
-                               within(v, v->origin[1] + ((float)row + v->shift[1]) * cell_z, height, 1));
-}
-
-/* Of a line, the places within the extent: the height of what is met first from above. */
-static void mark_line(const TrimWork *work, const TrimView *v, const TrimOutline *t, int line, int first, int end, float *top) {
-    int fixed = wrapped_place(line, v->cyclic[t->by_columns ? 0 : 1]);
-    bool cyclic = v->cyclic[t->by_columns ? 1 : 0];
-    for (int i = first; fixed >= 0 && i < end; i++) {
-        int place = wrapped_place(i, cyclic), column = t->by_columns ? line : i, row = t->by_columns ? i : line;
-        float height = t->height + ((float)column - t->origin->column) * t->per_column + ((float)row - t->origin->row) * t->per_row;
-        height = float_clamp(height, t->least, t->most);
-        if (place < 0 || !is_within(work, v, column, row, height)) continue;
-        float *seen = &top[t->by_columns ? place * TRIM_GRID + fixed : fixed * TRIM_GRID + place];
-        *seen = float_max(*seen, float_max(height, 0));
-    }
-}
-
-/* Marks the places where a triangle is seen; many have none. Returns how much work that was, in lines and places. */
-static int64_t mark_triangle(const TrimWork *work, const TrimView *v, const TrimCorner *const p[3], float *top) {
-    int left = least_not_below(float_min(p[0]->column, float_min(p[1]->column, p[2]->column))),
-        right = least_not_below(float_max(p[0]->column, float_max(p[1]->column, p[2]->column))),
-        front = least_not_below(float_min(p[0]->row, float_min(p[1]->row, p[2]->row))),
-        back = least_not_below(float_max(p[0]->row, float_max(p[1]->row, p[2]->row)));
-    TrimOutline t = {.by_columns = right - left < back - front};
-    if (left >= right || front >= back || !outline_plane(p, &t)) return 1;
-    outline_edges(p, &t);
-    int64_t spent = 1;
-    for (int line = t.by_columns ? left : front; line < (t.by_columns ? right : back); line++) {
-        float lo, hi;
-        cut_line(&t, (float)line, &lo, &hi);
-        int first = least_not_below(lo), end = least_not_below(hi);
-        mark_line(work, v, &t, line, first, end, top);
-        spent += 1 + end - first;
-    }
-    return spent;
-}
-
-/* The share of the view that the triangles hide; < 0 where that is not known. `top` gets the heights, below 0 where nothing is. */
-static double hidden_by_triangles(const TrimWork *work, const TrimView *v, float *top) {
-    const TexelMesh *mesh = work->mesh;
-    size_t hidden = 0;
-    int64_t spent = 0;
-    TrimCorner *corners = malloc(mesh->vertex_count * sizeof *corners);
-    bool known = corners && project(work, v, corners);
-    for (size_t i = 0; i < TRIM_PLACES; i++) top[i] = -1;
-    for (size_t t = 0; known && t < mesh->triangle_count && spent < TRIM_MOST_WORK; t++) {
-        const uint32_t *at = mesh->triangles[t];
-        spent += mark_triangle(work, v, (const TrimCorner *const[3]){&corners[at[0]], &corners[at[1]], &corners[at[2]]}, top);
-    }
-    for (size_t i = 0; i < TRIM_PLACES; i++) hidden += top[i] >= 0;
-    free(corners);
-    return known && spent < TRIM_MOST_WORK ? (double)hidden / (double)TRIM_PLACES : -1;
-}
-
 /* ---- voxels ---- */
 
 static float wrapped_length(float x, float size) { return x - size * floorf(x / size); }
 
-static float ray_depth(const VoxelLayer *layer, int level, const TrimView *v, float x, float z) {
+static float ray_depth(const VoxelLayer *layer, int level, const LayerView *v, float x, float z) {
     float h = 1 / layer->level[level].density_unit, step = TRIM_STEP * h * v->d.y;
     int steps = int_max(1, (int)ceilf(v->extent.y / step));
     float height = v->extent.y / (float)steps, depth = 0;
@@ -302,7 +131,7 @@ static float find_factor(const float *depths, int count, double hidden) {
                            (rate + TRIM_INERTIA)); /* of what is opaque in any case nothing is known */
 }
 
-static float trim_level(const VoxelLayer *layer, int level, const TrimView *v, double hidden) {
+static float trim_level(const VoxelLayer *layer, int level, const LayerView *v, double hidden) {
     float depths[TRIM_MOST_RAYS * TRIM_MOST_RAYS];
     int side =
         int_clamp(TRIM_RAYS_A_VOXEL * (int)layer->level[level].density_unit, TRIM_LEAST_RAYS, TRIM_MOST_RAYS);
@@ -318,24 +147,24 @@ static float trim_level(const VoxelLayer *layer, int level, const TrimView *v, d
 
 /* Room for what a view sees: kept with the pair, or to be freed. */
 static float *room_for_view(const TrimWork *work, int kept) {
-    return kept >= 0 && work->tops ? work->tops + (size_t)kept * TRIM_PLACES : malloc(TRIM_PLACES * sizeof(float));
+    return kept >= 0 && work->tops ? work->tops + (size_t)kept * VIEW_PLACES : malloc(VIEW_PLACES * sizeof(float));
 }
 
 static void look_at_spot(TrimWork *work, int spot) {
     if (!work->tops) return;
-    TrimView view = look_along_spot(work, spot);
+    LayerView view = look_along_spot(work, spot);
     float *top = room_for_view(work, PAIR_NODES + spot);
-    work->spots[spot] = (PairView){view.slope_x, view.slope_z, hidden_by_triangles(work, &view, top) >= 0 ? top : NULL};
+    work->spots[spot] = (PairView){view.slope_x, view.slope_z, layer_view_hidden(&view, work->mesh, top) >= 0 ? top : NULL};
 }
 
 static void look_at_node(TrimWork *work, int node) {
     VoxelLayer *layer = work->layer;
     work->known[node] = true;
     if (work->coarse && !is_even(node)) return; /* between others */
-    TrimView view = look_along_node(work, node);
+    LayerView view = look_along_node(work, node);
     int kept = work->paired && is_even(node) ? pair_node(node) : -1;
     float *top = room_for_view(work, kept);
-    double hidden = top ? hidden_by_triangles(work, &view, top) : -1;
+    double hidden = top ? layer_view_hidden(&view, work->mesh, top) : -1;
     work->known[node] = hidden >= 0;
     if (kept >= 0) work->pairs[kept] = (PairView){view.slope_x, view.slope_z, top};
     else free(top);
@@ -415,15 +244,15 @@ static bool find_bounds(TrimWork *work) {
 
 /* Without room pairs stay unknown. */
 static void keep_views(TrimWork *work) {
-    work->tops = malloc((PAIR_NODES + SPOT_GROUPS * SPOT_VIEWS) * (size_t)TRIM_PLACES * sizeof *work->tops);
+    work->tops = malloc((PAIR_NODES + SPOT_GROUPS * SPOT_VIEWS) * (size_t)VIEW_PLACES * sizeof *work->tops);
     work->paired = work->tops && is_period(work->layer);
 }
 
 static void compare_views(const TrimWork *work) {
     bool seen = work->tops != NULL;
     for (int i = 0; i < SPOT_GROUPS * SPOT_VIEWS; i++) seen &= work->spots[i].top != NULL;
-    if (seen) voxel_layer_find_spot(work->layer, work->spots, TRIM_GRID);
-    if (work->paired) voxel_layer_pair(work->layer, work->pairs, TRIM_GRID, (float[2]){work->extent.x, work->extent.z});
+    if (seen) voxel_layer_find_spot(work->layer, work->spots, VIEW_GRID);
+    if (work->paired) voxel_layer_pair(work->layer, work->pairs, VIEW_GRID, (float[2]){work->extent.x, work->extent.z});
 }
 
 /* Voxels that are not much larger than triangles need no factors; of N triangles in a layer they are about so many levels below the coarsest. */

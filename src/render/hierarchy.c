@@ -11,6 +11,7 @@ struct Hierarchy {
     const Cluster *all;
     bool clear; /* something lets light through */
     bool plain; /* no line of sight goes on from anything */
+    VistaPieces pieces;
     double reach; /* from the middle of what is bounded; 0: there is nothing */
 };
 
@@ -239,6 +240,35 @@ static bool commit(RTCDevice device, Cluster *cluster) {
     return ok && rtcGetDeviceError(device) == RTC_ERROR_NONE;
 }
 
+/* ---- what the eye can see ---- */
+
+static bool is_convex(const Item *item) {
+    if (item->body || item->cluster) return false;
+    switch (item->object->kind) {
+    case OBJECT_SPHERE:
+    case OBJECT_BOX: return true;
+    case OBJECT_CYLINDER:
+    case OBJECT_CONE: return !item->object->as.cone.open;
+    default: return false;
+    }
+}
+
+static void add_piece(VistaPieces *pieces, const Item *item, bool convex) {
+    const Box3 box = item_box(item);
+    if (item->hidden >> RAY_SEES & 1) return;
+    bool plane = !item->body && !item->cluster && item->object->kind == OBJECT_PLANE;
+    if (!vec3_is_finite(box.min) || !vec3_is_finite(box.max)) pieces->endless |= !plane;
+    else pieces->items[pieces->count++] = (VistaPiece){box, convex ? hit_object_of(item) + 1 : 0};
+}
+
+static void find_pieces(const Cluster *all, Arena *arena, VistaPieces *out) {
+    out->items = arena_new_array(arena, VistaPiece, all->items.count + all->owners.count + 1);
+    for (size_t i = 0; i < all->items.count; i++) add_piece(out, &all->items.items[i], is_convex(&all->items.items[i]));
+    for (size_t i = 0; i < all->owners.count; i++) add_piece(out, &all->owners.items[i], false);
+}
+
+const VistaPieces *hierarchy_pieces(const Hierarchy *h) { return &h->pieces; }
+
 Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags) {
     Hierarchy *h = arena_new(arena, Hierarchy);
     clusters_build(scene, arena, diags, &h->set);
@@ -251,6 +281,7 @@ Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags) {
         h->clear |= look && !look->opaque;
         h->plain &= !look || look->plain;
     }
+    find_pieces(h->all, arena, &h->pieces);
     /* From here on nothing is taken from the arena: if memory ran out, the device would be lost. */
     h->device = rtcNewDevice("threads=1,set_affinity=0");
     if (!h->device) {

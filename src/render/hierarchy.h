@@ -4,6 +4,7 @@
 
 #include "base/diag.h"
 #include "render/look.h"
+#include "render/vista.h"
 #include "scene/scene.h"
 #include "shape/solid.h"
 
@@ -63,6 +64,8 @@ bool hierarchy_is_clear(const Hierarchy *hierarchy);
 bool hierarchy_is_plain(const Hierarchy *hierarchy);
 /* Adds what functions have cost rays so far. */
 void hierarchy_work(const Hierarchy *hierarchy, SolidWork *sum);
+/* What the eye can see, for vista_of(); `object` as SurfaceHit has it, plus 1. */
+const VistaPieces *hierarchy_pieces(const Hierarchy *hierarchy);
 void *hierarchy_device(const Hierarchy *hierarchy);
 
 /* A box around everything that is drawn, empty if nothing is; false when there is something endless. */

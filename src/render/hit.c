@@ -165,6 +165,8 @@ static void share_parts(const ClusterSet *set, const Found *found, SurfaceHit *o
 
 static uint64_t path_step(uint64_t path, const void *next) { return random_mix(path ^ (uintptr_t)next); }
 
+uint32_t hit_object_of(const Item *item) { return (uint32_t)path_step(path_step(0, item), item->object); }
+
 /* Parts that are drawn once have numbers of their own; parts of sets and of copies get larger ones, of their way there. */
 static uint32_t part_number(const Found *found) {
     enum { HASHES = 1 << 23 };

@@ -20,6 +20,9 @@ typedef struct Found {
 /* `places`: with space and uv even where the look is the same everywhere. */
 void hit_finish(const ClusterSet *set, Found *found, const Ray *ray, bool places, SurfaceHit *out);
 
+/* What SurfaceHit.object is of an item of the outermost cluster, not a set, copy or triangles. */
+uint32_t hit_object_of(const Item *item);
+
 /* Where the inside of what has an interior is looked for: a cluster, seen through copies. */
 typedef struct InsideSearch {
     const Cluster *cluster;

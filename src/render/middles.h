@@ -11,6 +11,7 @@ typedef struct Middle {
     Vec3f normal;    /* of the surface, */
     uint32_t object; /* and its number, from 1; 0: none */
     bool refinable;  /* the pixel's error can be that of edges */
+    float doubt;     /* of light that was guessed: squared error to be expected */
 } Middle;
 
 typedef struct Middles Middles;

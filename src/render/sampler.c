@@ -1,5 +1,8 @@
 #include "render/sampler.h"
 
+#include "render/candidates.h"
+#include "render/guess.h"
+
 #include <string.h>
 
 /* A tile and the pixels around it, whose first samples tell what differs across its border. */
@@ -17,6 +20,9 @@ static const double HALVES_TO_ERROR = 0.2;
 static const double CAUTION = 2.4;
 /* Samples at edges share the light of the middles around, of two at least, that see as smooth a part of the same surface and agree. */
 static const double SAME_NORMAL = 0.98, NEAREST = 0.05;
+/* Middles are guessed where this is found to be no further off than so many times the error that is accepted, unless the guesses take
+ * more than this part of it. */
+static const double ALIKE = 1, GUESSES_MAY = 0.25;
 /* What is known of a law by itself counts as much as so many pixels. */
 static const double PRIOR = 4;
 /* Contrasts are learned apart by their powers of four. */
@@ -28,14 +34,16 @@ typedef struct Cell {
     Vec3f shown, late; /* sums of clamped light: of all samples, of the last half */
     float squares;     /* of its channels */
     Vec3f mean;        /* of `shown` */
+    int class;         /* of the contrast: contrast_class() */
     float contrast;    /* of the first sample with those around: squared error to be expected of it */
     int count, late_count;
     bool refinable;
-    uint32_t object;   /* that the middle sees, from 1; 0: none */
-    Vec3f normal;      /* of it */
-    Radiance middle;   /* the first sample, */
-    Vec3f first;       /* clamped */
-    double error;      /* expected squared error now */
+    float doubt;     /* squared error to be expected of the first sample by itself */
+    uint32_t object; /* that the middle sees, from 1; 0: none */
+    Vec3f normal;    /* of it */
+    Radiance middle; /* the first sample, */
+    Vec3f first;     /* clamped */
+    double error;    /* expected squared error now */
 } Cell;
 
 /* A ratio that is learned: of what came out to what was expected. */
@@ -44,24 +52,18 @@ typedef struct Learned {
     int count;
 } Learned;
 
-/* The pixel to be refined next: a heap, the largest gain on top. What has changed since it was pushed is pushed again. */
-typedef struct Candidate {
-    double gain;
-    int cell;
-} Candidate;
-
 struct Sampler {
     const CompiledScene *compiled;
     SamplePlan plan;
-    Middles *middles; /* or NULL */
+    Middles *middles;                  /* or NULL */
+    Middle own[FILM_TILE * FILM_TILE]; /* of the tile, where none are shared */
     Tracer tracer;
     Cell cells[CELLS];
     bool shares;  /* light is a matter of the surface alone: neither skins nor a lens */
     AovSum *aovs; /* of the tile without what is around it; NULL: not wanted */
     int x0, y0, columns, rows;
     Learned contrasts[CONTRASTS], levels[LEVELS];
-    Candidate heap[4 * CELLS];
-    int heap_count;
+    CandidateHeap heap;
     SamplerTally tally;
 };
 
@@ -69,7 +71,8 @@ Sampler *sampler_create(const CompiledScene *compiled, const SamplePlan *plan, A
     Sampler *sp = arena_new(arena, Sampler);
     sp->compiled = compiled;
     sp->plan = *plan;
-    sp->shares = compiled->skin_count == 0 && !compiled->volumes && !compiled->scene->has_media && !view_has_lens(&compiled->view) && !plan->fixed;
+    sp->shares = compiled->skin_count == 0 && !compiled->volumes && !compiled->scene->has_media &&
+                 !view_has_lens(&compiled->view) && !plan->fixed;
     tracer_init(&sp->tracer, compiled, arena);
     return sp;
 }
@@ -90,17 +93,21 @@ static bool stopped(const Sampler *sp) { return sp->plan.interrupted && *sp->pla
 /* `places`: also where on the surface, whatever it looks like. */
 static bool find_surface(const CompiledScene *compiled, const Cone *cone, bool places, SurfaceHit *hit) {
     Ray ray = {cone->origin, cone->direction};
-    return hierarchy_meet_wide(compiled->hierarchy, RAY_SEES, &ray, cone_width(cone), 1e-9, VTS_INFINITY, places, hit);
+    return hierarchy_meet_wide(compiled->hierarchy, RAY_SEES, &ray, cone_width(cone), 1e-9, VTS_INFINITY,
+                               places, hit);
 }
 
 /* Whether explicit surfaces look the same all over the pixel: same part, much the same direction and depth. */
 static bool alike(const SurfaceHit *a, const SurfaceHit *b) {
-    return a->object == b->object && vec3_dot(a->normal, b->normal) > 0.95 && fabs(a->t - b->t) < 0.05 * (a->t + b->t);
+    return a->object == b->object && vec3_dot(a->normal, b->normal) > 0.95 &&
+           fabs(a->t - b->t) < 0.05 * (a->t + b->t);
 }
 
-static bool surfaces_vary(const CompiledScene *compiled, double x, double y, bool found, const SurfaceHit *hit) {
+static bool surfaces_vary(const CompiledScene *compiled, double x, double y, bool found,
+                          const SurfaceHit *hit) {
     for (int corner = 0; corner < 4; corner++) {
-        Cone probe = view_cone(&compiled->view, x + (corner & 1 ? 0.499 : -0.499), y + (corner & 2 ? 0.499 : -0.499), 1);
+        Cone probe = view_cone(&compiled->view, x + (corner & 1 ? 0.499 : -0.499),
+                               y + (corner & 2 ? 0.499 : -0.499), 1);
         SurfaceHit other;
         bool other_found = find_surface(compiled, &probe, false, &other);
         if (other_found != found || (found && !alike(hit, &other))) return true;
@@ -139,15 +146,18 @@ static void share_middle(Shared *shared, const Cell *cell, double dx, double dy)
     float weight = (float)(1 / (dx * dx + dy * dy + NEAREST));
     Vec3f light = shown(cell->middle.color);
     if (shared->count++ == 0) shared->least = shared->most = light;
-    shared->least = vec3f(float_min(shared->least.x, light.x), float_min(shared->least.y, light.y), float_min(shared->least.z, light.z));
-    shared->most = vec3f(float_max(shared->most.x, light.x), float_max(shared->most.y, light.y), float_max(shared->most.z, light.z));
+    shared->least = vec3f(float_min(shared->least.x, light.x), float_min(shared->least.y, light.y),
+                          float_min(shared->least.z, light.z));
+    shared->most = vec3f(float_max(shared->most.x, light.x), float_max(shared->most.y, light.y),
+                         float_max(shared->most.z, light.z));
     shared->color = vec3f_madd(shared->color, cell->middle.color, weight);
     shared->alpha += cell->middle.alpha * weight;
     shared->weight += weight;
 }
 
 /* The light of a further sample of a cell, at (x, y) of its pixel, as the middles around have it; false where they do not tell. */
-static bool share_light(const Sampler *sp, const Cell *cell, double x, double y, const SurfaceHit *hit, Radiance *out) {
+static bool share_light(const Sampler *sp, const Cell *cell, double x, double y, const SurfaceHit *hit,
+                        Radiance *out) {
     uint32_t object = hit ? hit->object + 1 : 0;
     Vec3f normal = hit ? vec3f_from(hit->normal) : vec3f(0, 0, 0);
     Shared shared = {.count = 0};
@@ -155,11 +165,13 @@ static bool share_light(const Sampler *sp, const Cell *cell, double x, double y,
     for (int row = -1; row <= 1; row++)
         for (int column = -1; column <= 1; column++) {
             const Cell *other = cell + row * EDGE + column;
-            if (other->object != object || (hit && (double)vec3f_dot(other->normal, normal) < SAME_NORMAL)) continue;
+            if (other->object != object || (hit && (double)vec3f_dot(other->normal, normal) < SAME_NORMAL))
+                continue;
             share_middle(&shared, other, x - 0.5 - column, y - 0.5 - row);
         }
     Vec3f range = vec3f_sub(shared.most, shared.least);
-    if (shared.count < 2 || (double)float_max(range.x, float_max(range.y, range.z)) > sp->plan.max_error) return false;
+    if (shared.count < 2 || (double)float_max(range.x, float_max(range.y, range.z)) > sp->plan.max_error)
+        return false;
     *out = (Radiance){vec3f_scale(shared.color, 1 / shared.weight), shared.alpha / shared.weight};
     return true;
 }
@@ -177,15 +189,23 @@ typedef struct Sighting {
     Radiance seen;
 } Sighting;
 
-/* `cell`: with what is known of the pixel and those around, where that may do; or NULL. */
-static void see(Sampler *sp, const Aim *aim, const Cell *cell, Sighting *out) {
+/* The light as it is known from others: of a further sample of a `cell`, of a first one by a `guess`; either may be NULL. */
+static bool known_light(const Sampler *sp, const Aim *aim, const Cell *cell, const Guess *guess,
+                        const SurfaceHit *hit, Radiance *out) {
+    if (cell) return share_light(sp, cell, aim->x, aim->y, hit, out);
+    return guess &&
+           guess_light(guess, hit ? hit->object + 1 : 0, hit ? vec3f_from(hit->normal) : vec3f(0, 0, 0), out);
+}
+
+static void see(Sampler *sp, const Aim *aim, const Cell *cell, const Guess *guess, Sighting *out) {
     Tracer *tracer = &sp->tracer;
     Cone cone;
     uint64_t pixel = random_hash((uint64_t)aim->px, (uint64_t)aim->py, sp->plan.seed, 0);
     tracer->draw = (Draw){pixel, (uint32_t)aim->number};
     tracer->seed = aim->number ? random_mix(pixel + (uint64_t)aim->number) : pixel;
     tracer->part = aim->width * aim->width;
-    bool ray = view_sample(&sp->compiled->view, &tracer->draw, aim->px + aim->x, aim->py + aim->y, aim->width, &cone);
+    bool ray = view_sample(&sp->compiled->view, &tracer->draw, aim->px + aim->x, aim->py + aim->y, aim->width,
+                           &cone);
     AovSum *aovs = aovs_of(sp, aim->px, aim->py);
     MatterAov matter = {.share = 0};
     tracer->matter = aovs ? &matter : NULL;
@@ -193,8 +213,10 @@ static void see(Sampler *sp, const Aim *aim, const Cell *cell, Sighting *out) {
     out->reaching = 1;
     out->seen = (Radiance){{0, 0, 0}, 0};
     const SurfaceHit *hit = out->found ? &out->hit : NULL;
-    if (cell && ray && share_light(sp, cell, aim->x, aim->y, hit, &out->seen)) tracer->counters.camera_rays++;
-    else if (ray) out->seen = trace_cone(tracer, &cone, hit, &out->reaching);
+    if (ray && known_light(sp, aim, cell, guess, hit, &out->seen))
+        tracer->counters.camera_rays++;
+    else if (ray)
+        out->seen = trace_cone(tracer, &cone, hit, &out->reaching);
     if (!aovs) return;
     AovSample surface = hit ? aov_of_surface(&cone, hit, out->reaching) : (AovSample){.share = 0};
     AovSample voxels = matter_sum_end(&matter, &cone);
@@ -215,25 +237,34 @@ static void add_light(Cell *cell, const Radiance *seen) {
 }
 
 /* The first sample, by which it is found whether the pixel's error can be that of edges. */
-static void see_first(Sampler *sp, const Aim *aim, Middle *out) {
+static void see_first(Sampler *sp, const Aim *aim, const Guess *guess, Middle *out) {
     Sighting s;
-    see(sp, aim, NULL, &s);
+    see(sp, aim, NULL, guess, &s);
     out->seen = s.seen;
     out->object = s.found ? s.hit.object + 1 : 0;
     out->normal = s.found ? vec3f_from(s.hit.normal) : vec3f(0, 0, 0);
     out->refinable = view_has_lens(&sp->compiled->view) || s.reaching >= ALL_EXPLICIT ||
-                     (s.reaching >= EDGE_WORTH && surfaces_vary(sp->compiled, aim->px + aim->x, aim->py + aim->y, s.found, &s.hit));
+                     (s.reaching >= EDGE_WORTH &&
+                      surfaces_vary(sp->compiled, aim->px + aim->x, aim->py + aim->y, s.found, &s.hit));
 }
 
 static void begin_cell(Cell *cell, const Middle *m) {
     Vec3f light = shown(m->seen.color);
-    *cell = (Cell){.first = light, .middle = m->seen, .object = m->object, .normal = m->normal, .refinable = m->refinable};
+    *cell = (Cell){.first = light,
+                   .middle = m->seen,
+                   .object = m->object,
+                   .normal = m->normal,
+                   .refinable = m->refinable,
+                   .doubt = m->doubt};
     add_light(cell, &m->seen);
     cell->mean = light;
 }
 
 /* The first sample of each pixel lies in its middle: of light that changes evenly it is the mean. */
-static void see_middle(Sampler *sp, int px, int py, Middle *out) { see_first(sp, &(Aim){px, py, 0, 0.5, 0.5, 1}, out); }
+static void see_middle(Sampler *sp, int px, int py, const Guess *guess, Middle *out) {
+    out->doubt = 0;
+    see_first(sp, &(Aim){px, py, 0, 0.5, 0.5, 1}, guess, out);
+}
 
 static void place_of(const Sampler *sp, int cell, int *px, int *py) {
     *px = sp->x0 + cell % EDGE - 1;
@@ -243,12 +274,13 @@ static void place_of(const Sampler *sp, int cell, int *px, int *py) {
 static void add_sample(Sampler *sp, Cell *cell, const Aim *aim) {
     if (cell->count == 0) {
         Middle first;
-        see_first(sp, aim, &first);
+        see_first(sp, aim, NULL, &first);
+        first.doubt = 0;
         begin_cell(cell, &first);
         return;
     }
     Sighting s;
-    see(sp, aim, cell, &s);
+    see(sp, aim, cell, NULL, &s);
     add_light(cell, &s.seen);
 }
 
@@ -299,25 +331,27 @@ static double learned_ratio(const Learned *learned, double before) {
 
 /* Of what is expected of a first sample, the part that was found where the contrast was as large, or next larger. */
 static void contrast_ratios(const Sampler *sp, int classes, double ratios[CONTRASTS]) {
-    for (int class = 0; class < classes; class++) ratios[class] = learned_ratio(&sp->contrasts[class], class ? ratios[class - 1] : 1);
+    for (int class = 0; class < classes; class ++)
+        ratios[class] = learned_ratio(&sp->contrasts[class], class ? ratios[class - 1] : 1);
 }
 
-static double contrast_ratio(const Sampler *sp, double contrast) {
-    double ratios[CONTRASTS];
-    int class = contrast_class(contrast);
-    contrast_ratios(sp, class + 1, ratios);
-    return ratios[class];
+static void set_contrast(Cell *cell, float contrast) {
+    cell->contrast = contrast;
+    cell->class = contrast_class((double)contrast);
 }
 
 static double variance(const Cell *cell) {
-    double n = cell->count, squares = (double)cell->squares / n, mean = (double)vec3f_dot(cell->mean, cell->mean);
+    double n = cell->count, squares = (double)cell->squares / n,
+           mean = (double)vec3f_dot(cell->mean, cell->mean);
     double found = fmax(squares - mean, 0) * n / (n - 1) / 3;
     /* Few samples may have missed what the neighbours show. */
     return found + (double)cell->contrast / (n * n);
 }
 
 /* By so many: of pixels with one sample, of those with more. */
-static double error_of_first(const Cell *cell, double ratio) { return CAUTION * (double)cell->contrast * ratio; }
+static double error_of_first(const Cell *cell, double ratio) {
+    return CAUTION * (double)cell->contrast * ratio + (double)cell->doubt;
+}
 static double error_of_many(const Sampler *sp, const Cell *cell) {
     double ratio = learned_ratio(&sp->levels[level_of(cell->count)], EDGE_GAIN * sqrt(5.0 / cell->count));
     return CAUTION * variance(cell) * ratio / cell->count;
@@ -326,13 +360,16 @@ static double error_of_many(const Sampler *sp, const Cell *cell) {
 static double expected_error(const Sampler *sp, const Cell *cell) {
     if (!cell->refinable) return 0;
     if (cell->count > 1) return error_of_many(sp, cell);
-    return error_of_first(cell, contrast_ratio(sp, (double)cell->contrast));
+    double ratios[CONTRASTS];
+    contrast_ratios(sp, cell->class + 1, ratios);
+    return error_of_first(cell, ratios[cell->class]);
 }
 
 static double halves_error(const Cell *cell) {
     int early = cell->count - cell->late_count;
     if (early < 1 || cell->late_count < 1) return 0;
-    Vec3f a = vec3f_scale(cell->late, 1 / (float)cell->late_count), b = vec3f_scale(vec3f_sub(cell->shown, cell->late), 1 / (float)early);
+    Vec3f a = vec3f_scale(cell->late, 1 / (float)cell->late_count),
+          b = vec3f_scale(vec3f_sub(cell->shown, cell->late), 1 / (float)early);
     return HALVES_TO_ERROR * (double)mean_square(vec3f_sub(a, b));
 }
 
@@ -362,35 +399,11 @@ static float contrast_of(const Sampler *sp, int index) {
     float most = 0;
     if (is_even(sp, index)) return 0;
     for (int k = 0; k < 4; k++) {
-        Vec3f after = vec3f_sub(sp->cells[index + across[k]].mean, here), before = vec3f_sub(here, sp->cells[index - across[k]].mean);
+        Vec3f after = vec3f_sub(sp->cells[index + across[k]].mean, here),
+              before = vec3f_sub(here, sp->cells[index - across[k]].mean);
         most = float_max(most, mean_square(vec3f_sub(after, before)) * step_like(before, after));
     }
     return most * (float)(STEP_TO_ERROR * STEP_TO_ERROR / 4);
-}
-
-/* ---- the heap ---- */
-
-static void swap_candidates(Candidate *a, Candidate *b) {
-    Candidate c = *a;
-    *a = *b, *b = c;
-}
-
-static void heap_push(Sampler *sp, int cell, double gain) {
-    if (sp->heap_count == (int)VTS_ARRAY_COUNT(sp->heap)) return;
-    int i = sp->heap_count++;
-    sp->heap[i] = (Candidate){gain, cell};
-    for (; i > 0 && sp->heap[i].gain > sp->heap[(i - 1) / 2].gain; i = (i - 1) / 2) swap_candidates(&sp->heap[i], &sp->heap[(i - 1) / 2]);
-}
-
-static Candidate heap_pop(Sampler *sp) {
-    Candidate top = sp->heap[0];
-    sp->heap[0] = sp->heap[--sp->heap_count];
-    for (int i = 0, child; (child = 2 * i + 1) < sp->heap_count; i = child) {
-        if (child + 1 < sp->heap_count && sp->heap[child + 1].gain > sp->heap[child].gain) child++;
-        if (sp->heap[i].gain >= sp->heap[child].gain) break;
-        swap_candidates(&sp->heap[i], &sp->heap[child]);
-    }
-    return top;
 }
 
 /* ---- a tile ---- */
@@ -399,20 +412,26 @@ static int next_count(int count) { return count == 1 ? 5 : 2 * count - 1; }
 
 static double gain_of(const Cell *cell) { return cell->error / (next_count(cell->count) - cell->count); }
 
-static bool can_refine(const Sampler *sp, const Cell *cell) { return cell->refinable && next_count(cell->count) <= sp->plan.most + 1; }
+static bool can_refine(const Sampler *sp, const Cell *cell) {
+    return cell->refinable && next_count(cell->count) <= sp->plan.most + 1;
+}
 
 /* Values every pixel of the tile anew, by what has been learned. Returns the sum of its errors. */
 static double value_all(Sampler *sp) {
     double sum = 0, ratios[CONTRASTS];
-    sp->heap_count = 0;
+    sp->heap.count = 0;
     contrast_ratios(sp, CONTRASTS, ratios);
     for (int row = 1; row <= sp->rows; row++)
         for (int column = 1; column <= sp->columns; column++) {
             Cell *cell = &sp->cells[row * EDGE + column];
-            if (!cell->refinable || (cell->count == 1 && cell->contrast == 0)) cell->error = 0;
-            else cell->error = cell->count > 1 ? error_of_many(sp, cell) : error_of_first(cell, ratios[contrast_class((double)cell->contrast)]);
+            if (!cell->refinable || (cell->count == 1 && cell->contrast == 0 && cell->doubt == 0))
+                cell->error = 0;
+            else
+                cell->error =
+                    cell->count > 1 ? error_of_many(sp, cell) : error_of_first(cell, ratios[cell->class]);
             sum += cell->error;
-            if (cell->error > 0 && can_refine(sp, cell)) heap_push(sp, row * EDGE + column, gain_of(cell));
+            if (cell->error > 0 && can_refine(sp, cell))
+                candidates_push(&sp->heap, row * EDGE + column, gain_of(cell));
         }
     return sum;
 }
@@ -422,7 +441,9 @@ static void refine(Sampler *sp, int index) {
     Cell *cell = &sp->cells[index];
     int before = cell->count;
     see_more(sp, index, next_count(before));
-    if (before == 1) learn(&sp->contrasts[contrast_class((double)cell->contrast)], (double)cell->contrast, (double)mean_square(vec3f_sub(cell->first, cell->mean)));
+    if (before == 1)
+        learn(&sp->contrasts[cell->class], (double)cell->contrast,
+              (double)mean_square(vec3f_sub(cell->first, cell->mean)));
     learn(&sp->levels[level_of(cell->count)], variance(cell) / cell->count, halves_error(cell));
 }
 
@@ -433,14 +454,16 @@ static double look_around(Sampler *sp, int index) {
     for (int k = 0; k < 8; k++) {
         int other = index + around[k], row = other / EDGE, column = other % EDGE;
         Cell *cell = &sp->cells[other];
-        if (row < 1 || row > sp->rows || column < 1 || column > sp->columns || cell->count != 1 || !cell->refinable) continue;
+        if (row < 1 || row > sp->rows || column < 1 || column > sp->columns || cell->count != 1 ||
+            !cell->refinable)
+            continue;
         float contrast = contrast_of(sp, other);
         if (contrast <= 1.5f * cell->contrast) continue;
-        cell->contrast = contrast;
+        set_contrast(cell, contrast);
         change -= cell->error;
         cell->error = expected_error(sp, cell);
         change += cell->error;
-        heap_push(sp, other, gain_of(cell));
+        candidates_push(&sp->heap, other, gain_of(cell));
     }
     return change;
 }
@@ -449,8 +472,8 @@ static double look_around(Sampler *sp, int index) {
 static double refine_all(Sampler *sp) {
     enum { REVALUE = 64 };
     double accepted = sp->plan.max_error * sp->plan.max_error * sp->columns * sp->rows, sum = value_all(sp);
-    for (int done = 1; sum > accepted && sp->heap_count && !stopped(sp); done++) {
-        Candidate best = heap_pop(sp);
+    for (int done = 1; sum > accepted && sp->heap.count && !stopped(sp); done++) {
+        Candidate best = candidates_pop(&sp->heap);
         Cell *cell = &sp->cells[best.cell];
         if (best.gain != gain_of(cell) || !can_refine(sp, cell)) continue;
         refine(sp, best.cell);
@@ -458,30 +481,73 @@ static double refine_all(Sampler *sp) {
         cell->error = expected_error(sp, cell);
         sum += cell->error - before;
         sum += look_around(sp, best.cell);
-        if (can_refine(sp, cell)) heap_push(sp, best.cell, gain_of(cell));
+        if (can_refine(sp, cell)) candidates_push(&sp->heap, best.cell, gain_of(cell));
         if (done % REVALUE == 0 || sum <= accepted) sum = value_all(sp);
     }
     return value_all(sp);
+}
+
+/* A tile whose middles are wanted. */
+typedef struct SharedSight {
+    Sampler *sampler;
+    int x0, y0;
+    Vista vista;
+} SharedSight;
+
+/* Lines of sight through the middles of four pixels of the tile. */
+static void sight_corners(const SharedSight *sight, int x0, int y0, int x1, int y1, Ray out[4]) {
+    for (int k = 0; k < 4; k++) {
+        double x = sight->x0 + (k & 1 ? x1 : x0) + 0.5, y = sight->y0 + (k & 2 ? y1 : y0) + 0.5;
+        Cone cone = view_cone(&sight->sampler->compiled->view, x, y, 1);
+        out[k] = (Ray){cone.origin, cone.direction};
+    }
+}
+
+static bool even_in_tile(void *context, int x0, int y0, int x1, int y1, uint32_t object) {
+    const SharedSight *sight = context;
+    Ray corners[4];
+    sight_corners(sight, x0, y0, x1, y1, corners);
+    return vista_is_even(&sight->vista, corners, object);
+}
+
+/* Lines of sight between others are between them in space, too; and whoever wants more than light looks at everything. */
+static bool has_vistas(const Sampler *sp) {
+    return sp->shares && !sp->aovs && view_is_flat(&sp->compiled->view);
+}
+
+static void see_of_tile(void *context, int x, int y, const Guess *guess, Middle *out) {
+    const SharedSight *sight = context;
+    if (stopped(sight->sampler))
+        *out = (Middle){.object = 0};
+    else
+        see_middle(sight->sampler, sight->x0 + x, sight->y0 + y, guess, out);
 }
 
 /* All of a tile, for whoever needs them. */
 static void see_shared(void *context, int tile_x, int tile_y, Middle *rows) {
     Sampler *sp = context;
     const View *view = &sp->compiled->view;
-    int x0 = tile_x * FILM_TILE, y0 = tile_y * FILM_TILE;
-    for (int y = 0; y < FILM_TILE && y0 + y < view->height; y++)
-        for (int x = 0; x < FILM_TILE && x0 + x < view->width; x++) {
-            Middle *m = &rows[y * FILM_TILE + x];
-            if (stopped(sp)) *m = (Middle){.object = 0};
-            else see_middle(sp, x0 + x, y0 + y, m);
-        }
+    SharedSight shared = {.sampler = sp, .x0 = tile_x * FILM_TILE, .y0 = tile_y * FILM_TILE};
+    const int columns = int_min(FILM_TILE, view->width - shared.x0),
+              row_count = int_min(FILM_TILE, view->height - shared.y0);
+    const double error = sp->shares ? sp->plan.max_error : 0;
+    bool vistas = has_vistas(sp);
+    if (vistas) {
+        Ray corners[4];
+        sight_corners(&shared, 0, 0, columns - 1, row_count - 1, corners);
+        shared.vista = vista_of(hierarchy_pieces(sp->compiled->hierarchy), corners);
+    }
+    const GuessSight sight = {see_of_tile, vistas ? even_in_tile : NULL, &shared, ALIKE * error,
+                              GUESSES_MAY * error * error};
+    guess_tile(&sight, columns, row_count, rows);
 }
 
 /* Those of the tile and of the tiles around; NULL where each looks for itself. First what nobody sees yet, then what others do. */
 static void ask_around(Sampler *sp, const Middle *shared[9]) {
     int x = sp->x0 / FILM_TILE, y = sp->y0 / FILM_TILE;
     for (int wait = 0; wait < 2; wait++)
-        for (int k = 0; k < 9; k++) shared[k] = middles_ask(sp->middles, x + k % 3 - 1, y + k / 3 - 1, wait, see_shared, sp);
+        for (int k = 0; k < 9; k++)
+            shared[k] = middles_ask(sp->middles, x + k % 3 - 1, y + k / 3 - 1, wait, see_shared, sp);
 }
 
 /* Number of the pixel's tile among those around, of which the tile in question is the fourth; and of the pixel in it. */
@@ -495,25 +561,32 @@ static void see_middles(Sampler *sp) {
     const View *view = &sp->compiled->view;
     const Middle *shared[9];
     ask_around(sp, shared);
+    if (!shared[4]) {
+        see_shared(sp, sp->x0 / FILM_TILE, sp->y0 / FILM_TILE, sp->own);
+        shared[4] = sp->own;
+    }
     for (int row = 0; row <= sp->rows + 1; row++)
         for (int column = 0; column <= sp->columns + 1 && !stopped(sp); column++) {
             int px = sp->x0 + column - 1, py = sp->y0 + row - 1;
             if (px < 0 || py < 0 || px >= view->width || py >= view->height) continue;
             Middle own;
             const Middle *m = shared_middle(sp, shared, px, py);
-            if (!m) see_middle(sp, px, py, &own);
+            if (!m) see_middle(sp, px, py, NULL, &own);
             begin_cell(&sp->cells[row * EDGE + column], m ? m : &own);
         }
     middles_leave(sp->middles, sp->x0 / FILM_TILE, sp->y0 / FILM_TILE);
-    bool at_border = sp->x0 == 0 || sp->y0 == 0 || sp->x0 + sp->columns == view->width || sp->y0 + sp->rows == view->height;
+    bool at_border = sp->x0 == 0 || sp->y0 == 0 || sp->x0 + sp->columns == view->width ||
+                     sp->y0 + sp->rows == view->height;
     /* Beyond the picture's border lies what lies along it. */
     for (int row = 0; at_border && row <= sp->rows + 1; row++)
         for (int column = 0; column <= sp->columns + 1; column++) {
-            int x = int_clamp(sp->x0 + column - 1, 0, view->width - 1) - sp->x0 + 1, y = int_clamp(sp->y0 + row - 1, 0, view->height - 1) - sp->y0 + 1;
+            int x = int_clamp(sp->x0 + column - 1, 0, view->width - 1) - sp->x0 + 1,
+                y = int_clamp(sp->y0 + row - 1, 0, view->height - 1) - sp->y0 + 1;
             if (x != column || y != row) sp->cells[row * EDGE + column] = sp->cells[y * EDGE + x];
         }
     for (int row = 1; row <= sp->rows; row++)
-        for (int column = 1; column <= sp->columns; column++) sp->cells[row * EDGE + column].contrast = contrast_of(sp, row * EDGE + column);
+        for (int column = 1; column <= sp->columns; column++)
+            set_contrast(&sp->cells[row * EDGE + column], contrast_of(sp, row * EDGE + column));
 }
 
 static double see_fixed(Sampler *sp) {
@@ -523,7 +596,8 @@ static double see_fixed(Sampler *sp) {
             Cell *cell = &sp->cells[row * EDGE + column];
             *cell = (Cell){.count = 0};
             see_more(sp, row * EDGE + column, sp->plan.fixed);
-            if (cell->count > 1) learn(&sp->levels[level_of(cell->count)], variance(cell) / cell->count, halves_error(cell));
+            if (cell->count > 1)
+                learn(&sp->levels[level_of(cell->count)], variance(cell) / cell->count, halves_error(cell));
         }
     for (int row = 1; row <= sp->rows; row++)
         for (int column = 1; column <= sp->columns; column++) {

@@ -1,0 +1,32 @@
+/* Middles of a tile's pixels where light is not found in each: between middles that agree it is interpolated. What is met there is found
+ * wherever it can be anything else, so that no edge is lost; and the light of a share of those pixels, which tells how wrong the others are. (Adaptive
+ * undersampling: Akimoto, Mase & Suenaga, Pixel-selected ray tracing, 1991; there edges are guessed, too.) */
+#ifndef VTS_RENDER_GUESS_H
+#define VTS_RENDER_GUESS_H
+
+#include "render/middles.h"
+
+/* The middles at the corners of a square, which see the same, and what each counts at a place within. */
+typedef struct Guess {
+    const Middle *corners[4];
+    float weights[4];
+} Guess;
+
+/* The light between the corners; false where something else is met there than at them. `object`, from 1, and `normal` as Middle has them. */
+bool guess_light(const Guess *guess, uint32_t object, Vec3f normal, Radiance *out);
+
+/* How the middle of a pixel of the tile is seen: its light is found when `guess` is NULL, or does not hold there. */
+typedef struct GuessSight {
+    void (*see)(void *context, int x, int y, const Guess *guess, Middle *out);
+    /* Whether between these pixels nothing but `object`, which all four corners see, can be; or NULL. */
+    bool (*even)(void *context, int x0, int y0, int x1, int y1, uint32_t object);
+    void *context;
+    double
+        tolerance; /* of light in [0, 1]: how far the middle of a square may be from what its corners tell; 0: nothing is guessed */
+    double accepted; /* squared error of light that was guessed */
+} GuessSight;
+
+/* The middles of `columns` × `rows` pixels, at most FILM_TILE each way, in rows of FILM_TILE. Those at the tile's border are never guessed. */
+void guess_tile(const GuessSight *sight, int columns, int rows, Middle *out);
+
+#endif

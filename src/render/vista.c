@@ -1,0 +1,69 @@
+#include "render/vista.h"
+
+/* What is seen of more pieces than this is looked at. */
+enum { MOST_PIECES = 4096 };
+
+/* The four planes that hold neighbouring corners; normals point inwards. */
+typedef struct Shaft {
+    Vec3 normals[4], origins[4];
+} Shaft;
+
+static Vec3 along(const Ray *ray) { return vec3_add(ray->origin, ray->direction); }
+
+static bool shaft_of(const Ray corners[4], Shaft *shaft) {
+    static const int around[] = {0, 1, 3, 2};
+    for (int k = 0; k < 4; k++) {
+        const Ray *a = &corners[around[k]], *b = &corners[around[(k + 1) % 4]],
+                  *opposite = &corners[around[(k + 2) % 4]];
+        Vec3 n = vec3_cross(a->direction, vec3_sub(along(b), along(a)));
+        double inwards = vec3_dot(n, vec3_sub(along(opposite), a->origin));
+        if (!(fabs(inwards) > 0)) return false;
+        shaft->normals[k] = inwards > 0 ? n : vec3_negate(n);
+        shaft->origins[k] = a->origin;
+    }
+    return true;
+}
+
+/* Boxes count as slightly larger than they are, for rounding. */
+static bool may_touch(const Shaft *shaft, const Box3 *box) {
+    Vec3 middle = vec3_lerp(box->min, box->max, 0.5), half = vec3_scale(vec3_sub(box->max, box->min), 0.5);
+    for (int k = 0; k < 4; k++) {
+        Vec3 n = shaft->normals[k], away = vec3_sub(middle, shaft->origins[k]);
+        double reach = fabs(n.x) * (half.x + 1e-7 * fabs(away.x)) +
+                       fabs(n.y) * (half.y + 1e-7 * fabs(away.y)) +
+                       fabs(n.z) * (half.z + 1e-7 * fabs(away.z));
+        if (vec3_dot(n, away) < -(1 + 1e-7) * reach) return false;
+    }
+    return true;
+}
+
+static bool holds(const Box3 *b, Vec3 p) {
+    return p.x >= b->min.x && p.x <= b->max.x && p.y >= b->min.y && p.y <= b->max.y && p.z >= b->min.z &&
+           p.z <= b->max.z;
+}
+
+Vista vista_of(const VistaPieces *pieces, const Ray corners[4]) {
+    Vista vista = {.count = 0};
+    Shaft shaft;
+    if (pieces->endless || pieces->count > MOST_PIECES || !shaft_of(corners, &shaft))
+        return (Vista){.count = VISTA_MOST + 1};
+    for (size_t i = 0; i < pieces->count && vista.count <= VISTA_MOST; i++) {
+        if (!may_touch(&shaft, &pieces->items[i].box)) continue;
+        if (vista.count < VISTA_MOST) vista.near[vista.count] = &pieces->items[i];
+        vista.count++;
+    }
+    return vista;
+}
+
+/* Of what is convex the points that the corners meet span a part, which is seen between them; planes that are behind its corners are
+ * behind all of it. From within it is not what is met first. */
+bool vista_is_even(const Vista *vista, const Ray corners[4], uint32_t object) {
+    Shaft shaft;
+    if (vista->count > VISTA_MOST || !shaft_of(corners, &shaft)) return false;
+    for (int i = 0; i < vista->count; i++) {
+        const VistaPiece *piece = vista->near[i];
+        if (!may_touch(&shaft, &piece->box)) continue;
+        if (!piece->object || piece->object != object || holds(&piece->box, corners[0].origin)) return false;
+    }
+    return true;
+}

@@ -1,0 +1,35 @@
+/* Where in a picture only one thing can be seen, so that nobody needs to look: between lines of sight that meet the same, when nothing
+ * else is near them. */
+#ifndef VTS_RENDER_VISTA_H
+#define VTS_RENDER_VISTA_H
+
+#include "base/arena.h"
+#include "base/vec.h"
+
+/* A thing that has an end. */
+typedef struct VistaPiece {
+    Box3 box;
+    uint32_t object; /* from 1; of what is not convex, or not known to be: 0 */
+} VistaPiece;
+
+/* All that can be seen, but for planes. */
+typedef struct VistaPieces {
+    VistaPiece *items;
+    size_t count;
+    bool endless; /* there are more that have no end: nothing can be told */
+} VistaPieces;
+
+enum { VISTA_MOST = 16 };
+
+/* Those of the pieces that are near a part of the picture. */
+typedef struct Vista {
+    const VistaPiece *near[VISTA_MOST];
+    int count; /* beyond VISTA_MOST: nothing can be told */
+} Vista;
+
+/* `corners`: lines of sight, unit directions, through one point or parallel, all others of that part are between them; rows of two. */
+Vista vista_of(const VistaPieces *pieces, const Ray corners[4]);
+/* Whether all lines between these, which are of the vista's part and all meet `object` first (0: nothing, or a plane), meet that first. */
+bool vista_is_even(const Vista *vista, const Ray corners[4], uint32_t object);
+
+#endif

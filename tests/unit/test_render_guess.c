@@ -1,0 +1,148 @@
+/* Middles of a tile that are guessed between others. */
+#include "render/guess.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+typedef Middle World(int x, int y); /* what is to be seen there */
+
+typedef struct Watch {
+    World *world;
+    int found, guessed, wrong;
+    bool seen[FILM_TILE][FILM_TILE];
+} Watch;
+
+static void see(void *context, int x, int y, const Guess *guess, Middle *out) {
+    Watch *w = context;
+    *out = w->world(x, y);
+    if (guess && guess_light(guess, out->object, out->normal, &out->seen)) {
+        w->guessed++;
+    } else {
+        w->found++;
+        w->wrong += w->seen[y][x]; /* twice */
+        w->seen[y][x] = true;
+    }
+}
+
+static Middle grey(float light, uint32_t object) {
+    return (Middle){.seen = {{light, light, light}, 1},
+                    .normal = {0, 0, object ? 1 : 0},
+                    .object = object,
+                    .refinable = true};
+}
+
+static double worst(const Watch *w, const Middle *out, int columns, int rows) {
+    double most = 0;
+    for (int y = 0; y < rows; y++)
+        for (int x = 0; x < columns; x++) {
+            Middle truth = w->world(x, y);
+            assert_int_equal(out[y * FILM_TILE + x].object, truth.object);
+            most = fmax(most, fabs((double)(out[y * FILM_TILE + x].seen.color.x - truth.seen.color.x)));
+        }
+    return most;
+}
+
+static Watch look(World *world, double error, int columns, int rows, Middle *out) {
+    Watch w = {.world = world};
+    const GuessSight sight = {see, NULL, &w, error, error * error / 4};
+    guess_tile(&sight, columns, rows, out);
+    assert_int_equal(w.wrong, 0);
+    return w;
+}
+
+static Middle even(int x, int y) { return grey(0.2f + 0.01f * (float)x + 0.005f * (float)y, 1); }
+static Middle curved(int x, int y) {
+    return grey(0.5f + 0.3f * sinf(0.1f * (float)x) * cosf(0.13f * (float)y), 1);
+}
+static Middle edge(int x, int y) { return grey(x + 2 * y < 40 ? 0.1f : 0.7f, 1); }
+static Middle two(int x, int y) { return x * x + y * y < 500 ? grey(0.3f, 1) : grey(0.6f, 2); }
+static Middle thin(int x, int y) {
+    return x == 14 ? grey(0.9f, 2) : grey(0.3f, 1);
+    (void)y;
+}
+static Middle speckled(int x, int y) { return grey((x * 7 + y * 13) % 11 == 0 ? 0.9f : 0.1f, 1); }
+
+static void test_even_light_is_guessed_from_few(void **state) {
+    (void)state;
+    Middle out[FILM_TILE * FILM_TILE];
+    Watch w = look(even, 0.01, FILM_TILE, FILM_TILE, out);
+    assert_true(worst(&w, out, FILM_TILE, FILM_TILE) < 1e-5);
+    assert_in_range(w.found, 1, FILM_TILE * FILM_TILE / 3);
+    assert_int_equal(w.found + w.guessed, FILM_TILE * FILM_TILE);
+}
+
+static void test_curved_light_is_as_exact_as_asked(void **state) {
+    (void)state;
+    Middle out[FILM_TILE * FILM_TILE];
+    int before = 0;
+    for (double error = 0.02; error > 1e-5; error /= 10) {
+        Watch w = look(curved, error, FILM_TILE, FILM_TILE, out);
+        assert_true(worst(&w, out, FILM_TILE, FILM_TILE) < 2 * error);
+        assert_in_range(w.found, before, FILM_TILE * FILM_TILE);
+        before = w.found;
+    }
+}
+
+static void test_edges_of_light_are_found(void **state) {
+    (void)state;
+    Middle out[FILM_TILE * FILM_TILE];
+    Watch w = look(edge, 0.01, FILM_TILE, FILM_TILE, out);
+    assert_true(worst(&w, out, FILM_TILE, FILM_TILE) < 1e-5);
+    assert_true(w.guessed > 0);
+}
+
+static void test_nothing_is_guessed_over_what_else_is_met(void **state) {
+    (void)state;
+    Middle out[FILM_TILE * FILM_TILE];
+    Watch w = look(two, 0.01, FILM_TILE, FILM_TILE, out);
+    assert_true(worst(&w, out, FILM_TILE, FILM_TILE) < 1e-5);
+    w = look(thin, 0.01, FILM_TILE, FILM_TILE, out);
+    assert_true(worst(&w, out, FILM_TILE, FILM_TILE) < 1e-5);
+    assert_true(w.guessed > 0);
+}
+
+/* Specks lie between the corners; the guesses that are tried tell. */
+static void test_guesses_that_are_wrong_are_given_up(void **state) {
+    (void)state;
+    Middle out[FILM_TILE * FILM_TILE];
+    Watch w = look(speckled, 0.004, FILM_TILE, FILM_TILE, out);
+    assert_true(worst(&w, out, FILM_TILE, FILM_TILE) == 0);
+    for (int i = 0; i < FILM_TILE * FILM_TILE; i++) assert_true(out[i].doubt == 0);
+}
+
+static void test_nothing_is_guessed_unless_asked(void **state) {
+    (void)state;
+    Middle out[FILM_TILE * FILM_TILE];
+    Watch w = look(even, 0, FILM_TILE, FILM_TILE, out);
+    assert_int_equal(w.found, FILM_TILE * FILM_TILE);
+    assert_int_equal(w.guessed, 0);
+}
+
+static void test_tiles_of_any_size(void **state) {
+    (void)state;
+    Middle out[FILM_TILE * FILM_TILE];
+    for (int columns = 1; columns <= FILM_TILE; columns++)
+        for (int rows = 1; rows <= FILM_TILE; rows += columns % 3 + 1) {
+            Watch w = look(curved, 0.01, columns, rows, out);
+            assert_true(worst(&w, out, columns, rows) < 0.02);
+            assert_true(w.found + w.guessed >= columns * rows);
+            for (int x = 0; x < columns; x++)
+                assert_true(w.seen[0][x] && w.seen[rows - 1][x]); /* borders are found */
+            for (int y = 0; y < rows; y++) assert_true(w.seen[y][0] && w.seen[y][columns - 1]);
+        }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_even_light_is_guessed_from_few),
+                                       cmocka_unit_test(test_curved_light_is_as_exact_as_asked),
+                                       cmocka_unit_test(test_edges_of_light_are_found),
+                                       cmocka_unit_test(test_nothing_is_guessed_over_what_else_is_met),
+                                       cmocka_unit_test(test_guesses_that_are_wrong_are_given_up),
+                                       cmocka_unit_test(test_nothing_is_guessed_unless_asked),
+                                       cmocka_unit_test(test_tiles_of_any_size)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,111 @@
+/* Parts of a picture in which only one thing can be seen. */
+#include "base/random.h"
+#include "render/vista.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+static Vec3 middle_of(const Box3 *b) { return vec3_lerp(b->min, b->max, 0.5); }
+
+static Ray line_to(Vec3 from, Vec3 to) { return (Ray){from, vec3_normalize(vec3_sub(to, from))}; }
+
+/* From the origin through the corners of a rectangle at z = 1. */
+static void corners_at(double x0, double y0, double x1, double y1, Ray out[4]) {
+    for (int k = 0; k < 4; k++) out[k] = line_to(vec3(0, 0, 0), vec3(k & 1 ? x1 : x0, k & 2 ? y1 : y0, 1));
+}
+
+static Box3 box_at(double x, double y, double z, double half) {
+    return (Box3){vec3(x - half, y - half, z - half), vec3(x + half, y + half, z + half)};
+}
+
+static bool even_with(VistaPiece piece, const Ray corners[4], uint32_t object) {
+    Ray wide[4];
+    corners_at(-1, -1, 1, 1, wide);
+    const VistaPieces pieces = {&piece, 1, false};
+    Vista vista = vista_of(&pieces, wide);
+    return vista_is_even(&vista, corners, object);
+}
+
+static void test_what_is_beside_does_not_count(void **state) {
+    (void)state;
+    Ray corners[4];
+    corners_at(0, 0, 0.1, 0.1, corners);
+    assert_true(even_with((VistaPiece){box_at(5, 0, 10, 1), 0}, corners, 7));
+    assert_true(even_with((VistaPiece){box_at(0.5, -3, 10, 2.9), 0}, corners, 0));
+    assert_true(even_with((VistaPiece){box_at(0, 0, -10, 1), 0}, corners, 0)); /* behind the eye */
+    assert_false(even_with((VistaPiece){box_at(0.5, 0.5, 10, 0.01), 0}, corners, 7));
+    assert_false(even_with((VistaPiece){box_at(1.1, 0.5, 10, 0.2), 0}, corners, 7));
+}
+
+static void test_what_is_convex_hides_what_is_behind(void **state) {
+    (void)state;
+    Ray corners[4];
+    corners_at(0, 0, 0.1, 0.1, corners);
+    assert_true(even_with((VistaPiece){box_at(0.5, 0.5, 10, 2), 7}, corners, 7));
+    assert_false(even_with((VistaPiece){box_at(0.5, 0.5, 10, 2), 8}, corners, 7));
+    assert_false(even_with((VistaPiece){box_at(0.5, 0.5, 10, 2), 0}, corners, 7));
+    assert_false(even_with((VistaPiece){box_at(0, 0, 0, 2), 7}, corners, 7)); /* seen from within */
+}
+
+/* Whatever a line between the corners meets must not be called nothing. */
+static void test_nothing_that_can_be_met_is_left_out(void **state) {
+    (void)state;
+    RandomStream s = {5};
+    int told = 0;
+    for (int n = 0; n < 20000; n++) {
+        double x = random_next_unit(&s) - 0.5, y = random_next_unit(&s) - 0.5,
+               w = 0.2 * random_next_unit(&s) + 1e-3;
+        bool parallel = n % 2;
+        Ray corners[4];
+        corners_at(x, y, x + w, y + w, corners);
+        for (int k = 0; parallel && k < 4; k++)
+            corners[k] = (Ray){vec3(k & 1 ? x + w : x, k & 2 ? y + w : y, 0), vec3(0, 0, 1)};
+        Box3 box = box_at(2 * random_next_unit(&s) - 1, 2 * random_next_unit(&s) - 1,
+                          4 * random_next_unit(&s) - 1, random_next_unit(&s));
+        const VistaPiece piece = {box, 0};
+        const VistaPieces pieces = {(VistaPiece *)&piece, 1, false};
+        Vista vista = vista_of(&pieces, corners);
+        bool even = vista_is_even(&vista, corners, 0);
+        told += even;
+        for (int k = 0; even && k < 16; k++) {
+            double u = x + w * (k % 4) / 3.0, v = y + w * (k / 4) / 3.0,
+                   at = middle_of(&box).z + (k % 3 - 1) * 0.99 * (box.max.z - box.min.z) / 2;
+            double px = parallel ? u : u * at, py = parallel ? v : v * at;
+            bool within = at > 0 && px > box.min.x && px < box.max.x && py > box.min.y && py < box.max.y;
+            assert_false(within);
+        }
+    }
+    assert_in_range(told, 2000, 19000);
+}
+
+static void test_what_cannot_be_told(void **state) {
+    (void)state;
+    Ray corners[4];
+    VistaPiece many[VISTA_MOST + 1];
+    corners_at(0, 0, 0.1, 0.1, corners);
+    VistaPieces pieces = {many, 0, true};
+    Vista vista = vista_of(&pieces, corners);
+    assert_false(vista_is_even(&vista, corners, 0)); /* something has no end */
+    for (int i = 0; i <= VISTA_MOST; i++) many[i] = (VistaPiece){box_at(0.5, 0.5, 10 + i, 0.1), 0};
+    pieces = (VistaPieces){many, VISTA_MOST + 1, false};
+    vista = vista_of(&pieces, corners);
+    assert_false(vista_is_even(&vista, corners, 0));
+    pieces.count = 0;
+    vista = vista_of(&pieces, corners);
+    assert_true(vista_is_even(&vista, corners, 0));
+    for (int k = 0; k < 4; k++) corners[k].direction = vec3(0, 0, 1); /* no width */
+    assert_false(vista_is_even(&vista, corners, 0));
+    corners[1].direction = vec3(NAN, 0, 1);
+    assert_false(vista_is_even(&vista, corners, 0));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_is_beside_does_not_count),
+                                       cmocka_unit_test(test_what_is_convex_hides_what_is_behind),
+                                       cmocka_unit_test(test_nothing_that_can_be_met_is_left_out),
+                                       cmocka_unit_test(test_what_cannot_be_told)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Charts of speed against accuracy: max_error, detail, opacity, ray path, quadrature and filtering for lawn.vts and meadow_ball.vts.
+# Charts of speed against accuracy: max_error, detail, opacity, ray path, quadrature and filtering for tufts.vts and meadow_ball.vts.
 #
 #   bench/chart.sh [folder [path to vts [WxH [rays a pixel of the reference [runs]]]]]
 #
@@ -15,7 +15,7 @@ runs=${5:-3}
 sweep=max_error=8/255,4/255,2/255,1/255
 mkdir -p "$folder"
 
-for scene in lawn meadow_ball; do
+for scene in tufts meadow_ball; do
   pictures=$folder/$scene
   common=("$here/examples/$scene.vts" -s "$size" --repeat "$runs" --keep "$pictures" --progress none)
   if [ -e "$pictures/reference-2.exr" ]; then

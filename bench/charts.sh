@@ -58,7 +58,7 @@ chart() {
 
 errors=max_error=8/255,4/255,2/255,1/255,0.5/255
 charts=bench/charts
-lawn=examples/lawn.vts
+lawn=examples/tufts.vts
 [ -z "$quick" ] || lawn=$charts/grass.vts
 #     name               scene                  what changes
 chart max_error          $lawn                  --sweep $errors --sweep samples=1,4,16,64

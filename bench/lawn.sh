@@ -16,7 +16,7 @@ median() { sort -n | awk '{a[NR] = $1} END {print a[int((NR + 1) / 2)]}'; }
 
 echo "machine: $(nproc) processors, load $(cut -d' ' -f1 /proc/loadavg)"
 for run in $(seq "$runs"); do
-  "$vts" render "$here/examples/lawn.vts" -s 768x576 -o "$work/lawn.png" --report "$work/report.json" --progress none
+  "$vts" render "$here/examples/tufts.vts" -s 768x576 -o "$work/lawn.png" --report "$work/report.json" --progress none
   for name in wall_s cpu_s peak_rss_bytes; do field "$work/report.json" $name >>"$work/$name"; done
   echo "run $run: wall $(tail -n 1 "$work/wall_s") s, cpu $(tail -n 1 "$work/cpu_s") s, $(($(tail -n 1 "$work/peak_rss_bytes") / 1000000)) MB"
 done

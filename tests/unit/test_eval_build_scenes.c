@@ -70,7 +70,7 @@ static size_t count_particles(const Skin *skin) {
 static void test_lawn_has_its_blades_and_flowers(void **state) {
     (void)state;
     Evaluated e;
-    evaluate(&e, VTS_SOURCE_DIR "/examples/lawn.vts");
+    evaluate(&e, VTS_SOURCE_DIR "/examples/tufts.vts");
     assert_int_equal(e.status, EVAL_OK);
     assert_null(e.diags.first);
     assert_int_equal(e.scene->skin_count, 1);
@@ -101,8 +101,8 @@ static void test_other_examples(void **state) {
 static void test_hashes_are_the_same_next_time(void **state) {
     (void)state;
     Evaluated a, b;
-    evaluate(&a, VTS_SOURCE_DIR "/examples/lawn.vts");
-    evaluate(&b, VTS_SOURCE_DIR "/examples/lawn.vts");
+    evaluate(&a, VTS_SOURCE_DIR "/examples/tufts.vts");
+    evaluate(&b, VTS_SOURCE_DIR "/examples/tufts.vts");
     assert_true(hash_equal(a.scene->skins[0]->hash, b.scene->skins[0]->hash));
     assert_true(
         hash_equal(a.scene->skins[0]->texels[0].texel->hash, b.scene->skins[0]->texels[0].texel->hash));

@@ -46,6 +46,9 @@ static BeamPlan noisier(BeamPlan plan, double factor) {
     return plan;
 }
 
+/* So many times the samples that pixels may have on the mean those may have that are hardest: a limit for each alone would make the others do its work. */
+enum { HARDEST = 4 };
+
 static void make_workers(Frame *frame, int workers) {
     const CompiledScene *compiled = frame->compiled;
     const RenderOptions *options = frame->options;
@@ -60,8 +63,9 @@ static void make_workers(Frame *frame, int workers) {
         for (int i = 0; i < workers; i++) frame->beams[i] = beam_tracer_create(compiled, &plan, options->seed, arena);
         return;
     }
-    SamplePlan plan = {.fixed = compiled->skin_count ? 0 : options->samples, .most = options->samples > 0 ? options->samples : compiled->most_samples,
-                       .max_error = compiled->max_error, .seed = options->seed, .interrupted = options->interrupted};
+    bool told = options->samples > 0;
+    SamplePlan plan = {.fixed = compiled->skin_count ? 0 : options->samples, .most = told ? options->samples : HARDEST * compiled->most_samples,
+                       .most_mean = told ? options->samples : compiled->most_samples, .max_error = compiled->max_error, .seed = options->seed, .interrupted = options->interrupted};
     frame->samplers = arena_new_array(arena, Sampler *, (size_t)workers);
     for (int i = 0; i < workers; i++) frame->samplers[i] = sampler_create(compiled, &plan, arena);
 }

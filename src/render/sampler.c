@@ -16,6 +16,10 @@ static const double STEP_TO_ERROR = 0.408;
 static const double EDGE_GAIN = 0.4;
 /* The squared error of a mean from the squared difference of its halves: 1/4 if they were random, less where they are parts of a net. */
 static const double HALVES_TO_ERROR = 0.2;
+/* A net of so many samples or more says more without the middle: its error falls with their power 3/2, and what another would add does not. */
+enum { NET_ALONE = 8, FIRST_NET = 4 };
+/* Samples of a net are so wide, against its mesh: wider ones, which blur what is at a pixel's border, are wrong by more than narrower ones are noisy. */
+static const double SAMPLE_WIDTH = 0.7;
 /* Whoever stops where errors seem to be small stops more often where they only seem so: what was found true of the sum of squares. */
 static const double CAUTION = 2.4;
 /* Samples at edges share the light of the middles around, of two at least, that see as smooth a part of the same surface and agree. */
@@ -30,14 +34,16 @@ enum { CONTRASTS = 8, LEVELS = 9 };
 
 /* What is known of a pixel. Errors and contrasts are those of light that the picture can show. */
 typedef struct Cell {
-    Radiance sum;      /* over its samples */
-    Vec3f shown, late; /* sums of clamped light: of all samples, of the last half */
+    Radiance sum;      /* over the samples of its net */
+    Vec3f shown, late; /* sums of clamped light: of all of these, of the last half */
     float squares;     /* of its channels */
-    Vec3f mean;        /* of `shown` */
+    Vec3f mean;        /* of what counts */
     int class;         /* of the contrast: contrast_class() */
     float contrast;    /* of the first sample with those around: squared error to be expected of it */
-    int count, late_count;
+    int net, late_count;
+    bool centred;          /* there is a sample in the middle, beside the net */
     bool refinable;
+    bool checked, misled; /* whether what is shared was looked at in this round, and was wrong */
     float doubt;     /* squared error to be expected of the first sample by itself */
     uint32_t object; /* that the middle sees, from 1; 0: none */
     Vec3f normal;    /* of it */
@@ -156,12 +162,12 @@ static void share_middle(Shared *shared, const Cell *cell, double dx, double dy)
 }
 
 /* The light of a further sample of a cell, at (x, y) of its pixel, as the middles around have it; false where they do not tell. */
-static bool share_light(const Sampler *sp, const Cell *cell, double x, double y, const SurfaceHit *hit,
-                        Radiance *out) {
+static bool shared_light(const Sampler *sp, const Cell *cell, double x, double y, const SurfaceHit *hit,
+                         Radiance *out) {
     uint32_t object = hit ? hit->object + 1 : 0;
     Vec3f normal = hit ? vec3f_from(hit->normal) : vec3f(0, 0, 0);
     Shared shared = {.count = 0};
-    if (!sp->shares) return false;
+    if (!sp->shares || cell->misled) return false;
     for (int row = -1; row <= 1; row++)
         for (int column = -1; column <= 1; column++) {
             const Cell *other = cell + row * EDGE + column;
@@ -180,6 +186,7 @@ static bool share_light(const Sampler *sp, const Cell *cell, double x, double y,
 typedef struct Aim {
     int px, py, number;
     double x, y, width; /* in the pixel, in pixels */
+    double part;        /* of the pixel that it stands for */
 } Aim;
 
 typedef struct Sighting {
@@ -189,21 +196,38 @@ typedef struct Sighting {
     Radiance seen;
 } Sighting;
 
-/* The light as it is known from others: of a further sample of a `cell`, of a first one by a `guess`; either may be NULL. */
-static bool known_light(const Sampler *sp, const Aim *aim, const Cell *cell, const Guess *guess,
-                        const SurfaceHit *hit, Radiance *out) {
-    if (cell) return share_light(sp, cell, aim->x, aim->y, hit, out);
-    return guess &&
-           guess_light(guess, hit ? hit->object + 1 : 0, hit ? vec3f_from(hit->normal) : vec3f(0, 0, 0), out);
+static bool agree(const Sampler *sp, Vec3f a, Vec3f b) {
+    Vec3f apart = vec3f_sub(shown(a), shown(b));
+    return (double)float_max(fabsf(apart.x), float_max(fabsf(apart.y), fabsf(apart.z))) <= sp->plan.max_error;
 }
 
-static void see(Sampler *sp, const Aim *aim, const Cell *cell, const Guess *guess, Sighting *out) {
+/* The light as it is known from others: of a further sample of a `cell`, of a first one by a `guess`; either may be NULL. What middles say
+ * may be wrong of what is thin: the first of each round of samples that could go by it is looked at all the same. */
+static void see_light(Sampler *sp, const Aim *aim, Cell *cell, const Guess *guess, const Cone *cone,
+                      Sighting *out) {
+    const SurfaceHit *hit = out->found ? &out->hit : NULL;
+    Vec3f normal = hit ? vec3f_from(hit->normal) : vec3f(0, 0, 0);
+    Radiance known;
+    bool shared = cell && shared_light(sp, cell, aim->x, aim->y, hit, &known);
+    bool guessed = guess && guess_light(guess, hit ? hit->object + 1 : 0, normal, &known);
+    if (guessed || (shared && cell->checked)) {
+        sp->tracer.counters.camera_rays++;
+        out->seen = known;
+        return;
+    }
+    out->seen = trace_cone(&sp->tracer, cone, hit, &out->reaching);
+    if (!shared) return;
+    cell->checked = true;
+    cell->misled = !agree(sp, out->seen.color, known.color);
+}
+
+static void see(Sampler *sp, const Aim *aim, Cell *cell, const Guess *guess, Sighting *out) {
     Tracer *tracer = &sp->tracer;
     Cone cone;
     uint64_t pixel = random_hash((uint64_t)aim->px, (uint64_t)aim->py, sp->plan.seed, 0);
     tracer->draw = (Draw){pixel, (uint32_t)aim->number};
-    tracer->seed = aim->number ? random_mix(pixel + (uint64_t)aim->number) : pixel;
-    tracer->part = aim->width * aim->width;
+    tracer->seed = cell || aim->number ? random_mix(pixel + (uint64_t)aim->number + 1) : pixel;
+    tracer->part = aim->part;
     bool ray = view_sample(&sp->compiled->view, &tracer->draw, aim->px + aim->x, aim->py + aim->y, aim->width,
                            &cone);
     AovSum *aovs = aovs_of(sp, aim->px, aim->py);
@@ -213,10 +237,7 @@ static void see(Sampler *sp, const Aim *aim, const Cell *cell, const Guess *gues
     out->reaching = 1;
     out->seen = (Radiance){{0, 0, 0}, 0};
     const SurfaceHit *hit = out->found ? &out->hit : NULL;
-    if (ray && known_light(sp, aim, cell, guess, hit, &out->seen))
-        tracer->counters.camera_rays++;
-    else if (ray)
-        out->seen = trace_cone(tracer, &cone, hit, &out->reaching);
+    if (ray) see_light(sp, aim, cell, guess, &cone, out);
     if (!aovs) return;
     AovSample surface = hit ? aov_of_surface(&cone, hit, out->reaching) : (AovSample){.share = 0};
     AovSample voxels = matter_sum_end(&matter, &cone);
@@ -225,15 +246,35 @@ static void see(Sampler *sp, const Aim *aim, const Cell *cell, const Guess *gues
     aovs->samples++;
 }
 
+static bool counts_middle(const Cell *cell) { return cell->centred && cell->net < NET_ALONE; }
+static int count_of(const Cell *cell) { return cell->net + counts_middle(cell); }
+
 static void add_light(Cell *cell, const Radiance *seen) {
     Vec3f light = shown(seen->color);
-    cell->count++;
+    cell->net++;
     cell->sum.color = vec3f_add(cell->sum.color, seen->color);
     cell->sum.alpha += seen->alpha;
     cell->shown = vec3f_add(cell->shown, light);
     cell->squares += vec3f_dot(light, light);
     cell->late = vec3f_add(cell->late, light);
     cell->late_count++;
+}
+
+/* Clamped, over all that counts. */
+static Vec3f shown_sum(const Cell *cell) {
+    return counts_middle(cell) ? vec3f_add(cell->shown, cell->first) : cell->shown;
+}
+static float squares_sum(const Cell *cell) {
+    return cell->squares + (counts_middle(cell) ? vec3f_dot(cell->first, cell->first) : 0);
+}
+
+static Radiance light_of(const Cell *cell) {
+    int count = count_of(cell);
+    float share = count ? 1 / (float)count : 0;
+    Radiance sum = cell->sum;
+    if (counts_middle(cell))
+        sum = (Radiance){vec3f_add(sum.color, cell->middle.color), sum.alpha + cell->middle.alpha};
+    return (Radiance){vec3f_scale(sum.color, share), sum.alpha * share};
 }
 
 /* The first sample, by which it is found whether the pixel's error can be that of edges. */
@@ -251,19 +292,19 @@ static void see_first(Sampler *sp, const Aim *aim, const Guess *guess, Middle *o
 static void begin_cell(Cell *cell, const Middle *m) {
     Vec3f light = shown(m->seen.color);
     *cell = (Cell){.first = light,
+                   .mean = light,
+                   .centred = true,
                    .middle = m->seen,
                    .object = m->object,
                    .normal = m->normal,
                    .refinable = m->refinable,
                    .doubt = m->doubt};
-    add_light(cell, &m->seen);
-    cell->mean = light;
 }
 
 /* The first sample of each pixel lies in its middle: of light that changes evenly it is the mean. */
 static void see_middle(Sampler *sp, int px, int py, const Guess *guess, Middle *out) {
     out->doubt = 0;
-    see_first(sp, &(Aim){px, py, 0, 0.5, 0.5, 1}, guess, out);
+    see_first(sp, &(Aim){px, py, 0, 0.5, 0.5, 1, 1}, guess, out);
 }
 
 static void place_of(const Sampler *sp, int cell, int *px, int *py) {
@@ -272,34 +313,36 @@ static void place_of(const Sampler *sp, int cell, int *px, int *py) {
 }
 
 static void add_sample(Sampler *sp, Cell *cell, const Aim *aim) {
-    if (cell->count == 0) {
+    if (!cell->centred && cell->net == 0) {
         Middle first;
         see_first(sp, aim, NULL, &first);
-        first.doubt = 0;
-        begin_cell(cell, &first);
+        cell->refinable = first.refinable;
+        add_light(cell, &first.seen);
         return;
     }
     Sighting s;
-    see(sp, aim, cell, NULL, &s);
+    see(sp, aim, cell->centred ? cell : NULL, NULL, &s);
     add_light(cell, &s.seen);
 }
 
-/* Samples up to `count` of them, laid by lot. */
+/* Samples of the pixel's net up to `count` of them, laid by lot. */
 static void see_more(Sampler *sp, int index, int count) {
     Cell *cell = &sp->cells[index];
-    int px, py, before = cell->count, half = before <= 1 ? count / 2 + 1 : before;
-    double width = 1 / sqrt(count);
+    int px, py, half = cell->net ? cell->net : (count + 1) / 2;
+    double width = count > 1 ? SAMPLE_WIDTH / sqrt(count) : 1;
     place_of(sp, index, &px, &py);
+    cell->checked = cell->net == 0;
     Draw draw = {random_hash((uint64_t)px, (uint64_t)py, sp->plan.seed, 0), 0};
-    for (int k = before; k < count && !stopped(sp); k++) {
+    for (int k = cell->net; k < count && !stopped(sp); k++) {
         double x, y;
-        draw.index = (uint32_t)(sp->plan.fixed ? k : k - 1);
+        draw.index = (uint32_t)k;
         draw_pair(&draw, DRAW_PIXEL, &x, &y);
         if (sp->plan.fixed == 1) x = y = 0.5;
         if (k == half) cell->late = vec3f(0, 0, 0), cell->late_count = 0;
-        add_sample(sp, cell, &(Aim){px, py, cell->count, x, y, width});
+        add_sample(sp, cell, &(Aim){px, py, k, x, y, width, 1.0 / count});
     }
-    if (cell->count) cell->mean = vec3f_scale(cell->shown, 1 / (float)cell->count);
+    int counted = count_of(cell);
+    if (counted) cell->mean = vec3f_scale(shown_sum(cell), 1 / (float)counted);
 }
 
 /* ---- errors ---- */
@@ -341,7 +384,7 @@ static void set_contrast(Cell *cell, float contrast) {
 }
 
 static double variance(const Cell *cell) {
-    double n = cell->count, squares = (double)cell->squares / n,
+    double n = count_of(cell), squares = (double)squares_sum(cell) / n,
            mean = (double)vec3f_dot(cell->mean, cell->mean);
     double found = fmax(squares - mean, 0) * n / (n - 1) / 3;
     /* Few samples may have missed what the neighbours show. */
@@ -353,23 +396,24 @@ static double error_of_first(const Cell *cell, double ratio) {
     return CAUTION * (double)cell->contrast * ratio + (double)cell->doubt;
 }
 static double error_of_many(const Sampler *sp, const Cell *cell) {
-    double ratio = learned_ratio(&sp->levels[level_of(cell->count)], EDGE_GAIN * sqrt(5.0 / cell->count));
-    return CAUTION * variance(cell) * ratio / cell->count;
+    int count = count_of(cell);
+    double ratio = learned_ratio(&sp->levels[level_of(count)], EDGE_GAIN * sqrt(5.0 / count));
+    return CAUTION * variance(cell) * ratio / count;
 }
 
 static double expected_error(const Sampler *sp, const Cell *cell) {
     if (!cell->refinable) return 0;
-    if (cell->count > 1) return error_of_many(sp, cell);
+    if (count_of(cell) > 1) return error_of_many(sp, cell);
     double ratios[CONTRASTS];
     contrast_ratios(sp, cell->class + 1, ratios);
     return error_of_first(cell, ratios[cell->class]);
 }
 
 static double halves_error(const Cell *cell) {
-    int early = cell->count - cell->late_count;
+    int early = count_of(cell) - cell->late_count;
     if (early < 1 || cell->late_count < 1) return 0;
     Vec3f a = vec3f_scale(cell->late, 1 / (float)cell->late_count),
-          b = vec3f_scale(vec3f_sub(cell->shown, cell->late), 1 / (float)early);
+          b = vec3f_scale(vec3f_sub(shown_sum(cell), cell->late), 1 / (float)early);
     return HALVES_TO_ERROR * (double)mean_square(vec3f_sub(a, b));
 }
 
@@ -408,12 +452,17 @@ static float contrast_of(const Sampler *sp, int index) {
 
 /* ---- a tile ---- */
 
-static int next_count(int count) { return count == 1 ? 5 : 2 * count - 1; }
+static int next_net(const Cell *cell) { return cell->net ? 2 * cell->net : FIRST_NET; }
 
-static double gain_of(const Cell *cell) { return cell->error / (next_count(cell->count) - cell->count); }
+static double gain_of(const Cell *cell) { return cell->error / (next_net(cell) - cell->net); }
 
 static bool can_refine(const Sampler *sp, const Cell *cell) {
-    return cell->refinable && next_count(cell->count) <= sp->plan.most + 1;
+    return cell->refinable && next_net(cell) <= sp->plan.most;
+}
+
+/* Samples that the tile may have beside those in the middle. */
+static int64_t most_of_tile(const Sampler *sp) {
+    return (int64_t)sp->plan.most_mean * sp->columns * sp->rows;
 }
 
 /* Values every pixel of the tile anew, by what has been learned. Returns the sum of its errors. */
@@ -424,11 +473,11 @@ static double value_all(Sampler *sp) {
     for (int row = 1; row <= sp->rows; row++)
         for (int column = 1; column <= sp->columns; column++) {
             Cell *cell = &sp->cells[row * EDGE + column];
-            if (!cell->refinable || (cell->count == 1 && cell->contrast == 0 && cell->doubt == 0))
+            if (!cell->refinable || (cell->net == 0 && cell->contrast == 0 && cell->doubt == 0))
                 cell->error = 0;
             else
                 cell->error =
-                    cell->count > 1 ? error_of_many(sp, cell) : error_of_first(cell, ratios[cell->class]);
+                    cell->net ? error_of_many(sp, cell) : error_of_first(cell, ratios[cell->class]);
             sum += cell->error;
             if (cell->error > 0 && can_refine(sp, cell))
                 candidates_push(&sp->heap, row * EDGE + column, gain_of(cell));
@@ -436,15 +485,16 @@ static double value_all(Sampler *sp) {
     return sum;
 }
 
-/* One pixel's next samples, and what they tell of others like it. */
-static void refine(Sampler *sp, int index) {
+/* One pixel's next samples, and what they tell of others like it. Returns how many. */
+static int refine(Sampler *sp, int index) {
     Cell *cell = &sp->cells[index];
-    int before = cell->count;
-    see_more(sp, index, next_count(before));
-    if (before == 1)
+    int before = cell->net;
+    see_more(sp, index, next_net(cell));
+    if (before == 0)
         learn(&sp->contrasts[cell->class], (double)cell->contrast,
               (double)mean_square(vec3f_sub(cell->first, cell->mean)));
-    learn(&sp->levels[level_of(cell->count)], variance(cell) / cell->count, halves_error(cell));
+    learn(&sp->levels[level_of(count_of(cell))], variance(cell) / count_of(cell), halves_error(cell));
+    return cell->net - before;
 }
 
 /* A pixel that turned out to be other than its middle may be part of something thin, which goes on beside it. */
@@ -454,7 +504,7 @@ static double look_around(Sampler *sp, int index) {
     for (int k = 0; k < 8; k++) {
         int other = index + around[k], row = other / EDGE, column = other % EDGE;
         Cell *cell = &sp->cells[other];
-        if (row < 1 || row > sp->rows || column < 1 || column > sp->columns || cell->count != 1 ||
+        if (row < 1 || row > sp->rows || column < 1 || column > sp->columns || cell->net ||
             !cell->refinable)
             continue;
         float contrast = contrast_of(sp, other);
@@ -468,15 +518,16 @@ static double look_around(Sampler *sp, int index) {
     return change;
 }
 
-/* Refines where it helps most until the tile is good enough. Returns the sum of its errors. */
+/* Refines where it helps most until the tile is good enough, or has had its share of samples. Returns the sum of its errors. */
 static double refine_all(Sampler *sp) {
     enum { REVALUE = 64 };
     double accepted = sp->plan.max_error * sp->plan.max_error * sp->columns * sp->rows, sum = value_all(sp);
-    for (int done = 1; sum > accepted && sp->heap.count && !stopped(sp); done++) {
+    int64_t left = most_of_tile(sp);
+    for (int done = 1; sum > accepted && left > 0 && sp->heap.count && !stopped(sp); done++) {
         Candidate best = candidates_pop(&sp->heap);
         Cell *cell = &sp->cells[best.cell];
         if (best.gain != gain_of(cell) || !can_refine(sp, cell)) continue;
-        refine(sp, best.cell);
+        left -= refine(sp, best.cell);
         double before = cell->error;
         cell->error = expected_error(sp, cell);
         sum += cell->error - before;
@@ -594,17 +645,17 @@ static double see_fixed(Sampler *sp) {
     for (int row = 1; row <= sp->rows; row++)
         for (int column = 1; column <= sp->columns && !stopped(sp); column++) {
             Cell *cell = &sp->cells[row * EDGE + column];
-            *cell = (Cell){.count = 0};
+            *cell = (Cell){.net = 0};
             see_more(sp, row * EDGE + column, sp->plan.fixed);
-            if (cell->count > 1)
-                learn(&sp->levels[level_of(cell->count)], variance(cell) / cell->count, halves_error(cell));
+            if (cell->net > 1)
+                learn(&sp->levels[level_of(cell->net)], variance(cell) / cell->net, halves_error(cell));
         }
     for (int row = 1; row <= sp->rows; row++)
         for (int column = 1; column <= sp->columns; column++) {
             const Cell *cell = &sp->cells[row * EDGE + column];
-            if (cell->count > 1) sum += expected_error(sp, cell);
+            if (cell->net > 1) sum += expected_error(sp, cell);
         }
-    return sum;
+    return sum / CAUTION; /* all have as many, whatever they seem to need */
 }
 
 void sampler_tile(Sampler *sp, int x0, int y0, int x1, int y1, Radiance *out, AovSum *aovs) {
@@ -622,8 +673,7 @@ void sampler_tile(Sampler *sp, int x0, int y0, int x1, int y1, Radiance *out, Ao
     for (int row = 1; row <= sp->rows; row++)
         for (int column = 1; column <= sp->columns; column++) {
             const Cell *cell = &sp->cells[row * EDGE + column];
-            float share = cell->count ? 1 / (float)cell->count : 0;
-            *out++ = (Radiance){vec3f_scale(cell->sum.color, share), cell->sum.alpha * share};
-            sp->tally.refined += cell->count > 1;
+            *out++ = light_of(cell);
+            sp->tally.refined += count_of(cell) > 1;
         }
 }

@@ -6,7 +6,8 @@
 
 typedef struct SamplePlan {
     int fixed;        /* samples of every pixel; 0: by the error */
-    int most;         /* of a pixel, otherwise */
+    int most;         /* of a pixel, otherwise, */
+    int most_mean;    /* and on the mean of a tile */
     double max_error; /* that is accepted: RMSE over a tile, of light clamped to [0, 1] */
     uint64_t seed;
     const atomic_bool *interrupted; /* may be NULL */

@@ -4,6 +4,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 enum { ALIGNMENT = 16, DEFAULT_BLOCK = 1 << 16, LARGEST_DOUBLED_BLOCK = 1 << 20 };
 
@@ -149,4 +152,10 @@ void arena_list_grow_(Arena *arena, void **items, size_t *capacity, size_t count
     if (count) memcpy(copy, *items, count * item_size);
     *items = copy;
     *capacity = grown;
+}
+
+void memory_trim(void) {
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
 }

@@ -64,6 +64,9 @@ static inline void arena_reset_to(Arena *arena, ArenaMark mark) {
     arena->used = mark.used;
 }
 
+/* Hands back to the system what malloc keeps of blocks that were given back: after much more than what will be needed again. */
+void memory_trim(void);
+
 /* Growing arrays in an arena: `items`, `count`, `capacity` fields of any struct.
  *   typedef struct { Foo *items; size_t count, capacity; } FooList;
  *   *list_push(arena, &list) = foo;                                                     */

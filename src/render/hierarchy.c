@@ -192,14 +192,21 @@ static void put_vertex(const Cluster *cluster, float *out, Vec3 p) {
     out[0] = f.x, out[1] = f.y, out[2] = f.z;
 }
 
-static void fill_mesh(const Cluster *cluster, float *vertices, unsigned *indices) {
+/* The mesh's own triangles serve Embree. */
+static bool share_mesh(const Cluster *cluster, RTCGeometry geometry) {
     const MeshData *mesh = cluster->mesh;
-    for (size_t i = 0; i < mesh->vertex_count; i++) put_vertex(cluster, vertices + 3 * i, mesh->vertices[i]);
-    for (size_t i = 0; i < mesh->triangle_count; i++)
-        for (size_t k = 0; k < 3; k++) indices[3 * i + k] = mesh->triangles[i][k];
+    float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh->vertex_count);
+    if (!v) return false;
+    for (size_t i = 0; i < mesh->vertex_count; i++) put_vertex(cluster, v + 3 * i, mesh->vertices[i]);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh->triangles, 0, sizeof *mesh->triangles, mesh->triangle_count);
+    return true;
 }
 
-static void fill_single(const Cluster *cluster, float *vertices, unsigned *indices) {
+static bool fill_single(const Cluster *cluster, RTCGeometry geometry) {
+    const size_t count = cluster->triangles.count;
+    float *vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * count);
+    unsigned *indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), count);
+    if (!vertices || !indices) return false;
     for (size_t i = 0; i < cluster->triangles.count; i++) {
         const ClusterTriangle *t = &cluster->triangles.items[i];
         const Item *owner = &cluster->owners.items[t->owner];
@@ -210,32 +217,31 @@ static void fill_single(const Cluster *cluster, float *vertices, unsigned *indic
             indices[3 * i + k] = (unsigned)(3 * i + k);
         }
     }
+    return true;
 }
 
-static bool attach_triangles(RTCDevice device, const Cluster *cluster, size_t vertex_count, size_t triangle_count) {
+static bool attach_triangles(RTCDevice device, const Cluster *cluster) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertex_count);
-    unsigned *t = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), triangle_count);
-    if (!v || !t) {
+    if (!(cluster->mesh ? share_mesh : fill_single)(cluster, geometry)) {
         rtcReleaseGeometry(geometry);
         return false;
     }
-    (cluster->mesh ? fill_mesh : fill_single)(cluster, v, t);
     rtcSetGeometryIntersectFilterFunction(geometry, filter_triangle);
     rtcSetGeometryOccludedFilterFunction(geometry, filter_triangle);
     attach(cluster->scene, geometry, cluster, TRIANGLES);
     return true;
 }
 
+/* Of more triangles than this Embree keeps the numbers of their vertices in place of copies. */
+enum { VAST = 2000000 };
+
 static bool commit(RTCDevice device, Cluster *cluster) {
     bool ok = true;
     cluster->scene = rtcNewScene(device);
-    rtcSetSceneFlags(cluster->scene, RTC_SCENE_FLAG_ROBUST);
+    const bool vast = cluster->mesh && cluster->mesh->triangle_count > VAST;
+    rtcSetSceneFlags(cluster->scene, vast ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT : RTC_SCENE_FLAG_ROBUST);
     if (cluster->loose) attach_solids(device, cluster);
-    if (cluster->mesh && cluster->mesh->triangle_count)
-        ok = attach_triangles(device, cluster, cluster->mesh->vertex_count, cluster->mesh->triangle_count);
-    else if (cluster->triangles.count)
-        ok = attach_triangles(device, cluster, 3 * cluster->triangles.count, cluster->triangles.count);
+    if (cluster->mesh ? cluster->mesh->triangle_count : cluster->triangles.count) ok = attach_triangles(device, cluster);
     rtcCommitScene(cluster->scene);
     return ok && rtcGetDeviceError(device) == RTC_ERROR_NONE;
 }

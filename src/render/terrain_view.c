@@ -16,6 +16,7 @@ static const double OUTSIDE = 8;
 static const double RISE = 2;
 /* Cells of skins: what changes along a skin changes over them. */
 static const double CELL_PIXELS = 8;
+enum { VAST = 500000 };
 
 /* One terrain at one place. */
 typedef struct Stand {
@@ -102,7 +103,7 @@ static GroundHorizon *horizon_of(const Lowering *l, const Stand *stand) {
 static void keep_account(Lowering *l, const Stand *stand, size_t needed, double seconds) {
     const Ground *ground = stand->terrain->ground;
     const MeshData *mesh = stand->mesh;
-    const size_t bytes = mesh->vertex_count * 3 * sizeof(Vec3) + mesh->triangle_count * sizeof *mesh->triangles;
+    const size_t bytes = mesh->vertex_count * 2 * sizeof(Vec3) + mesh->triangle_count * sizeof *mesh->triangles;
     *list_push(l->arena, l->built) = (BuiltTerrain){.terrain = stand->terrain, .columns = ground->source.columns, .rows = ground->source.rows,
         .needed = needed, .triangles = mesh->triangle_count, .bytes = bytes, .seconds = seconds};
 }
@@ -124,6 +125,7 @@ static const MeshData *mesh_of(Lowering *l, Stand *stand) {
         l->failed = true;
     }
     arena_reset_to(l->scratch, mark);
+    if (mesh->triangle_count > VAST) memory_trim(); /* hierarchies take their memory elsewhere */
     mesh_rehash(mesh);
     stand->mesh = mesh;
     keep_account(l, stand, needed, stopwatch_wall() - start);

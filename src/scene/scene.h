@@ -309,6 +309,7 @@ typedef struct MeshData {
     size_t normal_count;
     const Vec3 *uvs;                        /* z unused; NULL: none */
     size_t uv_count;
+    bool uvs_from_above;                    /* without uvs: they are x and z of the vertices */
     const uint32_t (*triangles)[3];
     size_t triangle_count;
     const uint32_t (*normal_triangles)[3];  /* NULL: same as triangles */

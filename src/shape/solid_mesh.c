@@ -87,11 +87,12 @@ static Vec3 normal(const void *data, Vec3 point, const SolidTag *tag) {
 }
 
 TexCoord solid_mesh_uv(const MeshData *mesh, uint32_t triangle, double u, double v) {
-    if (!mesh->uvs) return (TexCoord){0, 0};
-    const uint32_t *at = mesh->uv_triangles ? mesh->uv_triangles[triangle] : mesh->triangles[triangle];
-    Vec3 p = vec3_scale(mesh->uvs[at[0]], 1 - u - v);
-    p = vec3_madd(vec3_madd(p, mesh->uvs[at[1]], u), mesh->uvs[at[2]], v);
-    return (TexCoord){p.x, p.y};
+    const Vec3 *corners = mesh->uvs ? mesh->uvs : mesh->uvs_from_above ? mesh->vertices : NULL;
+    if (!corners) return (TexCoord){0, 0};
+    const uint32_t *at = mesh->uvs && mesh->uv_triangles ? mesh->uv_triangles[triangle] : mesh->triangles[triangle];
+    Vec3 p = vec3_scale(corners[at[0]], 1 - u - v);
+    p = vec3_madd(vec3_madd(p, corners[at[1]], u), corners[at[2]], v);
+    return (TexCoord){p.x, mesh->uvs ? p.y : p.z};
 }
 
 static TexCoord uv(const void *data, Vec3 point, const SolidTag *tag) {

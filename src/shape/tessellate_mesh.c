@@ -34,8 +34,9 @@ static const char *mesh_fault(const MeshData *mesh) {
 
 static uint32_t push_corner(const MeshData *mesh, MeshCorner corner, Arena *arena, TriangleSoup *out) {
     Vec3 normal = mesh->normals ? vec3_normalize(mesh->normals[corner.normal]) : vec3_splat(0);
-    Vec3 uv = mesh->uvs ? mesh->uvs[corner.uv] : vec3_splat((double)NAN);
-    uint32_t index = soup_vertex(arena, out, mesh->vertices[corner.vertex], normal, uv.x, uv.y);
+    const Vec3 *at = &mesh->vertices[corner.vertex];
+    Vec3 uv = mesh->uvs ? mesh->uvs[corner.uv] : mesh->uvs_from_above ? vec3(at->x, at->z, 0) : vec3_splat((double)NAN);
+    uint32_t index = soup_vertex(arena, out, *at, normal, uv.x, uv.y);
     if (mesh->height_vectors) out->vertices.items[index].height = &mesh->height_vectors[corner.vertex];
     if (mesh->w_vectors) out->vertices.items[index].w = &mesh->w_vectors[corner.vertex];
     return index;

@@ -3,6 +3,8 @@
 #include "terrain/ground_nodes.h"
 #include "terrain/ground_normals.h"
 
+#include <string.h>
+
 typedef struct Refinement {
     const GroundSource *source;
     const GroundErrors *errors;
@@ -17,7 +19,7 @@ typedef struct Triangle {
     uint32_t a, b, apex;
 } Triangle;
 
-static const GroundNode *node(const Refinement *r, uint32_t index) { return &r->nodes.items[index]; }
+static const GroundNode *node(const Refinement *r, uint32_t index) { return ground_node(&r->nodes, index); }
 
 static uint32_t distance(uint32_t a, uint32_t b) { return a > b ? a - b : b - a; }
 
@@ -47,7 +49,7 @@ static void activate(Refinement *r, uint32_t x, uint32_t y) {
     uint32_t index = ground_node_find(&r->nodes, x, y);
     if (index != GROUND_NO_NODE) return;
     index = ground_node_add(&r->nodes, x, y);
-    r->nodes.items[index].corner = true;
+    ground_node(&r->nodes, index)->corner = true;
     need_parents(r, x, y);
 }
 
@@ -168,11 +170,21 @@ static void refine(Refinement *r, Triangle t) {
 
 /* ---- leaves become triangles of the mesh ---- */
 
+/* Triangles are kept in pieces until all are known, as nodes are. */
+typedef struct TrianglePiece {
+    struct TrianglePiece *older;
+    size_t count;
+    uint32_t items[GROUND_PIECE][3];
+} TrianglePiece;
+
 typedef struct Output {
     Refinement *r;
     Arena *scratch;
-    struct { Vec3 *items; size_t count, capacity; } vertices;
-    struct { uint32_t (*items)[3]; size_t count, capacity; } triangles;
+    TrianglePiece *newest;
+    size_t vertex_count, triangle_count;
+    uint32_t *node_of; /* by vertex */
+    Vec3 *vertices, *normals;
+    uint32_t (*triangles)[3];
 } Output;
 
 /* A corner of what the border leaves of a triangle. */
@@ -210,15 +222,24 @@ static uint32_t vertex_of(Output *out, const Corner *corner) {
     GroundNodes *nodes = &out->r->nodes;
     uint32_t index = ground_node_find(nodes, (uint32_t)corner->x, (uint32_t)corner->y);
     if (index == GROUND_NO_NODE) index = ground_node_add_at(nodes, (uint32_t)corner->x, (uint32_t)corner->y, corner->height);
-    GroundNode *n = &nodes->items[index];
+    GroundNode *n = ground_node(nodes, index);
     if (n->vertex != GROUND_NO_NODE) return n->vertex;
-    n->vertex = (uint32_t)out->vertices.count;
-    *list_push(out->scratch, &out->vertices) = n->place;
-    return n->vertex;
+    return n->vertex = (uint32_t)out->vertex_count++;
 }
 
 static int64_t doubled_area(const Corner *a, const Corner *b, const Corner *c) {
     return (b->x - a->x) * (c->y - a->y) - (c->x - a->x) * (b->y - a->y);
+}
+
+static void keep_triangle(Output *out, uint32_t a, uint32_t b, uint32_t c) {
+    if (!out->newest || out->newest->count == GROUND_PIECE) {
+        TrianglePiece *piece = arena_new(out->scratch, TrianglePiece);
+        piece->older = out->newest;
+        out->newest = piece;
+    }
+    uint32_t *triangle = out->newest->items[out->newest->count++];
+    triangle[0] = a, triangle[1] = b, triangle[2] = c;
+    out->triangle_count++;
 }
 
 static void emit(Output *out, const Triangle *t) {
@@ -240,8 +261,7 @@ static void emit(Output *out, const Triangle *t) {
         const Corner *a = &polygon.corner[0], *b = &polygon.corner[i - 1], *c = &polygon.corner[i];
         if (doubled_area(a, b, c) == 0) continue;
         uint32_t v0 = vertex_of(out, a), v1 = vertex_of(out, b), v2 = vertex_of(out, c);
-        uint32_t *triangle = *list_push(out->scratch, &out->triangles);
-        triangle[0] = v0, triangle[1] = v1, triangle[2] = v2;
+        keep_triangle(out, v0, v1, v2);
     }
 }
 
@@ -258,41 +278,56 @@ static void emit_leaves(Output *out, Triangle t) {
 
 /* ---- all of it ---- */
 
+static void gather_vertices(Output *out, Arena *arena) {
+    out->vertices = arena_new_array(arena, Vec3, out->vertex_count);
+    out->node_of = arena_new_array(out->scratch, uint32_t, out->vertex_count);
+    for (uint32_t i = 0; i < out->r->nodes.count; i++) {
+        const GroundNode *n = node(out->r, i);
+        if (n->vertex == GROUND_NO_NODE) continue;
+        out->node_of[n->vertex] = i;
+        out->vertices[n->vertex] = n->place;
+    }
+}
+
+static void gather_triangles(Output *out, Arena *arena) {
+    size_t end = out->triangle_count;
+    out->triangles = arena_push(arena, out->triangle_count * sizeof *out->triangles);
+    for (const TrianglePiece *piece = out->newest; piece; piece = piece->older) {
+        end -= piece->count;
+        memcpy(out->triangles + end, piece->items, piece->count * sizeof *piece->items);
+    }
+}
+
 /* How long the sides are that meet in each vertex, in posts, on the average. */
-static double *sides_around(const Output *out, const uint32_t *node_of) {
-    size_t count = out->vertices.count;
-    double *sum = arena_new_array(out->scratch, double, count), *met = arena_new_array(out->scratch, double, count);
-    for (size_t i = 0; i < out->triangles.count; i++)
+static float *sides_around(const Output *out) {
+    float *sum = arena_new_array(out->scratch, float, out->vertex_count), *met = arena_new_array(out->scratch, float, out->vertex_count);
+    for (size_t i = 0; i < out->triangle_count; i++)
         for (int k = 0; k < 3; k++) {
-            uint32_t from = out->triangles.items[i][k], to = out->triangles.items[i][(k + 1) % 3];
-            const GroundNode *a = node(out->r, node_of[from]), *b = node(out->r, node_of[to]);
-            double length = hypot((double)a->x - b->x, (double)a->y - b->y) / GROUND_PARTS;
+            uint32_t from = out->triangles[i][k], to = out->triangles[i][(k + 1) % 3];
+            const GroundNode *a = node(out->r, out->node_of[from]), *b = node(out->r, out->node_of[to]);
+            float length = (float)(hypot((double)a->x - b->x, (double)a->y - b->y) / GROUND_PARTS);
             sum[from] += length, sum[to] += length, met[from] += 1, met[to] += 1;
         }
-    for (size_t i = 0; i < count; i++) sum[i] /= fmax(1, met[i]);
+    for (size_t i = 0; i < out->vertex_count; i++) sum[i] /= fmaxf(1, met[i]);
     return sum;
 }
 
-static Vec3 *normals_of(const Output *out, Arena *arena) {
-    size_t count = out->vertices.count;
-    uint32_t *node_of = arena_new_array(out->scratch, uint32_t, count);
-    for (uint32_t i = 0; i < out->r->nodes.count; i++)
-        if (node(out->r, i)->vertex != GROUND_NO_NODE) node_of[node(out->r, i)->vertex] = i;
-    Vec3 *normals = arena_new_array(arena, Vec3, count);
-    const double *sides = sides_around(out, node_of);
+static void find_normals(Output *out, Arena *arena) {
+    const float *sides = sides_around(out);
     GroundAxes *axes = ground_axes_create(out->r->source, out->scratch);
-    for (size_t i = 0; i < count; i++) {
-        const GroundNode *n = node(out->r, node_of[i]);
-        normals[i] = ground_normal(axes, (double)n->x / GROUND_PARTS, (double)n->y / GROUND_PARTS, sides[i]);
+    out->normals = arena_new_array(arena, Vec3, out->vertex_count);
+    for (size_t i = 0; i < out->vertex_count; i++) {
+        const GroundNode *n = node(out->r, out->node_of[i]);
+        out->normals[i] = ground_normal(axes, (double)n->x / GROUND_PARTS, (double)n->y / GROUND_PARTS, (double)sides[i]);
     }
-    return normals;
 }
 
 /* Where no slope was found the triangles around tell the normal. */
-static void complete_normals(const Output *out, Vec3 *normals) {
-    const Vec3 *p = out->vertices.items;
-    for (size_t i = 0; i < out->triangles.count; i++) {
-        const uint32_t *t = out->triangles.items[i];
+static void complete_normals(Output *out) {
+    const Vec3 *p = out->vertices;
+    Vec3 *normals = out->normals;
+    for (size_t i = 0; i < out->triangle_count; i++) {
+        const uint32_t *t = out->triangles[i];
         Vec3 n = vec3_normalize(vec3_cross(vec3_sub(p[t[1]], p[t[0]]), vec3_sub(p[t[2]], p[t[0]])));
         for (int k = 0; k < 3; k++) {
             if (vec3_length_squared(normals[t[k]]) > 0) continue;
@@ -302,22 +337,16 @@ static void complete_normals(const Output *out, Vec3 *normals) {
     }
 }
 
-static const Vec3 *places_as_uv(const Vec3 *places, size_t count, Arena *arena) {
-    Vec3 *uvs = arena_new_array(arena, Vec3, count);
-    for (size_t i = 0; i < count; i++) uvs[i] = vec3(places[i].x, places[i].z, 0);
-    return uvs;
-}
-
-static void keep_mesh(const Output *out, Arena *arena, MeshData *mesh) {
-    size_t count = out->vertices.count;
-    *mesh = (MeshData){.vertex_count = count, .normal_count = count, .uv_count = count, .triangle_count = out->triangles.count};
+static void keep_mesh(Output *out, Arena *arena, MeshData *mesh) {
+    const size_t count = out->vertex_count;
     if (!count) return;
-    mesh->vertices = arena_copy(arena, out->vertices.items, count * sizeof(Vec3));
-    mesh->triangles = arena_copy(arena, out->triangles.items, out->triangles.count * sizeof *out->triangles.items);
-    Vec3 *normals = normals_of(out, arena);
-    complete_normals(out, normals);
-    mesh->normals = normals;
-    mesh->uvs = places_as_uv(mesh->vertices, count, arena);
+    gather_vertices(out, arena);
+    gather_triangles(out, arena);
+    find_normals(out, arena);
+    complete_normals(out);
+    *mesh = (MeshData){.vertices = out->vertices, .vertex_count = count, .normals = out->normals, .normal_count = count,
+                       .uvs_from_above = true,
+                       .triangles = (const uint32_t(*)[3])out->triangles, .triangle_count = out->triangle_count};
 }
 
 bool ground_mesh_build(const GroundSource *source, const GroundErrors *errors, const GroundDetail *detail, Arena *scratch, Arena *arena,
@@ -331,7 +360,7 @@ bool ground_mesh_build(const GroundSource *source, const GroundErrors *errors, c
     uint32_t corner[4];
     for (uint32_t i = 0; i < 4; i++) {
         corner[i] = ground_node_add(&r.nodes, (i & 1) * r.last, (i >> 1) * r.last);
-        r.nodes.items[corner[i]].corner = true;
+        ground_node(&r.nodes, corner[i])->corner = true;
     }
     const Triangle roots[2] = {{corner[0], corner[3], corner[1]}, {corner[3], corner[0], corner[2]}};
     for (int i = 0; i < 2; i++) refine(&r, roots[i]);

@@ -23,7 +23,7 @@ typedef struct GroundDetail {
     size_t most_vertices; /* 0: no limit */
 } GroundDetail;
 
-/* Builds the mesh in `arena`; its texture coordinates are x and z. Normals are slopes of the ground over as
+/* Builds the mesh in `arena`; its texture coordinates are x and z (uvs_from_above). Normals are slopes of the ground over as
  * much of it as the triangles reach (ground_normals.h).
  * False when there are more vertices than allowed; *out is then empty. `scratch` is reset to where it was, unless
  * it is `arena`. *needed (or NULL): how many triangles the errors ask for, those apart that are halved for a neighbour's sake alone. */

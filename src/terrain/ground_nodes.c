@@ -22,7 +22,8 @@ static void clear_table(GroundNodes *nodes, size_t size) {
 }
 
 static void insert(GroundNodes *nodes, uint32_t index) {
-    size_t slot = slot_of(nodes, nodes->items[index].x, nodes->items[index].y);
+    const GroundNode *node = ground_node(nodes, index);
+    size_t slot = slot_of(nodes, node->x, node->y);
     while (nodes->table[slot] != GROUND_NO_NODE) slot = (slot + 1) & (nodes->table_size - 1);
     nodes->table[slot] = index;
 }
@@ -35,7 +36,9 @@ void ground_nodes_init(GroundNodes *nodes, const GroundSource *source, Arena *ar
 uint32_t ground_node_find(const GroundNodes *nodes, uint32_t x, uint32_t y) {
     for (size_t slot = slot_of(nodes, x, y);; slot = (slot + 1) & (nodes->table_size - 1)) {
         uint32_t index = nodes->table[slot];
-        if (index == GROUND_NO_NODE || (nodes->items[index].x == x && nodes->items[index].y == y)) return index;
+        if (index == GROUND_NO_NODE) return index;
+        const GroundNode *node = ground_node(nodes, index);
+        if (node->x == x && node->y == y) return index;
     }
 }
 
@@ -44,7 +47,8 @@ uint32_t ground_node_add_at(GroundNodes *nodes, uint32_t x, uint32_t y, double h
     double column = fmin((double)x / GROUND_PARTS, s->columns - 1), row = fmin((double)y / GROUND_PARTS, s->rows - 1);
     Vec3 place = s->place(s->map, column, row, isfinite(height) ? height : 0);
     uint32_t index = (uint32_t)nodes->count;
-    *list_push(nodes->arena, nodes) = (GroundNode){.x = x, .y = y, .height = height, .place = place, .vertex = GROUND_NO_NODE};
+    if (nodes->count % GROUND_PIECE == 0) *list_push(nodes->arena, &nodes->pieces) = arena_new_array(nodes->arena, GroundNode, GROUND_PIECE);
+    *ground_node(nodes, (uint32_t)nodes->count++) = (GroundNode){.x = x, .y = y, .height = height, .place = place, .vertex = GROUND_NO_NODE};
     if (2 * nodes->count > nodes->table_size) {
         clear_table(nodes, 2 * nodes->table_size);
         for (uint32_t i = 0; i < nodes->count; i++) insert(nodes, i);

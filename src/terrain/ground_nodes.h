@@ -7,6 +7,8 @@
 
 /* Places are counted in parts of the distance between posts. */
 enum { GROUND_PART_BITS = 8, GROUND_PARTS = 1 << GROUND_PART_BITS };
+/* Nodes are kept in pieces of so many: millions are never copied to make room for more. */
+enum { GROUND_PIECE_BITS = 12, GROUND_PIECE = 1 << GROUND_PIECE_BITS };
 #define GROUND_NO_NODE UINT32_MAX
 
 typedef struct GroundNode {
@@ -20,13 +22,16 @@ typedef struct GroundNode {
 typedef struct GroundNodes {
     const GroundSource *source;
     Arena *arena;
-    GroundNode *items;
-    size_t count, capacity;
+    struct { GroundNode **items; size_t count, capacity; } pieces;
+    size_t count;
     uint32_t *table; /* open addressing */
     size_t table_size;
 } GroundNodes;
 
 void ground_nodes_init(GroundNodes *nodes, const GroundSource *source, Arena *arena);
+static inline GroundNode *ground_node(const GroundNodes *nodes, uint32_t index) {
+    return &nodes->pieces.items[index >> GROUND_PIECE_BITS][index & (GROUND_PIECE - 1)];
+}
 /* GROUND_NO_NODE where there is none. */
 uint32_t ground_node_find(const GroundNodes *nodes, uint32_t x, uint32_t y);
 /* There must be none at that place. Its height is the ground's; ground_source_beyond() beyond the map. */

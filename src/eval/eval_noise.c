@@ -23,7 +23,9 @@ static void bound_worley(const void *data, const Interval *in, Interval *out) {
     for (int k = 0; k <= *(const int *)data; k++) out[k] = interval_worley(in, k);
 }
 
-static void forms_worley(const void *data, int count, const AffineForm *in, AffineForm *out) { affine_worley(count, in, *(const int *)data, out); }
+static void forms_worley(const void *data, int count, const AffineForm *in, AffineForm *out, struct NodeCache *cells) {
+    affine_worley(count, in, *(const int *)data, out, cells);
+}
 
 static void gradient_worley(const void *data, const double *in, double *slopes) {
     Vec3 by[WORLEY_NODES];
@@ -61,13 +63,13 @@ static void bound_sparse(const void *data, const Interval *in, Interval *out) {
     *out = interval_is_point(in[3]) ? interval_sparse_convolution(in, whole(in[3].low, SPARSE_IMPULSES)) : interval_all(true);
 }
 
-static void forms_sparse(const void *data, int count, const AffineForm *in, AffineForm *out) {
+static void forms_sparse(const void *data, int count, const AffineForm *in, AffineForm *out, struct NodeCache *cells) {
     const AffineForm *impulses = &in[3 * count];
     (void)data;
     if (impulses->slope != 0 || impulses->error != 0 || impulses->nan)
         for (int i = 0; i < count; i++) out[i] = affine_unknown(true);
     else
-        affine_sparse_convolution(count, in, int_clamp(whole(impulses->centre, SPARSE_IMPULSES), 1, SPARSE_IMPULSES), out);
+        affine_sparse_convolution(count, in, int_clamp(whole(impulses->centre, SPARSE_IMPULSES), 1, SPARSE_IMPULSES), out, cells);
 }
 
 static void gradient_sparse(const void *data, const double *in, double *slopes) {

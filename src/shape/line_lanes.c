@@ -152,7 +152,7 @@ static void divide(Lanes *lanes, const LanePiece *wholes, int count) {
         }
     }
     place_lanes(line, batch.pieces, lanes->scratch, &width);
-    tape_sum_rest(line->sum, line->level, line_is_wide(line) ? &width : NULL, &batch.settled, &batch.bounds, &batch.each, lanes->scratch);
+    tape_sum_rest(line->sum, line->level, line_is_wide(line) ? &width : NULL, &batch.settled, &batch.bounds, &batch.each, lanes->scratch, line->cells);
     lanes->search->work.bounds += (uint64_t)batch.used;
     push_rest(lanes, &batch);
 }

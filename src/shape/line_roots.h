@@ -9,6 +9,8 @@
 #include "scene/scene.h"
 #include "tape/tape_lanes.h"
 
+struct NodeCache;
+
 /* How bounds are had: by intervals; by affine forms without and with the cut of equation 16. */
 typedef enum LineMethod { LINE_INTERVAL, LINE_AFFINE, LINE_AFFINE_OPTIMISED } LineMethod;
 
@@ -20,6 +22,7 @@ typedef struct Line {
     const TapeSum *sum; /* of the tape, over a box that the line does not leave: bounds of many pieces at once, by LINE_AFFINE_OPTIMISED; or NULL */
     /* With a sum that has levels of detail (tape_detail.h): the function is that of width.start + width.spread·t, in the tape's space. */
     RayWidth width;
+    struct NodeCache *cells; /* what noises of points keep from line to line (node_cache.h), of one thread; NULL: nothing */
 } Line;
 
 typedef struct LineWork {

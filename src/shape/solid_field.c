@@ -5,17 +5,20 @@
 #include "shape/roots.h"
 #include "shape/solid.h"
 #include "shape/solid_field.h"
+#include "tape/node_cache.h"
+#include "tape/tape_affine.h"
 #include "tape/tape_detail.h"
 #include "tape/tape_interval.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>
 
-enum { PART_SURFACE, PART_CONTAINER, MOST_STEPS = 200000, LEAST_STEPS = 32, MOST_ENDS = 64, MOST_CHANGES = 100000, FEW_SLOTS = 256 };
+enum { PART_SURFACE, PART_CONTAINER, MOST_STEPS = 200000, LEAST_STEPS = 32, MOST_ENDS = 64, MOST_CHANGES = 100000, FEW_SLOTS = 256, CACHES = 8 };
 
 /* Of all threads; added to once a ray. */
 typedef struct FieldWork {
     atomic_uint_fast64_t lines, evaluations, unsettled;
+    _Atomic(NodeCache *) caches[CACHES]; /* that nobody uses; NULL: none here */
 } FieldWork;
 
 typedef struct Field {
@@ -42,6 +45,25 @@ static void prepare_sum(Field *f, Arena *arena) {
     *sum = tape_sum_of(f->line.tape, box, arena);
     f->line.sum = sum;
     f->detailed = !f->solid->as.isosurface.full_detail && tape_sum_measure(sum, box, arena);
+    for (int k = 0; k < CACHES && tape_has_forms(f->line.tape); k++) {
+        NodeCache *cache = arena_new(arena, NodeCache);
+        node_cache_begin(cache);
+        atomic_store(&f->work->caches[k], cache);
+    }
+}
+
+/* Whoever finds none does without. */
+static NodeCache *take_cache(FieldWork *work) {
+    NodeCache *cache = NULL;
+    for (int k = 0; k < CACHES && !cache; k++) cache = atomic_exchange(&work->caches[k], NULL);
+    return cache;
+}
+
+static void put_back(FieldWork *work, NodeCache *cache) {
+    for (int k = 0; k < CACHES && cache; k++) {
+        NodeCache *none = NULL;
+        if (atomic_compare_exchange_strong(&work->caches[k], &none, cache)) cache = NULL;
+    }
 }
 
 static const void *prepare(const Object *object, Arena *arena) {
@@ -50,6 +72,7 @@ static const void *prepare(const Object *object, Arena *arena) {
     Field *f = arena_new(arena, Field);
     const Tape *tape = s->as.isosurface.function;
     *f = (Field){.solid = s, .place = object_transform(container), .work = arena_new(arena, FieldWork)};
+    for (int k = 0; k < CACHES; k++) atomic_init(&f->work->caches[k], NULL);
     atomic_init(&f->work->lines, 0), atomic_init(&f->work->evaluations, 0), atomic_init(&f->work->unsettled, 0);
     f->line = (Line){.tape = tape, .level = s->as.isosurface.threshold, .method = methods[s->as.isosurface.method]};
     Box3 bounds = shape_bounds(container);
@@ -152,11 +175,13 @@ static void search(const Field *f, const Ray *ray, double from, double to, Solid
     line.origin = ray->origin, line.direction = ray->direction, line.width = width_of(f, ray, sink->width);
     double t;
     bool falling;
+    line.cells = take_cache(f->work);
     for (int k = 0; k < MOST_CHANGES && from < double_min(to, sink->t_max); k++) {
-        if (!line_first_root(&line, from, double_min(to, sink->t_max), &t, &falling, work)) return;
+        if (!line_first_root(&line, from, double_min(to, sink->t_max), &t, &falling, work)) break;
         solid_offer(sink, t, (SolidTag){PART_SURFACE, line.width.start + line.width.spread * t, 0});
         from = line_behind(&line, t);
     }
+    put_back(f->work, line.cells);
 }
 
 /* ---- containers ---- */

@@ -3,7 +3,7 @@
 
 #include "tape/noise.h"
 #include "tape/noise_interval.h"
-#include "tape/noise_nodes.h"
+#include "tape/node_cache.h"
 
 enum { MOST_PIECES = 8, MOST_CELLS = 64, MOST_POINTS = 640 };
 
@@ -20,7 +20,6 @@ typedef struct Piece {
 
 typedef struct Points {
     Vec3 at[MOST_POINTS];
-    double weight[MOST_POINTS];
     int count;
 } Points;
 
@@ -70,22 +69,31 @@ typedef struct NearCell {
     double square; /* of the distance from the box */
 } NearCell;
 
-static double gap(double low, double high, int64_t cell) {
-    double a = (double)cell - high, b = low - ((double)cell + 1);
-    return bound_max(0, bound_max(a, b));
+enum { MOST_ASIDE = 4 };
+
+/* Along an axis: the cells within a unit of [low, high], from *first on, and the squares of their distances. */
+static int cells_aside(double low, double high, int64_t *first, double squares[MOST_ASIDE]) {
+    double begin = floor(low - 1);
+    int count = int_min((int)(floor(high + 1) - begin) + 1, MOST_ASIDE);
+    *first = (int64_t)begin;
+    for (int k = 0; k < count; k++) {
+        double cell = begin + k, gap = bound_max(0, bound_max(cell - high, low - (cell + 1)));
+        squares[k] = gap * gap;
+    }
+    return count;
 }
 
 static int cells_near(const Box3 *box, NearCell *out) {
-    NodeCell first = node_cell_of(vec3(box->min.x - 1, box->min.y - 1, box->min.z - 1));
-    NodeCell last = node_cell_of(vec3(box->max.x + 1, box->max.y + 1, box->max.z + 1));
-    int count = 0;
-    for (int64_t x = first.x; x <= last.x; x++)
-        for (int64_t y = first.y; y <= last.y; y++)
-            for (int64_t z = first.z; z <= last.z; z++) {
-                double gx = gap(box->min.x, box->max.x, x), gy = gap(box->min.y, box->max.y, y),
-                       gz = gap(box->min.z, box->max.z, z);
-                double square = gx * gx + gy * gy + gz * gz;
-                if (square <= 1 && count < MOST_CELLS) out[count++] = (NearCell){{x, y, z}, square};
+    NodeCell first;
+    double x[MOST_ASIDE], y[MOST_ASIDE], z[MOST_ASIDE];
+    int nx = cells_aside(box->min.x, box->max.x, &first.x, x), ny = cells_aside(box->min.y, box->max.y, &first.y, y),
+        nz = cells_aside(box->min.z, box->max.z, &first.z, z), count = 0;
+    for (int i = 0; i < nx; i++)
+        for (int j = 0; j < ny; j++)
+            for (int k = 0; k < nz; k++) {
+                double square = x[i] + y[j] + z[k];
+                out[count] = (NearCell){{first.x + i, first.y + j, first.z + k}, square};
+                count += square <= 1;
             }
     return count;
 }
@@ -100,11 +108,18 @@ static void keep_least(double *least, int count, double more) {
     least[k] = more;
 }
 
-static void add_nodes(Points *points, NodeCell cell) {
+static void find_nodes(NodeCell cell, NodePoints *out) {
     uint64_t bits = node_cell_bits(cell, WORLEY_KIND);
-    int count = worley_node_count(bits);
-    for (int k = 0; k < count && points->count < MOST_POINTS; k++)
-        points->at[points->count++] = worley_node(cell, bits, k);
+    out->count = worley_node_count(bits);
+    for (int k = 0; k < out->count; k++) out->points[k].at = worley_node(cell, bits, k);
+}
+
+static void add_nodes(Points *points, NodeCell cell, NodeCache *cells) {
+    NodePoints own, *here = &own;
+    bool known = false;
+    if (cells) here = node_cache_at(cells, cell, WORLEY_KIND, &known);
+    if (!known) find_nodes(cell, here);
+    for (int k = 0; k < here->count && points->count < MOST_POINTS; k++) points->at[points->count++] = here->points[k].at;
 }
 
 /* The squares of the distances from the piece's centre to all nodes, and to the nearest ones, number 0 … last. */
@@ -115,7 +130,7 @@ static void nearest(const Points *points, const Piece *p, int last, double *rest
 }
 
 /* Of all nodes those that may be among the nearest from a place of the piece: distances change by no more than the way. */
-static void keep_near(const Points *points, const double *all, double far, Points *near) {
+static void keep_near_nodes(const Points *points, const double *all, double far, Points *near) {
     near->count = 0;
     for (int i = 0; i < points->count; i++)
         if (all[i] <= far * far) near->at[near->count++] = points->at[i];
@@ -123,19 +138,19 @@ static void keep_near(const Points *points, const double *all, double far, Point
 
 /* Of each piece all nodes that may be among the nearest up to `last` from any of its places, if they are less than a unit away: the
  * distance changes by no more than the way. */
-static void gather_nodes(Points *points, const Piece *pieces, int count, const Box3 *box, int last) {
-    NearCell cells[MOST_CELLS];
+static void gather_nodes(Points *points, const Piece *pieces, int count, const Box3 *box, int last, NodeCache *cache) {
+    NearCell cells[MOST_CELLS + 1];
     int cell_count = cells_near(box, cells);
     double reach = 0, squares[WORLEY_NODES], all[MOST_POINTS];
     points->count = 0;
     for (int c = 0; c < cell_count; c++)
-        if (cells[c].square == 0) add_nodes(points, cells[c].cell);
+        if (cells[c].square == 0) add_nodes(points, cells[c].cell, cache);
     for (int i = 0; i < count; i++) {
         nearest(points, &pieces[i], last, all, squares);
         reach = bound_max(reach, sqrt(squares[last]) + 2 * (pieces[i].length + pieces[i].off) + SLACK);
     }
     for (int c = 0; c < cell_count; c++)
-        if (cells[c].square > 0 && cells[c].square <= reach * reach) add_nodes(points, cells[c].cell);
+        if (cells[c].square > 0 && cells[c].square <= reach * reach) add_nodes(points, cells[c].cell, cache);
 }
 
 enum { MOST_RIVALS = 10 };
@@ -199,16 +214,15 @@ static AffineForm along_nodes(const Points *points, const Piece *p, int index) {
     return root_of(level);
 }
 
-static void worley_group(const Piece *pieces, int count, const Box3 *box, int last, AffineForm *out,
-                         int stride) {
+static void worley_group(const Piece *pieces, int count, const Box3 *box, int last, AffineForm *out, int stride, NodeCache *cells) {
     Points points, near;
     double all[MOST_POINTS];
-    gather_nodes(&points, pieces, count, box, last);
+    gather_nodes(&points, pieces, count, box, last, cells);
     for (int i = 0; i < count; i++) {
         const Piece *p = &pieces[i];
         double squares[WORLEY_NODES], off = p->length + p->off;
         nearest(&points, p, last, all, squares);
-        keep_near(&points, all, sqrt(squares[last]) + 2 * off + SLACK, &near);
+        keep_near_nodes(&points, all, sqrt(squares[last]) + 2 * off + SLACK, &near);
         for (int k = 0; k <= last; k++) {
             double at = sqrt(squares[k]);
             AffineForm *form = &out[k * stride + i];
@@ -221,7 +235,7 @@ static void worley_group(const Piece *pieces, int count, const Box3 *box, int la
     }
 }
 
-void affine_worley(int count, const AffineForm *place, int last, AffineForm *out) {
+void affine_worley(int count, const AffineForm *place, int last, AffineForm *out, NodeCache *cells) {
     Piece pieces[MOST_PIECES];
     for (int i = 0; i < count; i++) pieces[i] = piece_of(place, count, i);
     for (int i = 0, n = 1; i < count; i += n) {
@@ -229,7 +243,7 @@ void affine_worley(int count, const AffineForm *place, int last, AffineForm *out
         n = 1;
         if (pieces[i].known) {
             n = group_of(&pieces[i], count - i, &box);
-            worley_group(&pieces[i], n, &box, last, &out[i], count);
+            worley_group(&pieces[i], n, &box, last, &out[i], count, cells);
             continue;
         }
         const Interval range[3] = {affine_range(place[i]), affine_range(place[count + i]),
@@ -240,67 +254,105 @@ void affine_worley(int count, const AffineForm *place, int last, AffineForm *out
 
 /* ---- sparse convolution ---- */
 
-static void gather_impulses(Points *points, const Box3 *box, int impulses) {
-    NearCell cells[MOST_CELLS];
-    int cell_count = cells_near(box, cells);
-    points->count = 0;
-    for (int c = 0; c < cell_count; c++) {
-        uint64_t bits = node_cell_bits(cells[c].cell, SPARSE_KIND);
-        for (int k = 0; k < impulses; k++) {
-            double weight;
-            Vec3 at = sparse_impulse(cells[c].cell, bits, k, &weight);
-            Vec3 out = vec3(bound_max(bound_max(box->min.x - at.x, at.x - box->max.x), 0),
-                            bound_max(bound_max(box->min.y - at.y, at.y - box->max.y), 0),
-                            bound_max(bound_max(box->min.z - at.z, at.z - box->max.z), 0));
-            if (vec3_length_squared(out) > 1 || points->count == MOST_POINTS) continue;
-            points->at[points->count] = at, points->weight[points->count++] = weight;
-        }
-    }
-}
-
 enum { TOGETHER = 8 };
 
-/* Impulses that count at a place: squares of their distances, weights, and the slopes of those squares. */
+/* Of all cells near some pieces. */
 typedef struct Impulses {
-    double square[MOST_POINTS + TOGETHER], weight[MOST_POINTS + TOGETHER], along[MOST_POINTS + TOGETHER];
-    int count;
+    double x[MOST_POINTS + TOGETHER], y[MOST_POINTS + TOGETHER], z[MOST_POINTS + TOGETHER], weight[MOST_POINTS + TOGETHER];
+    int count; /* a multiple of TOGETHER */
 } Impulses;
 
-/* Returns the weights of all that count anywhere on the piece. */
-static double find_near(const Points *points, const Piece *p, Impulses *near) {
-    double reach = 1 + p->length + p->off, weights = 0;
+static void find_impulses(NodeCell cell, int impulses, NodePoints *out) {
+    uint64_t bits = node_cell_bits(cell, SPARSE_KIND);
+    out->count = impulses;
+    for (int k = 0; k < impulses; k++) out->points[k].at = sparse_impulse(cell, bits, k, &out->points[k].weight);
+}
+
+static void add_impulses(Impulses *all, NodeCell cell, int impulses, NodeCache *cache) {
+    NodePoints own, *here = &own;
+    bool known = false;
+    if (cache) here = node_cache_at(cache, cell, SPARSE_KIND + (uint32_t)impulses, &known);
+    if (!known) find_impulses(cell, impulses, here);
+    for (int k = 0; k < impulses; k++) {
+        int i = all->count + k;
+        const NodePoint *point = &here->points[k];
+        all->x[i] = point->at.x, all->y[i] = point->at.y, all->z[i] = point->at.z, all->weight[i] = point->weight;
+    }
+    all->count += impulses;
+}
+
+static void fill_up(Impulses *all) {
+    for (; all->count % TOGETHER != 0; all->count++) {
+        int i = all->count;
+        all->x[i] = all->y[i] = all->z[i] = all->weight[i] = 0;
+    }
+}
+
+static double beyond(double low, double high, double x) { return bound_max(0, bound_max(low - x, x - high)); }
+
+/* Those within a unit of the box. */
+static void keep_near(const Impulses *restrict all, const Box3 *box, Impulses *restrict near) {
+    const Vec3 low = box->min, high = box->max;
     int count = 0;
-    for (int i = 0; i < points->count; i++) {
-        Vec3 to = vec3_sub(p->centre, points->at[i]);
-        double square = vec3_length_squared(to), w = points->weight[i];
-        weights += square < reach * reach ? fabs(w) : 0;
-        near->square[count] = square, near->weight[count] = w, near->along[count] = 2 * vec3_dot(to, p->way);
-        count += square < 1;
+    for (int i = 0; i < all->count; i += TOGETHER) {
+        double square[TOGETHER];
+        for (int k = 0; k < TOGETHER; k++) {
+            double x = beyond(low.x, high.x, all->x[i + k]), y = beyond(low.y, high.y, all->y[i + k]), z = beyond(low.z, high.z, all->z[i + k]);
+            square[k] = x * x + y * y + z * z;
+        }
+        for (int k = 0; k < TOGETHER; k++) {
+            near->x[count] = all->x[i + k], near->y[count] = all->y[i + k], near->z[count] = all->z[i + k];
+            near->weight[count] = all->weight[i + k];
+            count += square[k] <= 1;
+        }
     }
     near->count = count;
-    for (int i = count; i < count + TOGETHER; i++) near->square[i] = near->weight[i] = near->along[i] = 0;
-    return weights;
+    fill_up(near);
 }
 
-/* Value and slope at the centre, and the bound of the second derivative for the rest: the kernel's first derivative has no jumps. */
-static AffineForm along_impulses(const Points *points, const Piece *p, double root) {
-    Impulses near;
-    double weights = find_near(points, p, &near), value = 0, slope = 0, size = 0;
-    for (int i = 0; i < near.count; i += TOGETHER) {
-        const double *square = &near.square[i], *weight = &near.weight[i], *along = &near.along[i];
-        double values[TOGETHER], slopes[TOGETHER];
+static void gather_impulses(const Box3 *box, int impulses, NodeCache *cache, Impulses *near) {
+    NearCell cells[MOST_CELLS + 1];
+    Impulses all;
+    int cell_count = cells_near(box, cells);
+    all.count = 0;
+    for (int c = 0; c < cell_count; c++) add_impulses(&all, cells[c].cell, impulses, cache);
+    fill_up(&all);
+    keep_near(&all, box, near);
+}
+
+/* Value, slope and curvature at the centre, and the bound of the third derivative for the rest. An impulse whose border lies on the piece
+ * is beyond it off by no more than the jump of its second derivative makes of the way. Or value and slope, and the bound of
+ * the second derivative. */
+static AffineForm along_impulses(const Impulses *restrict near, const Piece *p, double root) {
+    double value[TOGETHER] = {0}, slope[TOGETHER] = {0}, bend[TOGETHER] = {0}, weights[TOGETHER] = {0}, jumps[TOGETHER] = {0};
+    double length = p->length, long_square = length * length, reach = (1 + length + p->off) * (1 + length + p->off);
+    Vec3 centre = p->centre, way = p->way;
+    for (int i = 0; i < near->count; i += TOGETHER) {
+        const double *x = &near->x[i], *y = &near->y[i], *z = &near->z[i], *weight = &near->weight[i];
         for (int k = 0; k < TOGETHER; k++) {
-            double rise;
-            values[k] = weight[k] * sparse_kernel(square[k], &rise);
-            slopes[k] = weight[k] * rise * along[k];
+            double dx = centre.x - x[k], dy = centre.y - y[k], dz = centre.z - z[k];
+            double square = dx * dx + dy * dy + dz * dz, along = 2 * (dx * way.x + dy * way.y + dz * way.z);
+            bool within = square < 1;
+            double rise, curve, w = within ? weight[k] : 0, size = square < reach ? fabs(weight[k]) : 0, kernel = sparse_kernel_bent(within ? square : 1, &rise, &curve);
+            double over = length - fabs(1 - sqrt(square));
+            over = over > 0 ? over : 0;
+            value[k] += w * kernel;
+            slope[k] += w * (rise * along);
+            bend[k] += w * (curve * (along * along) + rise * long_square);
+            weights[k] += size;
+            jumps[k] += size * (over * over);
         }
-        for (int k = 0; k < TOGETHER; k++) value += values[k], slope += slopes[k], size += fabs(weight[k]);
     }
-    double rest = weights * (SPARSE_CURVATURE / 2 * p->length * p->length + SPARSE_STEEPEST * p->off);
-    return (AffineForm){value / root, slope / root, round_up((rest + 0x1p-44 * (size + 1)) / root), false};
+    for (int k = 1; k < TOGETHER; k++)
+        value[0] += value[k], slope[0] += slope[k], bend[0] += bend[k], weights[0] += weights[k], jumps[0] += jumps[k];
+    double second = weights[0] * (SPARSE_CURVATURE / 2 * long_square), shift = bend[0] / 2;
+    double third = fabs(shift) + weights[0] * (SPARSE_THIRD / 6 * long_square * length) + SPARSE_CURVATURE / 2 * jumps[0];
+    if (third < second) value[0] += shift, second = third;
+    double rest = second + weights[0] * (SPARSE_STEEPEST * p->off);
+    return (AffineForm){value[0] / root, slope[0] / root, round_up((rest + 0x1p-44 * (weights[0] + 1)) / root), false};
 }
 
-void affine_sparse_convolution(int count, const AffineForm *place, int impulses, AffineForm *out) {
+void affine_sparse_convolution(int count, const AffineForm *place, int impulses, AffineForm *out, NodeCache *cells) {
     Piece pieces[MOST_PIECES];
     double root = sqrt(impulses);
     Interval whole = interval(-SPARSE_MOST * root, SPARSE_MOST * root);
@@ -308,7 +360,7 @@ void affine_sparse_convolution(int count, const AffineForm *place, int impulses,
         pieces[i] = piece_of(place, count, i), pieces[i].known &= impulses <= SPARSE_FEW;
     for (int i = 0, n = 1; i < count; i += n) {
         Box3 box;
-        Points points;
+        Impulses points;
         n = 1;
         if (!pieces[i].known) {
             const Interval range[3] = {affine_range(place[i]), affine_range(place[count + i]),
@@ -320,7 +372,7 @@ void affine_sparse_convolution(int count, const AffineForm *place, int impulses,
             continue;
         }
         n = group_of(&pieces[i], count - i, &box);
-        gather_impulses(&points, &box, impulses);
+        gather_impulses(&box, impulses, cells, &points);
         for (int k = i; k < i + n; k++)
             out[k] = affine_within(along_impulses(&points, &pieces[k], root), whole);
     }

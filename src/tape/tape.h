@@ -22,6 +22,7 @@ typedef enum TapeOp {
 
 struct Interval;   /* tape/interval.h */
 struct AffineForm; /* tape/affine.h */
+struct NodeCache;  /* tape/node_cache.h */
 
 typedef uint32_t TapeRef; /* a value of the tape under construction */
 typedef struct Tape Tape;
@@ -40,7 +41,7 @@ typedef struct TapeExternal {
     void (*bound)(const void *data, const struct Interval *in, struct Interval *out);
     /* Forms of the outputs on `count` pieces of a line at once, at most 8: output k of piece i is out[k·count + i], and so of the inputs.
      * NULL: those of the intervals. */
-    void (*forms)(const void *data, int count, const struct AffineForm *in, struct AffineForm *out);
+    void (*forms)(const void *data, int count, const struct AffineForm *in, struct AffineForm *out, struct NodeCache *cells);
     /* slopes[k·input_count + j], 0 before: the derivative of output k by input j. NULL: neighbouring places are compared. */
     void (*gradient)(const void *data, const double *in, double *slopes);
 } TapeExternal;

@@ -9,6 +9,9 @@
  * scratch has tape_scratch_size() forms. `out` may be `in`. */
 void tape_eval_affine(const Tape *tape, const AffineForm *in, AffineForm *out, AffineForm *scratch);
 
+/* Whether it asks an external for forms, which then may keep things in a cache (node_cache.h). */
+bool tape_has_forms(const Tape *tape);
+
 /* One operation of arity 1 to 3; operands that it does not have are ignored. */
 AffineForm tape_apply_affine(TapeOp op, AffineForm a, AffineForm b, AffineForm c);
 

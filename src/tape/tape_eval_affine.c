@@ -8,7 +8,7 @@ static bool affine_call(const TapeCall *call_, const AffineForm *slots, AffineFo
     AffineForm in[TAPE_CALL_MAX];
     if (!external->forms) return false;
     for (int k = 0; k < external->input_count; k++) in[k] = slots[call_->arg_slots[k]];
-    external->forms(external->data, 1, in, out);
+    external->forms(external->data, 1, in, out, NULL);
     return true;
 }
 
@@ -30,4 +30,12 @@ void tape_eval_affine(const Tape *tape, const AffineForm *in, AffineForm *out, A
     load_constants(tape, scratch);
     walk(tape, scratch);
     for (uint32_t k = 0; k < tape->output_count; k++) out[k] = scratch[tape->output_slots[k]];
+}
+
+bool tape_has_forms(const Tape *tape) {
+    for (size_t i = 0; i < tape->call_count; i++)
+        if (tape->calls[i].external->forms) return true;
+    for (size_t i = 0; i < tape->loop_count; i++)
+        if (tape_has_forms(tape->loops[i].body)) return true;
+    return false;
 }

@@ -6,7 +6,7 @@
 #include "tape/tape_affine.h"
 #include "tape/tape_program.h"
 
-static void walk(const Tape *tape, AffineLanes *slots);
+static void walk(const Tape *tape, AffineLanes *slots, struct NodeCache *cells);
 
 /* Constants have no lanes: they are read from the tape. */
 static inline bool is_constant(const Tape *tape, uint32_t slot) {
@@ -27,21 +27,21 @@ static AffineForm lane_of(const Tape *tape, const AffineLanes *slots, uint32_t s
     return is_constant(tape, slot) ? affine_point(constant_at(tape, slot)) : affine_lane(&slots[slot], lane);
 }
 
-static void call_forms(const Tape *tape, const TapeCall *call_, AffineLanes *slots) {
+static void call_forms(const Tape *tape, const TapeCall *call_, AffineLanes *slots, struct NodeCache *cells) {
     const TapeExternal *external = call_->external;
     AffineForm in[TAPE_CALL_MAX * AFFINE_LANES], out[TAPE_CALL_MAX * AFFINE_LANES];
     for (int k = 0; k < external->input_count; k++)
         AFFINE_EACH_LANE in[k * AFFINE_LANES + l] = lane_of(tape, slots, call_->arg_slots[k], l);
-    external->forms(external->data, AFFINE_LANES, in, out);
+    external->forms(external->data, AFFINE_LANES, in, out, cells);
     for (int k = 0; k < external->output_count; k++)
         if (call_->result_slots[k] != TAPE_NO_SLOT)
             AFFINE_EACH_LANE affine_set_lane(&slots[call_->result_slots[k]], l, out[k * AFFINE_LANES + l]);
 }
 
-static void call(const Tape *tape, const TapeCall *call_, AffineLanes *slots) {
+static void call(const Tape *tape, const TapeCall *call_, AffineLanes *slots, struct NodeCache *cells) {
     const TapeExternal *external = call_->external;
     if (external->forms) {
-        call_forms(tape, call_, slots);
+        call_forms(tape, call_, slots, cells);
         return;
     }
     for (int l = 0; l < AFFINE_LANES; l++) {
@@ -60,7 +60,7 @@ static void call(const Tape *tape, const TapeCall *call_, AffineLanes *slots) {
 enum { MOST_PASSES = 4096 };
 
 static void loop(const Tape *tape, const TapeLoop *loop_, const TapeStep *step, bool product,
-                 AffineLanes *slots, AffineLanes *scratch) {
+                 AffineLanes *slots, AffineLanes *scratch, struct NodeCache *cells) {
     const Tape *body = loop_->body;
     AffineLanes *out = &slots[step->dst], before, filled;
     AFFINE_EACH_LANE out->centre[l] = out->slope[l] = 0, out->error[l] = HUGE_VAL;
@@ -72,7 +72,7 @@ static void loop(const Tape *tape, const TapeLoop *loop_, const TapeStep *step, 
     affine_fill_lanes(out, product ? 1 : 0);
     for (double pass = 0; i <= to && pass <= to - from; pass++, i += 1) {
         affine_fill_lanes(&scratch[body->input_count - 1], i);
-        walk(body, scratch);
+        walk(body, scratch, cells);
         const AffineLanes *term = operand(body, scratch, body->output_slots[0], &filled);
         before = *out;
         product ? affine_mul_lanes(out, &before, term) : affine_add_lanes(out, &before, term);
@@ -137,7 +137,7 @@ static void noise(const Tape *tape, const TapeStep *step, AffineLanes *slots, No
     affine_noise_lanes(&slots[step->dst], p, along, known);
 }
 
-static void walk(const Tape *tape, AffineLanes *slots) {
+static void walk(const Tape *tape, AffineLanes *slots, struct NodeCache *cells) {
     for (const TapeStep *step = tape->steps, *end = step + tape->step_count; step < end; step++) {
         switch ((TapeOp)step->op) {
         case TAPE_ADD: add(tape, step, slots); break;
@@ -149,10 +149,10 @@ static void walk(const Tape *tape, AffineLanes *slots) {
         case TAPE_SQRT: affine_sqrt_lanes(&slots[step->dst], &slots[step->a]); break;
         case TAPE_PERLIN: noise(tape, step, slots, noise_perlin_taylor, &perlin); break;
         case TAPE_POV_NOISE: noise(tape, step, slots, noise_pov_taylor, &pov); break;
-        case TAPE_CALL: call(tape, &tape->calls[step->c], slots); break;
+        case TAPE_CALL: call(tape, &tape->calls[step->c], slots, cells); break;
         case TAPE_SUM:
         case TAPE_PROD:
-            loop(tape, &tape->loops[step->c], step, step->op == TAPE_PROD, slots, slots + tape->slot_count);
+            loop(tape, &tape->loops[step->c], step, step->op == TAPE_PROD, slots, slots + tape->slot_count, cells);
             break;
         default: general(tape, step, slots); break;
         }
@@ -162,10 +162,10 @@ static void walk(const Tape *tape, AffineLanes *slots) {
 void tape_eval_lanes(const Tape *tape, const AffineLanes *in, AffineLanes *out, AffineLanes *scratch) {
     AffineLanes filled;
     for (uint32_t k = 0; k < tape->input_count; k++) scratch[k] = in[k];
-    *out = *tape_eval_lanes_again(tape, scratch, &filled);
+    *out = *tape_eval_lanes_again(tape, scratch, &filled, NULL);
 }
 
-const AffineLanes *tape_eval_lanes_again(const Tape *tape, AffineLanes *scratch, AffineLanes *filled) {
-    walk(tape, scratch);
+const AffineLanes *tape_eval_lanes_again(const Tape *tape, AffineLanes *scratch, AffineLanes *filled, struct NodeCache *cells) {
+    walk(tape, scratch, cells);
     return operand(tape, scratch, tape->output_slots[0], filled);
 }

@@ -5,12 +5,13 @@
 #include "tape/affine_lanes.h"
 #include "tape/tape.h"
 
+
 /* As tape_eval_affine(), for every lane; lanes of which nothing is known have an error that is not below infinity. The tape has one
  * output. The scratch has tape_scratch_size() lanes. */
 void tape_eval_lanes(const Tape *tape, const AffineLanes *in, AffineLanes *out, AffineLanes *scratch);
 /* The same with the inputs where a tape with as many inputs has left them: at the beginning of `scratch`. Returns where the output is:
- * in `scratch`, or, of a constant, *filled. */
-const AffineLanes *tape_eval_lanes_again(const Tape *tape, AffineLanes *scratch, AffineLanes *filled);
+ * in `scratch`, or, of a constant, *filled. `cells` (node_cache.h): what noises of points keep from one call to the next; or NULL. */
+const AffineLanes *tape_eval_lanes_again(const Tape *tape, AffineLanes *scratch, AffineLanes *filled, struct NodeCache *cells);
 
 /* A function as a sum of functions, so that a bound of the sum needs no more of them than tell it apart from zero. */
 typedef struct TapeTerm {
@@ -56,8 +57,8 @@ typedef struct TapeEach {
     AffineLanes of[TAPE_SETTLED_MOST];
 } TapeEach;
 
-/* The same where `settled` stands for some of the terms; *each gets the others that were evaluated. */
+/* The same where `settled` stands for some of the terms; *each gets the others that were evaluated. `cells` as above. */
 size_t tape_sum_rest(const TapeSum *sum, double level, const AffineLanes *width, const TapeSettled *settled, AffineLanes *restrict out,
-                     TapeEach *restrict each, AffineLanes *restrict scratch);
+                     TapeEach *restrict each, AffineLanes *restrict scratch, struct NodeCache *cells);
 
 #endif

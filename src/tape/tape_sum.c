@@ -253,13 +253,13 @@ static Look look_of(const AffineLanes *width) {
 }
 
 /* What remains of a term, before its scale: mean + share·(term − mean). */
-static const AffineLanes *seen_term(const TapeTerm *term, const Look *look, AffineLanes *scratch, AffineLanes *filled) {
-    if (!(look->widest > term->full)) return tape_eval_lanes_again(term->tape, scratch, filled);
+static const AffineLanes *seen_term(const TapeTerm *term, const Look *look, AffineLanes *scratch, AffineLanes *filled, struct NodeCache *cells) {
+    if (!(look->widest > term->full)) return tape_eval_lanes_again(term->tape, scratch, filled, cells);
     AffineForm mean = affine_point(term->mean / term->scale);
     affine_fill_lanes(filled, mean.centre);
     if (look->narrowest >= term->gone) return filled;
     AffineLanes constant;
-    const AffineLanes *whole = tape_eval_lanes_again(term->tape, scratch, &constant);
+    const AffineLanes *whole = tape_eval_lanes_again(term->tape, scratch, &constant, cells);
     AFFINE_EACH_LANE {
         AffineForm part = affine_MUL(tape_term_share(term, affine_lane(look->width, l)), affine_SUB(affine_lane(whole, l), mean));
         affine_set_lane(filled, l, affine_ADD(mean, part));
@@ -284,7 +284,7 @@ static void find_rest(const TapeSum *sum, const TapeSettled *settled, Rest *rest
 }
 
 size_t tape_sum_rest(const TapeSum *sum, double level, const AffineLanes *width, const TapeSettled *settled, AffineLanes *restrict out,
-                     TapeEach *restrict each, AffineLanes *restrict scratch) {
+                     TapeEach *restrict each, AffineLanes *restrict scratch, struct NodeCache *cells) {
     const Look look = look_of(width);
     Total total;
     Rest own;
@@ -299,7 +299,7 @@ size_t tape_sum_rest(const TapeSum *sum, double level, const AffineLanes *width,
         const TapeTerm *term = &sum->terms[k];
         if (is_settled(settled, k)) continue;
         bool kept = k < TAPE_SETTLED_MOST;
-        add_scaled(&total, seen_term(term, &look, scratch, &filled), term->scale, term->rounding, kept ? &each->of[k] : &spare);
+        add_scaled(&total, seen_term(term, &look, scratch, &filled, cells), term->scale, term->rounding, kept ? &each->of[k] : &spare);
         if (kept) each->terms |= (uint32_t)1 << k;
         first = false;
     }
@@ -315,5 +315,5 @@ size_t tape_sum_rest(const TapeSum *sum, double level, const AffineLanes *width,
 
 size_t tape_sum_lanes(const TapeSum *sum, double level, const AffineLanes *width, AffineLanes *restrict out, AffineLanes *restrict scratch) {
     TapeEach each;
-    return tape_sum_rest(sum, level, width, NULL, out, &each, scratch);
+    return tape_sum_rest(sum, level, width, NULL, out, &each, scratch, NULL);
 }

@@ -30,9 +30,9 @@ static void node_bounds(const void *data, const Interval *in, Interval *out) {
     (void)data;
     for (int k = 0; k <= LAST; k++) out[k] = interval_worley(in, k);
 }
-static void node_forms(const void *data, int count, const AffineForm *in, AffineForm *out) {
+static void node_forms(const void *data, int count, const AffineForm *in, AffineForm *out, struct NodeCache *cells) {
     (void)data;
-    affine_worley(count, in, LAST, out);
+    affine_worley(count, in, LAST, out, cells);
 }
 static void impulses(const void *data, const double *in, double *out) {
     (void)data;
@@ -42,9 +42,9 @@ static void impulse_bounds(const void *data, const Interval *in, Interval *out) 
     (void)data;
     *out = interval_sparse_convolution(in, IMPULSES);
 }
-static void impulse_forms(const void *data, int count, const AffineForm *in, AffineForm *out) {
+static void impulse_forms(const void *data, int count, const AffineForm *in, AffineForm *out, struct NodeCache *cells) {
     (void)data;
-    affine_sparse_convolution(count, in, IMPULSES, out);
+    affine_sparse_convolution(count, in, IMPULSES, out, cells);
 }
 static const TapeExternal worley = {
     .name = "worley", .input_count = 3, .output_count = LAST + 1, .eval = nodes, .bound = node_bounds, .forms = node_forms, .hash = {1, 1}};

@@ -5,11 +5,13 @@
 #include "bounds_sample.h"
 #include "tape/noise.h"
 #include "tape/noise_interval.h"
+#include "tape/node_cache.h"
 #include "tape/noise_nodes_forms.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include <cmocka.h>
 
@@ -183,10 +185,10 @@ static void settled_terms_hold_their_values(void **state) {
             for (uint32_t k = 0; k < 3; k++) affine_set_lane(&scratch[k], (int)l, with_rounding(some_line(i * 8 + l, 10 * k, true)));
         AffineLanes in[3] = {scratch[0], scratch[1], scratch[2]};
         double level = 4 * unit(i, 90);
-        tape_sum_rest(&parts, level, NULL, NULL, &out, &each, scratch);
+        tape_sum_rest(&parts, level, NULL, NULL, &out, &each, scratch, NULL);
         const TapeSettled settled = settled_of(&each, (uint32_t)bits(i, 91));
         for (int k = 0; k < 3; k++) scratch[k] = in[k];
-        tape_sum_rest(&parts, level, NULL, &settled, &out, &again, scratch);
+        tape_sum_rest(&parts, level, NULL, &settled, &out, &again, scratch, NULL);
         assert_int_equal(again.terms & settled.terms, 0);
         fewer += again.terms != each.terms;
         for (uint32_t l = 0; l < AFFINE_LANES; l++) {
@@ -233,8 +235,8 @@ static void nodes_along_lines_hold_their_values(void **state) {
             for (int n = 0; n < pieces; n++)
                 place[(int)k * pieces + n] = (AffineForm){origin + 2 * n * half * along, half * along, off + far * 0x1p-50, false};
         }
-        affine_worley(pieces, place, last, worley);
-        affine_sparse_convolution(pieces, place, impulses, sparse);
+        affine_worley(pieces, place, last, worley, NULL);
+        affine_sparse_convolution(pieces, place, impulses, sparse, NULL);
         for (int n = 0; n < pieces; n++)
             for (uint32_t t = 0; t < 5; t++) {
                 double s = t == 0 ? -1 : t == 1 ? 1 : 2 * unit(i, 20 + t) - 1, x[3], nearest[WORLEY_NODES];
@@ -255,11 +257,35 @@ static void nodes_along_lines_hold_their_values(void **state) {
     assert_true(tight > 0.97 * count); /* else two nodes are as far there, or one is close */
 }
 
+static void assert_same(const AffineForm *a, const AffineForm *b, int count) {
+    for (int k = 0; k < count; k++)
+        assert_true(a[k].centre == b[k].centre && a[k].slope == b[k].slope && a[k].error == b[k].error && a[k].nan == b[k].nan);
+}
+
+/* Whatever a cache has seen before, places far away and other numbers of impulses among them. */
+static void caches_change_nothing(void **state) {
+    (void)state;
+    NodeCache *cells = malloc(sizeof *cells);
+    assert_non_null(cells);
+    node_cache_begin(cells);
+    for (uint64_t i = 0; i < 20000; i++) {
+        AffineForm place[3], with[WORLEY_NODES], without[WORLEY_NODES];
+        double far = i % 7 ? 12 : 1e8;
+        for (uint32_t k = 0; k < 3; k++) place[k] = (AffineForm){far * (unit(i, k) - 0.5), 0.2 * unit(i, 5 + k) - 0.1, 0, false};
+        int last = (int)(i % WORLEY_NODES), impulses = 1 + (int)(i % 11);
+        affine_worley(1, place, last, with, cells), affine_worley(1, place, last, without, NULL);
+        assert_same(with, without, last + 1);
+        affine_sparse_convolution(1, place, impulses, with, cells), affine_sparse_convolution(1, place, impulses, without, NULL);
+        assert_same(with, without, 1);
+    }
+    free(cells);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_operation_holds_its_values), cmocka_unit_test(noises_hold_their_values), cmocka_unit_test(constants_hold_their_values),
         cmocka_unit_test(sums_hold_their_values), cmocka_unit_test(settled_terms_hold_their_values),           cmocka_unit_test(nodes_hold_their_values),
-        cmocka_unit_test(nodes_along_lines_hold_their_values),
+        cmocka_unit_test(nodes_along_lines_hold_their_values), cmocka_unit_test(caches_change_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,6 +17,7 @@ size_of() {
     meadow_ball) echo 400x400 ;;
     hillside | sundial) echo 480x320 ;;
     teddy) echo 480x480 ;;
+    three_noises) echo 480x240 ;;
     bird) echo 400x300 ;;
     skies) echo 640x290 ;;
     fur) echo 448x252 ;;

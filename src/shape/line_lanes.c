@@ -13,6 +13,9 @@ static const double ALONE = 0x1p6;
  * piece take them as they are, until their errors come to STALE of that, or to half of all. */
 static const double SETTLES = 0x1p-7, STALE = 0x1p-5;
 
+/* Shorter sums gain nothing by it. */
+enum { SETTLING_TERMS = 8 };
+
 /* The sum of the settled terms at middle + s·half. */
 typedef struct Settled {
     uint32_t terms; /* a bit for each */
@@ -120,7 +123,8 @@ static void settle(const TapeSum *sum, const Batch *batch, uint64_t open, Settle
 static void push_rest(Lanes *lanes, const Batch *batch) {
     uint64_t open = open_lanes(&batch->bounds);
     Settled settled[AFFINE_LANES];
-    if (open) settle(lanes->search->line->sum, batch, open, settled);
+    bool settles = open && lanes->search->line->sum->count >= SETTLING_TERMS;
+    if (settles) settle(lanes->search->line->sum, batch, open, settled);
     for (int l = batch->used; l-- > 0;) {
         if (!(open >> l & 1)) continue;
         LinePiece piece = batch->pieces[l];
@@ -132,7 +136,10 @@ static void push_rest(Lanes *lanes, const Batch *batch) {
         }
         if (!f.nan) line_cut(f, &piece.a, &piece.b);
         if (!(piece.b >= piece.a) || lanes->count >= LINE_MOST_PIECES) continue;
-        lanes->stack[lanes->count++] = (LanePiece){piece.a, piece.b, settled[l]};
+        LanePiece *rest = &lanes->stack[lanes->count++];
+        rest->a = piece.a, rest->b = piece.b, rest->settled.terms = 0;
+        /* Where cutting soon ends at a zero, only what settled terms are off would stand in its way. */
+        if (settles && fabs(f.slope) <= f.error) rest->settled = settled[l];
     }
 }
 

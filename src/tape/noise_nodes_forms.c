@@ -18,8 +18,11 @@ typedef struct Piece {
     bool known;         /* near and short enough for points to be gathered */
 } Piece;
 
+enum { TOGETHER = 8 };
+
+/* Points, or nodes, which weigh nothing. */
 typedef struct Points {
-    Vec3 at[MOST_POINTS];
+    double x[MOST_POINTS + TOGETHER], y[MOST_POINTS + TOGETHER], z[MOST_POINTS + TOGETHER], weight[MOST_POINTS + TOGETHER];
     int count;
 } Points;
 
@@ -98,6 +101,41 @@ static int cells_near(const Box3 *box, NearCell *out) {
     return count;
 }
 
+/* To a multiple of TOGETHER, with points that are near nothing. */
+static void fill_up(Points *all) {
+    int end = all->count;
+    for (int i = end; i < end + TOGETHER; i++) all->x[i] = all->y[i] = all->z[i] = 0x1p40, all->weight[i] = 0;
+}
+
+static double beyond(double low, double high, double x) { return bound_max(0, bound_max(low - x, x - high)); }
+
+/* Those that are no further from the box than `reach`. */
+static void keep_near(Points *restrict all, const Box3 *box, double reach, Points *restrict near) {
+    const Vec3 low = box->min, high = box->max;
+    int count = 0;
+    fill_up(all);
+    for (int i = 0; i < all->count; i += TOGETHER) {
+        double square[TOGETHER];
+        for (int k = 0; k < TOGETHER; k++) {
+            double x = beyond(low.x, high.x, all->x[i + k]), y = beyond(low.y, high.y, all->y[i + k]), z = beyond(low.z, high.z, all->z[i + k]);
+            square[k] = x * x + y * y + z * z;
+        }
+        for (int k = 0; k < TOGETHER; k++) {
+            near->x[count] = all->x[i + k], near->y[count] = all->y[i + k], near->z[count] = all->z[i + k];
+            near->weight[count] = all->weight[i + k];
+            count += square[k] <= reach * reach;
+        }
+    }
+    near->count = count;
+}
+
+static void add_point(Points *all, Vec3 at, double weight) {
+    int i = all->count;
+    if (i == MOST_POINTS) return;
+    all->x[i] = at.x, all->y[i] = at.y, all->z[i] = at.z, all->weight[i] = weight;
+    all->count = i + 1;
+}
+
 /* ---- Worley ---- */
 
 /* The least `count` numbers, in order; more is put in its place. */
@@ -119,38 +157,38 @@ static void add_nodes(Points *points, NodeCell cell, NodeCache *cells) {
     bool known = false;
     if (cells) here = node_cache_at(cells, cell, WORLEY_KIND, &known);
     if (!known) find_nodes(cell, here);
-    for (int k = 0; k < here->count && points->count < MOST_POINTS; k++) points->at[points->count++] = here->points[k].at;
+    for (int k = 0; k < here->count; k++) add_point(points, here->points[k].at, 0);
 }
 
-/* The squares of the distances from the piece's centre to all nodes, and to the nearest ones, number 0 … last. */
-static void nearest(const Points *points, const Piece *p, int last, double *restrict all, double *restrict squares) {
-    for (int i = 0; i < points->count; i++) all[i] = vec3_length_squared(vec3_sub(points->at[i], p->centre));
+/* The squares of the distances from the piece's centre to the nearest nodes, number 0 … last. */
+static void nearest(const Points *restrict points, const Piece *p, int last, double *restrict squares) {
+    double all[MOST_POINTS + TOGETHER];
+    const Vec3 c = p->centre;
+    for (int i = 0; i < points->count; i++) {
+        double x = points->x[i] - c.x, y = points->y[i] - c.y, z = points->z[i] - c.z;
+        all[i] = x * x + y * y + z * z;
+    }
     for (int k = 0; k <= last; k++) squares[k] = HUGE_VAL;
     for (int i = 0; i < points->count; i++) keep_least(squares, last + 1, all[i]);
 }
 
-/* Of all nodes those that may be among the nearest from a place of the piece: distances change by no more than the way. */
-static void keep_near_nodes(const Points *points, const double *all, double far, Points *near) {
-    near->count = 0;
-    for (int i = 0; i < points->count; i++)
-        if (all[i] <= far * far) near->at[near->count++] = points->at[i];
-}
-
 /* Of each piece all nodes that may be among the nearest up to `last` from any of its places, if they are less than a unit away: the
  * distance changes by no more than the way. */
-static void gather_nodes(Points *points, const Piece *pieces, int count, const Box3 *box, int last, NodeCache *cache) {
+static void gather_nodes(Points *near, const Piece *pieces, int count, const Box3 *box, int last, NodeCache *cache) {
+    Points all;
     NearCell cells[MOST_CELLS + 1];
     int cell_count = cells_near(box, cells);
-    double reach = 0, squares[WORLEY_NODES], all[MOST_POINTS];
-    points->count = 0;
+    double reach = 0, squares[WORLEY_NODES];
+    all.count = 0;
     for (int c = 0; c < cell_count; c++)
-        if (cells[c].square == 0) add_nodes(points, cells[c].cell, cache);
+        if (cells[c].square == 0) add_nodes(&all, cells[c].cell, cache);
     for (int i = 0; i < count; i++) {
-        nearest(points, &pieces[i], last, all, squares);
+        nearest(&all, &pieces[i], last, squares);
         reach = bound_max(reach, sqrt(squares[last]) + 2 * (pieces[i].length + pieces[i].off) + SLACK);
     }
     for (int c = 0; c < cell_count; c++)
-        if (cells[c].square > 0 && cells[c].square <= reach * reach) add_nodes(points, cells[c].cell, cache);
+        if (cells[c].square > 0 && cells[c].square <= reach * reach) add_nodes(&all, cells[c].cell, cache);
+    keep_near(&all, box, bound_min(reach, 1), near);
 }
 
 enum { MOST_RIVALS = 10 };
@@ -193,13 +231,14 @@ static AffineForm root_of(AffineForm a) {
 }
 
 static AffineForm along_nodes(const Points *points, const Piece *p, int index) {
+    const Vec3 c = p->centre;
     Rival rivals[MOST_RIVALS];
     double highest[WORLEY_NODES], square = p->length * p->length;
     int count = 0;
     for (int k = 0; k <= index; k++) highest[k] = HUGE_VAL;
     for (int pass = 0; pass < 2; pass++)
         for (int i = 0; i < points->count; i++) {
-            Vec3 to = vec3_sub(p->centre, points->at[i]);
+            Vec3 to = vec3(c.x - points->x[i], c.y - points->y[i], c.z - points->z[i]);
             Rival r = {vec3_length_squared(to), 2 * vec3_dot(to, p->way)};
             if (pass == 0)
                 keep_least(highest, index + 1, r.middle + fabs(r.slope));
@@ -215,20 +254,19 @@ static AffineForm along_nodes(const Points *points, const Piece *p, int index) {
 }
 
 static void worley_group(const Piece *pieces, int count, const Box3 *box, int last, AffineForm *out, int stride, NodeCache *cells) {
-    Points points, near;
-    double all[MOST_POINTS];
+    Points points;
     gather_nodes(&points, pieces, count, box, last, cells);
     for (int i = 0; i < count; i++) {
         const Piece *p = &pieces[i];
         double squares[WORLEY_NODES], off = p->length + p->off;
-        nearest(&points, p, last, all, squares);
-        keep_near_nodes(&points, all, sqrt(squares[last]) + 2 * off + SLACK, &near);
+        nearest(&points, p, last, squares);
         for (int k = 0; k <= last; k++) {
             double at = sqrt(squares[k]);
             AffineForm *form = &out[k * stride + i];
+            /* Further away there may be nodes that were not gathered. */
             bool complete = at + 2 * off < 1 - SLACK;
-            if (!complete) at = noise_worley(p->centre, k);
-            *form = complete ? along_nodes(&near, p, k) : affine_unknown(false);
+            if (!(at < 1 - SLACK)) at = noise_worley(p->centre, k);
+            *form = complete ? along_nodes(&points, p, k) : affine_unknown(false);
             form->error += p->off;
             *form = affine_within(*form, interval(bound_max(0, at - off), at + off));
         }
@@ -254,76 +292,34 @@ void affine_worley(int count, const AffineForm *place, int last, AffineForm *out
 
 /* ---- sparse convolution ---- */
 
-enum { TOGETHER = 8 };
-
-/* Of all cells near some pieces. */
-typedef struct Impulses {
-    double x[MOST_POINTS + TOGETHER], y[MOST_POINTS + TOGETHER], z[MOST_POINTS + TOGETHER], weight[MOST_POINTS + TOGETHER];
-    int count; /* a multiple of TOGETHER */
-} Impulses;
-
 static void find_impulses(NodeCell cell, int impulses, NodePoints *out) {
     uint64_t bits = node_cell_bits(cell, SPARSE_KIND);
     out->count = impulses;
     for (int k = 0; k < impulses; k++) out->points[k].at = sparse_impulse(cell, bits, k, &out->points[k].weight);
 }
 
-static void add_impulses(Impulses *all, NodeCell cell, int impulses, NodeCache *cache) {
+static void add_impulses(Points *all, NodeCell cell, int impulses, NodeCache *cache) {
     NodePoints own, *here = &own;
     bool known = false;
     if (cache) here = node_cache_at(cache, cell, SPARSE_KIND + (uint32_t)impulses, &known);
     if (!known) find_impulses(cell, impulses, here);
-    for (int k = 0; k < impulses; k++) {
-        int i = all->count + k;
-        const NodePoint *point = &here->points[k];
-        all->x[i] = point->at.x, all->y[i] = point->at.y, all->z[i] = point->at.z, all->weight[i] = point->weight;
-    }
-    all->count += impulses;
+    for (int k = 0; k < impulses; k++) add_point(all, here->points[k].at, here->points[k].weight);
 }
 
-static void fill_up(Impulses *all) {
-    for (; all->count % TOGETHER != 0; all->count++) {
-        int i = all->count;
-        all->x[i] = all->y[i] = all->z[i] = all->weight[i] = 0;
-    }
-}
-
-static double beyond(double low, double high, double x) { return bound_max(0, bound_max(low - x, x - high)); }
-
-/* Those within a unit of the box. */
-static void keep_near(const Impulses *restrict all, const Box3 *box, Impulses *restrict near) {
-    const Vec3 low = box->min, high = box->max;
-    int count = 0;
-    for (int i = 0; i < all->count; i += TOGETHER) {
-        double square[TOGETHER];
-        for (int k = 0; k < TOGETHER; k++) {
-            double x = beyond(low.x, high.x, all->x[i + k]), y = beyond(low.y, high.y, all->y[i + k]), z = beyond(low.z, high.z, all->z[i + k]);
-            square[k] = x * x + y * y + z * z;
-        }
-        for (int k = 0; k < TOGETHER; k++) {
-            near->x[count] = all->x[i + k], near->y[count] = all->y[i + k], near->z[count] = all->z[i + k];
-            near->weight[count] = all->weight[i + k];
-            count += square[k] <= 1;
-        }
-    }
-    near->count = count;
-    fill_up(near);
-}
-
-static void gather_impulses(const Box3 *box, int impulses, NodeCache *cache, Impulses *near) {
+static void gather_impulses(const Box3 *box, int impulses, NodeCache *cache, Points *near) {
     NearCell cells[MOST_CELLS + 1];
-    Impulses all;
+    Points all;
     int cell_count = cells_near(box, cells);
     all.count = 0;
     for (int c = 0; c < cell_count; c++) add_impulses(&all, cells[c].cell, impulses, cache);
-    fill_up(&all);
-    keep_near(&all, box, near);
+    keep_near(&all, box, 1, near);
+    fill_up(near);
 }
 
 /* Value, slope and curvature at the centre, and the bound of the third derivative for the rest. An impulse whose border lies on the piece
  * is beyond it off by no more than the jump of its second derivative makes of the way. Or value and slope, and the bound of
  * the second derivative. */
-static AffineForm along_impulses(const Impulses *restrict near, const Piece *p, double root) {
+static AffineForm along_impulses(const Points *restrict near, const Piece *p, double root) {
     double value[TOGETHER] = {0}, slope[TOGETHER] = {0}, bend[TOGETHER] = {0}, weights[TOGETHER] = {0}, jumps[TOGETHER] = {0};
     double length = p->length, long_square = length * length, reach = (1 + length + p->off) * (1 + length + p->off);
     Vec3 centre = p->centre, way = p->way;
@@ -360,7 +356,7 @@ void affine_sparse_convolution(int count, const AffineForm *place, int impulses,
         pieces[i] = piece_of(place, count, i), pieces[i].known &= impulses <= SPARSE_FEW;
     for (int i = 0, n = 1; i < count; i += n) {
         Box3 box;
-        Impulses points;
+        Points points;
         n = 1;
         if (!pieces[i].known) {
             const Interval range[3] = {affine_range(place[i]), affine_range(place[count + i]),

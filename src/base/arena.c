@@ -13,6 +13,7 @@ enum { ALIGNMENT = 16, DEFAULT_BLOCK = 1 << 16, LARGEST_DOUBLED_BLOCK = 1 << 20 
 struct ArenaBlock {
     ArenaBlock *older;
     size_t size; /* bytes of data[] */
+    uint64_t number;
     _Alignas(ALIGNMENT) unsigned char data[];
 };
 
@@ -45,18 +46,32 @@ static void release_block(Arena *arena, ArenaBlock *block) {
 }
 
 void arena_destroy(Arena *arena) {
-    arena_reset_to(arena, (ArenaMark){NULL, 0});
+    arena_reset_to(arena, (ArenaMark){0, 0});
     if (arena->spare) release_block(arena, arena->spare);
     arena->spare = NULL;
+}
+
+static void put_newest(Arena *arena, ArenaBlock *block) {
+    block->older = arena->block;
+    block->number = arena->newest = ++arena->blocks;
+    arena->block = block;
+    arena->used = 0;
+}
+
+/* The one before the newest is the newest again, and full: what is left of it nobody knows any more. */
+static ArenaBlock *take_newest(Arena *arena) {
+    ArenaBlock *block = arena->block;
+    arena->block = block->older;
+    arena->newest = arena->block ? arena->block->number : 0;
+    arena->used = arena->block ? arena->block->size : 0;
+    return block;
 }
 
 static bool take_spare(Arena *arena, size_t at_least) {
     ArenaBlock *block = arena->spare;
     if (!block || block->size < at_least) return false;
     arena->spare = NULL;
-    block->older = arena->block;
-    arena->block = block;
-    arena->used = 0;
+    put_newest(arena, block);
     return true;
 }
 
@@ -73,10 +88,8 @@ static bool add_block(Arena *arena, size_t at_least) {
         memory_budget_give_back(arena->budget, bytes);
         memory_budget_fail(arena->budget);
     }
-    block->older = arena->block;
     block->size = size;
-    arena->block = block;
-    arena->used = 0;
+    put_newest(arena, block);
     arena->total += bytes;
     if (arena->block_size < LARGEST_DOUBLED_BLOCK) arena->block_size *= 2;
     return zeroed;
@@ -119,12 +132,12 @@ char *arena_printf(Arena *arena, const char *format, ...) {
 }
 
 void arena_drop_blocks(Arena *arena, ArenaMark mark) {
-    while (arena->block != mark.block) {
-        ArenaBlock *block = arena->block;
-        arena->block = block->older;
+    while (arena->newest > mark.block) {
+        ArenaBlock *block = take_newest(arena);
         if (!arena->spare && block->size <= LARGEST_DOUBLED_BLOCK) arena->spare = block;
         else release_block(arena, block);
     }
+    if (arena->newest == mark.block) arena->used = mark.used; /* else that block was released */
 }
 
 static size_t rounded(size_t size) { return (size + ALIGNMENT - 1) & ~(size_t)(ALIGNMENT - 1); }
@@ -152,6 +165,24 @@ void arena_list_grow_(Arena *arena, void **items, size_t *capacity, size_t count
     if (count) memcpy(copy, *items, count * item_size);
     *items = copy;
     *capacity = grown;
+}
+
+void arena_release(Arena *arena, const void *piece, size_t size) {
+    if (!piece || rounded(size) < DEFAULT_BLOCK) return; /* not worth a search */
+    ArenaBlock **link = &arena->block;
+    while (*link && (*link)->data != (const unsigned char *)piece) link = &(*link)->older;
+    ArenaBlock *block = *link;
+    if (!block || block->size != rounded(size)) return;
+    if (block == arena->block) take_newest(arena);
+    else *link = block->older;
+    release_block(arena, block);
+}
+
+void arena_list_move_(Arena *arena, void **items, size_t *capacity, size_t count, size_t item_size) {
+    const void *before = *items;
+    size_t size = *capacity * item_size;
+    arena_list_grow_(arena, items, capacity, count, item_size);
+    if (before != *items) arena_release(arena, before, size);
 }
 
 void memory_trim(void) {

@@ -29,6 +29,8 @@ typedef struct ArenaBlock ArenaBlock;
 typedef struct Arena {
     ArenaBlock *block;    /* newest block, linked to older ones */
     ArenaBlock *spare;    /* kept from the last reset, so that one that crosses a block's edge again and again costs nothing; or NULL */
+    uint64_t newest;      /* the number of the newest block, 0 of none: later ones have larger numbers */
+    uint64_t blocks;      /* how many there have ever been */
     size_t used;          /* bytes used in the newest block */
     size_t total;         /* bytes held by all blocks */
     size_t block_size;    /* size of the next ordinary block */
@@ -36,7 +38,7 @@ typedef struct Arena {
 } Arena;
 
 typedef struct ArenaMark {
-    ArenaBlock *block;
+    uint64_t block; /* its number */
     size_t used;
 } ArenaMark;
 
@@ -56,14 +58,16 @@ void *arena_copy(Arena *arena, const void *data, size_t size);
 char *arena_strdup(Arena *arena, const char *text);
 char *arena_printf(Arena *arena, const char *format, ...) VTS_PRINTF(2, 3);
 
-static inline ArenaMark arena_mark(const Arena *arena) { return (ArenaMark){arena->block, arena->used}; }
-/* Gives back the blocks that were added since the mark. */
+static inline ArenaMark arena_mark(const Arena *arena) { return (ArenaMark){arena->newest, arena->used}; }
+/* Gives back what was pushed since the mark, which is in a block that is not the newest any more. */
 void arena_drop_blocks(Arena *arena, ArenaMark mark);
 static inline void arena_reset_to(Arena *arena, ArenaMark mark) {
-    if (arena->block != mark.block) arena_drop_blocks(arena, mark);
-    arena->used = mark.used;
+    if (arena->newest != mark.block) arena_drop_blocks(arena, mark);
+    else arena->used = mark.used;
 }
 
+/* Gives back what was pushed as one large piece of `size` bytes, if it has a block to itself: nobody may use it any more. Else nothing happens. */
+void arena_release(Arena *arena, const void *piece, size_t size);
 /* Hands back to the system what malloc keeps of blocks that were given back: after much more than what will be needed again. */
 void memory_trim(void);
 
@@ -75,6 +79,15 @@ void arena_list_grow_(Arena *arena, void **items, size_t *capacity, size_t count
     ((list)->count < (list)->capacity                                                                       \
          ? (void)0                                                                                          \
          : arena_list_grow_((arena), (void **)&(list)->items, &(list)->capacity, (list)->count,             \
+                            sizeof(*(list)->items)),                                                        \
+     &(list)->items[(list)->count++])
+
+/* The same for a list that nobody else points into: what it grows out of is given back where that is possible. */
+void arena_list_move_(Arena *arena, void **items, size_t *capacity, size_t count, size_t item_size);
+#define list_push_sole(arena, list)                                                                         \
+    ((list)->count < (list)->capacity                                                                       \
+         ? (void)0                                                                                          \
+         : arena_list_move_((arena), (void **)&(list)->items, &(list)->capacity, (list)->count,             \
                             sizeof(*(list)->items)),                                                        \
      &(list)->items[(list)->count++])
 

@@ -13,7 +13,7 @@ static const double MOST_SINGULAR = 0.01;
 /* Geometry is drawn up to so many times the distance at which voxels are planned to begin: beam_pilot.c may put them off. */
 static const double BEYOND_PLAN = 1.42;
 /* More triangles than this are left to the voxels. */
-enum { MOST_BEAM_TRIANGLES = 4000000 };
+enum { MOST_BEAM_TRIANGLES = 12000000 };
 
 /* Skins are drawn whole, however far they are, where no more triangles than this lie on what the view meets of all of them for each of the picture's pixels, once for the eye and once for each light: that
  * takes about as long as building voxels and marching through them. At the default max_error; an error that is larger is worth fewer of them. */

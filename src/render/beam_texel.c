@@ -77,7 +77,7 @@ static void cut_at(Cut *p, int axis, float wall, float side) {
 static void add_cut(BeamTexelDraft *draft, const Cut *p, uint16_t layer) {
     for (int i = 2; i < p->count; i++) {
         const Corner *corner[3] = {&p->corner[0], &p->corner[i - 1], &p->corner[i]};
-        Facet *f = list_push(draft->scratch, &draft->facets);
+        Facet *f = list_push_sole(draft->scratch, &draft->facets);
         Vec3f normals[3];
         for (int c = 0; c < 3; c++) {
             memcpy(f->at[c], corner[c]->at, sizeof f->at[c]);
@@ -86,7 +86,7 @@ static void add_cut(BeamTexelDraft *draft, const Cut *p, uint16_t layer) {
         f->layer = layer;
         f->normals = 0;
         if (!p->round) continue;
-        *list_push(draft->scratch, &draft->normals) = facet_normals_pack(normals);
+        *list_push_sole(draft->scratch, &draft->normals) = facet_normals_pack(normals);
         f->normals = (uint32_t)draft->normals.count;
     }
 }

@@ -6,29 +6,45 @@ SoupMark soup_mark(const TriangleSoup *soup) {
     return (SoupMark){soup->vertices.count, soup->triangles.count};
 }
 
+/* Room that is asked for again and again grows by half at least. */
+static size_t reserved(size_t capacity, size_t wanted) { return size_max(wanted, capacity + capacity / 2); }
+
+static void reserve_vertices(Arena *arena, SoupVertexList *v, size_t wanted) {
+    size_t capacity = reserved(v->capacity, wanted);
+    SoupVertex *items = arena_new_array(arena, SoupVertex, capacity);
+    if (v->count) memcpy(items, v->items, v->count * sizeof *items);
+    arena_release(arena, v->items, v->capacity * sizeof *items);
+    *v = (SoupVertexList){items, v->count, capacity};
+}
+
+static void reserve_triangles(Arena *arena, SoupTriangleList *t, size_t wanted) {
+    size_t capacity = reserved(t->capacity, wanted);
+    SoupTriangle *items = arena_new_array(arena, SoupTriangle, capacity);
+    if (t->count) memcpy(items, t->items, t->count * sizeof *items);
+    arena_release(arena, t->items, t->capacity * sizeof *items);
+    *t = (SoupTriangleList){items, t->count, capacity};
+}
+
 void soup_reserve(Arena *arena, TriangleSoup *soup, size_t vertices, size_t triangles) {
-    SoupVertexList *v = &soup->vertices;
-    SoupTriangleList *t = &soup->triangles;
-    if (v->count + vertices > v->capacity) {
-        SoupVertex *items = arena_new_array(arena, SoupVertex, v->count + vertices);
-        if (v->count) memcpy(items, v->items, v->count * sizeof *items);
-        *v = (SoupVertexList){items, v->count, v->count + vertices};
-    }
-    if (t->count + triangles > t->capacity) {
-        SoupTriangle *items = arena_new_array(arena, SoupTriangle, t->count + triangles);
-        if (t->count) memcpy(items, t->items, t->count * sizeof *items);
-        *t = (SoupTriangleList){items, t->count, t->count + triangles};
-    }
+    vertices += soup->vertices.count, triangles += soup->triangles.count;
+    if (vertices > soup->vertices.capacity) reserve_vertices(arena, &soup->vertices, vertices);
+    if (triangles > soup->triangles.capacity) reserve_triangles(arena, &soup->triangles, triangles);
+}
+
+void soup_release(Arena *arena, TriangleSoup *soup) {
+    arena_release(arena, soup->vertices.items, soup->vertices.capacity * sizeof *soup->vertices.items);
+    arena_release(arena, soup->triangles.items, soup->triangles.capacity * sizeof *soup->triangles.items);
+    *soup = (TriangleSoup){0};
 }
 
 uint32_t soup_vertex(Arena *arena, TriangleSoup *soup, Vec3 position, Vec3 normal, double u, double v) {
-    *list_push(arena, &soup->vertices) = (SoupVertex){position, normal, {u, v}, NULL, NULL};
+    *list_push_sole(arena, &soup->vertices) = (SoupVertex){position, normal, {u, v}, NULL, NULL};
     return (uint32_t)(soup->vertices.count - 1);
 }
 
 void soup_triangle(Arena *arena, TriangleSoup *soup, uint32_t a, uint32_t b, uint32_t c, bool solid) {
     if (a == b || b == c || c == a) return;
-    *list_push(arena, &soup->triangles) = (SoupTriangle){{a, b, c}, solid, 0};
+    *list_push_sole(arena, &soup->triangles) = (SoupTriangle){{a, b, c}, solid, 0};
 }
 
 static void grid_cell(Arena *arena, TriangleSoup *soup, const SoupGrid *grid, uint32_t corner, int row) {
@@ -42,7 +58,7 @@ void soup_grid(Arena *arena, TriangleSoup *soup, const SoupGrid *grid, SoupGridP
                const void *context) {
     uint32_t first = (uint32_t)soup->vertices.count;
     for (int i = 0; i <= grid->rows; i++) {
-        for (int j = 0; j <= grid->columns; j++) *list_push(arena, &soup->vertices) = point(context, i, j);
+        for (int j = 0; j <= grid->columns; j++) *list_push_sole(arena, &soup->vertices) = point(context, i, j);
     }
     for (int i = 0; i < grid->rows; i++) {
         for (int j = 0; j < grid->columns; j++) {

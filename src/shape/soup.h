@@ -35,7 +35,8 @@ typedef struct SoupTriangleList {
     size_t count, capacity;
 } SoupTriangleList;
 
-/* Start with {0}. The lists grow in the arena that the functions are given: always the same one for one soup. */
+/* Start with {0}. The lists grow in the arena that the functions are given: always the same one for one soup. They move as they grow: places in them
+ * are known by number. */
 typedef struct TriangleSoup {
     SoupVertexList vertices;
     SoupTriangleList triangles;
@@ -49,6 +50,8 @@ typedef struct SoupMark {
 SoupMark soup_mark(const TriangleSoup *soup);
 /* Room for so many more at once, where a tessellation knows roughly what comes: lists that grow by and by are copied. */
 void soup_reserve(Arena *arena, TriangleSoup *soup, size_t vertices, size_t triangles);
+/* Gives back the memory of both lists as far as it can be: nobody may use the soup any more. */
+void soup_release(Arena *arena, TriangleSoup *soup);
 /* Returns the vertex's index. */
 uint32_t soup_vertex(Arena *arena, TriangleSoup *soup, Vec3 position, Vec3 normal, double u, double v);
 /* Two equal indices: nothing is added. */

@@ -247,6 +247,7 @@ static uint32_t find_root(uint32_t *parent, uint32_t i) {
 /* Triangles joined by edges are one part; a part with an odd edge is open. */
 void soup_mark_closed(Arena *arena, TriangleSoup *soup, SoupMark since) {
     size_t count = soup->triangles.count - since.triangle;
+    ArenaMark mark = arena_mark(arena);
     uint32_t *place, *parent = arena_new_array(arena, uint32_t, count);
     uint32_t places = weld_since(soup, since, arena, &place);
     WeldEdge *edges = arena_new_array(arena, WeldEdge, 3 * count);
@@ -265,4 +266,5 @@ void soup_mark_closed(Arena *arena, TriangleSoup *soup, SoupMark since) {
     }
     for (uint32_t t = 0; t < count; t++)
         soup->triangles.items[since.triangle + t].solid = !open[find_root(parent, t)];
+    arena_reset_to(arena, mark);
 }

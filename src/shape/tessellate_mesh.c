@@ -55,7 +55,7 @@ static void push_shared(const MeshData *mesh, Arena *arena, TriangleSoup *out) {
     for (uint32_t i = 0; i < mesh->vertex_count; i++) push_corner(mesh, (MeshCorner){i, i, i}, arena, out);
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *v = mesh->triangles[t];
-        *list_push(arena, &out->triangles) =
+        *list_push_sole(arena, &out->triangles) =
             (SoupTriangle){{first + v[0], first + v[1], first + v[2]}, false, 0};
     }
 }
@@ -64,7 +64,7 @@ static void push_separate(const MeshData *mesh, Arena *arena, TriangleSoup *out)
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         uint32_t v[3];
         for (int i = 0; i < 3; i++) v[i] = push_corner(mesh, mesh_corner(mesh, t, i), arena, out);
-        *list_push(arena, &out->triangles) = (SoupTriangle){{v[0], v[1], v[2]}, false, 0};
+        *list_push_sole(arena, &out->triangles) = (SoupTriangle){{v[0], v[1], v[2]}, false, 0};
     }
 }
 

@@ -70,5 +70,6 @@ bool texel_layer_mesh(const TexelDef *def, const TexelLayer *layer, const TexelM
                        .triangle_count = soup.triangles.count,
                        .solid = solid};
     out->normals = round_normals(&soup, out, arena);
+    soup_release(arena, &soup);
     return true;
 }

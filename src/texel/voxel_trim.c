@@ -7,7 +7,7 @@
 
 #include <stdlib.h>
 
-enum { TRIM_MOST_TRIANGLES = 4000000, TRIM_DIRECTIONS = TRIM_NODES * TRIM_NODES };
+enum { TRIM_MOST_TRIANGLES = 12000000, TRIM_DIRECTIONS = TRIM_NODES * TRIM_NODES };
 /* Of many triangles every other direction is enough: it is much matter. */
 enum { TRIM_MANY_TRIANGLES = 10000 };
 /* Rays through a level of so many voxels, per side and voxel, and at most, of a period half as many; their steps, in voxels, are as the

@@ -62,6 +62,54 @@ static void marks_give_back(void **state) {
     assert_int_equal(atomic_load(&budget.used), 0);
 }
 
+/* What is released may be what a mark stands in, what is newest, or neither. */
+static void large_pieces_are_given_back(void **state) {
+    (void)state;
+    enum { LARGE = 4 << 20 };
+    MemoryBudget budget = {0};
+    Arena arena;
+    arena_init(&arena, &budget, 0);
+    char *small = arena_strdup(&arena, "small");
+    ArenaMark first = arena_mark(&arena);
+    char *a = arena_push(&arena, LARGE), *b = arena_push(&arena, LARGE);
+    ArenaMark within = arena_mark(&arena);
+    char *c = arena_push(&arena, LARGE);
+    size_t all = budget.used;
+    arena_release(&arena, a, LARGE);
+    assert_true(budget.used < all - LARGE);
+    arena_release(&arena, b, LARGE); /* the mark's */
+    arena_release(&arena, c, LARGE); /* the newest */
+    assert_true(budget.used < all - 3 * (size_t)LARGE);
+    char *d = arena_push(&arena, 100);
+    memset(d, 1, 100);
+    arena_reset_to(&arena, within);
+    char *e = arena_push(&arena, LARGE);
+    memset(e, 2, LARGE);
+    arena_release(&arena, small, 6); /* shares its block: stays */
+    assert_string_equal(small, "small");
+    arena_reset_to(&arena, first);
+    assert_true(strcmp(arena_strdup(&arena, "next"), "next") == 0 && strcmp(small, "small") == 0);
+    arena_destroy(&arena);
+    assert_int_equal(budget.used, 0);
+}
+
+static void sole_lists_leave_nothing_behind(void **state) {
+    (void)state;
+    enum { COUNT = 3000000 };
+    MemoryBudget budget = {0};
+    Arena arena;
+    struct {
+        int *items;
+        size_t count, capacity;
+    } list = {0}, other = {0};
+    arena_init(&arena, &budget, 0);
+    for (int i = 0; i < COUNT; i++) *list_push_sole(&arena, &list) = *list_push_sole(&arena, &other) = i;
+    for (int i = 0; i < COUNT; i++) assert_true(list.items[i] == i && other.items[i] == i);
+    assert_true(budget.used < (list.capacity + other.capacity) * sizeof(int) * 5 / 4); /* small beginnings share blocks */
+    arena_destroy(&arena);
+    assert_int_equal(budget.used, 0);
+}
+
 static void lists_grow(void **state) {
     (void)state;
     struct { int *items; size_t count, capacity; } list = {0};
@@ -255,6 +303,7 @@ static void texts_grow_and_quote(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pushes_are_zero_aligned_and_apart), cmocka_unit_test(marks_give_back),
+        cmocka_unit_test(large_pieces_are_given_back),       cmocka_unit_test(sole_lists_leave_nothing_behind),
         cmocka_unit_test(lists_grow),                        cmocka_unit_test(budgets_hold),
         cmocka_unit_test(equal_texts_are_one_name),          cmocka_unit_test(close_words_are_proposed),
         cmocka_unit_test(hashes_tell_contents_apart),        cmocka_unit_test(hashes_avalanche),

@@ -1,6 +1,7 @@
 #include "render/sampler.h"
 
 #include "render/candidates.h"
+#include "render/cell.h"
 #include "render/guess.h"
 
 #include <string.h>
@@ -14,10 +15,7 @@ static const float EDGE_WORTH = 1.0f / 64, ALL_EXPLICIT = 0.999f;
 static const double STEP_TO_ERROR = 0.408;
 /* Against random samples, of which n leave 1/n of the variance: what n of a straight edge leave (measured: 0.40 at 5, falling as 1/√n). */
 static const double EDGE_GAIN = 0.4;
-/* The squared error of a mean from the squared difference of its halves: 1/4 if they were random, less where they are parts of a net. */
-static const double HALVES_TO_ERROR = 0.2;
-/* A net of so many samples or more says more without the middle: its error falls with their power 3/2, and what another would add does not. */
-enum { NET_ALONE = 8, FIRST_NET = 4 };
+enum { FIRST_NET = 4 };
 /* Samples of a net are so wide, against its mesh: wider ones, which blur what is at a pixel's border, are wrong by more than narrower ones are noisy. */
 static const double SAMPLE_WIDTH = 0.7;
 /* Whoever stops where errors seem to be small stops more often where they only seem so: what was found true of the sum of squares. */
@@ -31,26 +29,6 @@ static const double ALIKE = 1, GUESSES_MAY = 0.25;
 static const double PRIOR = 4;
 /* Contrasts are learned apart by their powers of four. */
 enum { CONTRASTS = 8, LEVELS = 9 };
-
-/* What is known of a pixel. Errors and contrasts are those of light that the picture can show. */
-typedef struct Cell {
-    Radiance sum;      /* over the samples of its net */
-    Vec3f shown, late; /* sums of clamped light: of all of these, of the last half */
-    float squares;     /* of its channels */
-    Vec3f mean;        /* of what counts */
-    int class;         /* of the contrast: contrast_class() */
-    float contrast;    /* of the first sample with those around: squared error to be expected of it */
-    int net, late_count;
-    bool centred;          /* there is a sample in the middle, beside the net */
-    bool refinable;
-    bool checked, misled; /* whether what is shared was looked at in this round, and was wrong */
-    float doubt;     /* squared error to be expected of the first sample by itself */
-    uint32_t object; /* that the middle sees, from 1; 0: none */
-    Vec3f normal;    /* of it */
-    Radiance middle; /* the first sample, */
-    Vec3f first;     /* clamped */
-    double error;    /* expected squared error now */
-} Cell;
 
 /* A ratio that is learned: of what came out to what was expected. */
 typedef struct Learned {
@@ -128,18 +106,12 @@ static bool view_sample(const View *view, const Draw *draw, double x, double y, 
     return view_ray(view, x, y, u, v, width, cone);
 }
 
-static Vec3f shown(Vec3f color) {
-    return vec3f(float_clamp(color.x, 0, 1), float_clamp(color.y, 0, 1), float_clamp(color.z, 0, 1));
-}
-
 /* What a pixel beside the tile sees is not wanted. */
 static AovSum *aovs_of(const Sampler *sp, int px, int py) {
     int column = px - sp->x0, row = py - sp->y0;
     bool within = column >= 0 && row >= 0 && column < sp->columns && row < sp->rows;
     return sp->aovs && within ? &sp->aovs[row * sp->columns + column] : NULL;
 }
-
-static float mean_square(Vec3f a) { return vec3f_dot(a, a) / 3; }
 
 /* The middles around a sample that see the same as it. */
 typedef struct Shared {
@@ -150,7 +122,7 @@ typedef struct Shared {
 
 static void share_middle(Shared *shared, const Cell *cell, double dx, double dy) {
     float weight = (float)(1 / (dx * dx + dy * dy + NEAREST));
-    Vec3f light = shown(cell->middle.color);
+    Vec3f light = light_shown(cell->middle.color);
     if (shared->count++ == 0) shared->least = shared->most = light;
     shared->least = vec3f(float_min(shared->least.x, light.x), float_min(shared->least.y, light.y),
                           float_min(shared->least.z, light.z));
@@ -197,7 +169,7 @@ typedef struct Sighting {
 } Sighting;
 
 static bool agree(const Sampler *sp, Vec3f a, Vec3f b) {
-    Vec3f apart = vec3f_sub(shown(a), shown(b));
+    Vec3f apart = vec3f_sub(light_shown(a), light_shown(b));
     return (double)float_max(fabsf(apart.x), float_max(fabsf(apart.y), fabsf(apart.z))) <= sp->plan.max_error;
 }
 
@@ -246,37 +218,6 @@ static void see(Sampler *sp, const Aim *aim, Cell *cell, const Guess *guess, Sig
     aovs->samples++;
 }
 
-static bool counts_middle(const Cell *cell) { return cell->centred && cell->net < NET_ALONE; }
-static int count_of(const Cell *cell) { return cell->net + counts_middle(cell); }
-
-static void add_light(Cell *cell, const Radiance *seen) {
-    Vec3f light = shown(seen->color);
-    cell->net++;
-    cell->sum.color = vec3f_add(cell->sum.color, seen->color);
-    cell->sum.alpha += seen->alpha;
-    cell->shown = vec3f_add(cell->shown, light);
-    cell->squares += vec3f_dot(light, light);
-    cell->late = vec3f_add(cell->late, light);
-    cell->late_count++;
-}
-
-/* Clamped, over all that counts. */
-static Vec3f shown_sum(const Cell *cell) {
-    return counts_middle(cell) ? vec3f_add(cell->shown, cell->first) : cell->shown;
-}
-static float squares_sum(const Cell *cell) {
-    return cell->squares + (counts_middle(cell) ? vec3f_dot(cell->first, cell->first) : 0);
-}
-
-static Radiance light_of(const Cell *cell) {
-    int count = count_of(cell);
-    float share = count ? 1 / (float)count : 0;
-    Radiance sum = cell->sum;
-    if (counts_middle(cell))
-        sum = (Radiance){vec3f_add(sum.color, cell->middle.color), sum.alpha + cell->middle.alpha};
-    return (Radiance){vec3f_scale(sum.color, share), sum.alpha * share};
-}
-
 /* The first sample, by which it is found whether the pixel's error can be that of edges. */
 static void see_first(Sampler *sp, const Aim *aim, const Guess *guess, Middle *out) {
     Sighting s;
@@ -287,18 +228,6 @@ static void see_first(Sampler *sp, const Aim *aim, const Guess *guess, Middle *o
     out->refinable = view_has_lens(&sp->compiled->view) || s.reaching >= ALL_EXPLICIT ||
                      (s.reaching >= EDGE_WORTH &&
                       surfaces_vary(sp->compiled, aim->px + aim->x, aim->py + aim->y, s.found, &s.hit));
-}
-
-static void begin_cell(Cell *cell, const Middle *m) {
-    Vec3f light = shown(m->seen.color);
-    *cell = (Cell){.first = light,
-                   .mean = light,
-                   .centred = true,
-                   .middle = m->seen,
-                   .object = m->object,
-                   .normal = m->normal,
-                   .refinable = m->refinable,
-                   .doubt = m->doubt};
 }
 
 /* The first sample of each pixel lies in its middle: of light that changes evenly it is the mean. */
@@ -317,12 +246,12 @@ static void add_sample(Sampler *sp, Cell *cell, const Aim *aim) {
         Middle first;
         see_first(sp, aim, NULL, &first);
         cell->refinable = first.refinable;
-        add_light(cell, &first.seen);
+        cell_add(cell, &first.seen);
         return;
     }
     Sighting s;
     see(sp, aim, cell->centred ? cell : NULL, NULL, &s);
-    add_light(cell, &s.seen);
+    cell_add(cell, &s.seen);
 }
 
 /* Samples of the pixel's net up to `count` of them, laid by lot. */
@@ -341,8 +270,8 @@ static void see_more(Sampler *sp, int index, int count) {
         if (k == half) cell->late = vec3f(0, 0, 0), cell->late_count = 0;
         add_sample(sp, cell, &(Aim){px, py, k, x, y, width, 1.0 / count});
     }
-    int counted = count_of(cell);
-    if (counted) cell->mean = vec3f_scale(shown_sum(cell), 1 / (float)counted);
+    int counted = cell_count(cell);
+    if (counted) cell->mean = vec3f_scale(cell_shown_sum(cell), 1 / (float)counted);
 }
 
 /* ---- errors ---- */
@@ -384,7 +313,7 @@ static void set_contrast(Cell *cell, float contrast) {
 }
 
 static double variance(const Cell *cell) {
-    double n = count_of(cell), squares = (double)squares_sum(cell) / n,
+    double n = cell_count(cell), squares = (double)cell_squares_sum(cell) / n,
            mean = (double)vec3f_dot(cell->mean, cell->mean);
     double found = fmax(squares - mean, 0) * n / (n - 1) / 3;
     /* Few samples may have missed what the neighbours show. */
@@ -396,25 +325,17 @@ static double error_of_first(const Cell *cell, double ratio) {
     return CAUTION * (double)cell->contrast * ratio + (double)cell->doubt;
 }
 static double error_of_many(const Sampler *sp, const Cell *cell) {
-    int count = count_of(cell);
+    int count = cell_count(cell);
     double ratio = learned_ratio(&sp->levels[level_of(count)], EDGE_GAIN * sqrt(5.0 / count));
     return CAUTION * variance(cell) * ratio / count;
 }
 
 static double expected_error(const Sampler *sp, const Cell *cell) {
     if (!cell->refinable) return 0;
-    if (count_of(cell) > 1) return error_of_many(sp, cell);
+    if (cell_count(cell) > 1) return error_of_many(sp, cell);
     double ratios[CONTRASTS];
     contrast_ratios(sp, cell->class + 1, ratios);
     return error_of_first(cell, ratios[cell->class]);
-}
-
-static double halves_error(const Cell *cell) {
-    int early = count_of(cell) - cell->late_count;
-    if (early < 1 || cell->late_count < 1) return 0;
-    Vec3f a = vec3f_scale(cell->late, 1 / (float)cell->late_count),
-          b = vec3f_scale(vec3f_sub(shown_sum(cell), cell->late), 1 / (float)early);
-    return HALVES_TO_ERROR * (double)mean_square(vec3f_sub(a, b));
 }
 
 /* How much of a second difference, squared, counts: where light changes alike on both sides it is that of something smooth, of which the
@@ -445,7 +366,7 @@ static float contrast_of(const Sampler *sp, int index) {
     for (int k = 0; k < 4; k++) {
         Vec3f after = vec3f_sub(sp->cells[index + across[k]].mean, here),
               before = vec3f_sub(here, sp->cells[index - across[k]].mean);
-        most = float_max(most, mean_square(vec3f_sub(after, before)) * step_like(before, after));
+        most = float_max(most, light_mean_square(vec3f_sub(after, before)) * step_like(before, after));
     }
     return most * (float)(STEP_TO_ERROR * STEP_TO_ERROR / 4);
 }
@@ -492,8 +413,8 @@ static int refine(Sampler *sp, int index) {
     see_more(sp, index, next_net(cell));
     if (before == 0)
         learn(&sp->contrasts[cell->class], (double)cell->contrast,
-              (double)mean_square(vec3f_sub(cell->first, cell->mean)));
-    learn(&sp->levels[level_of(count_of(cell))], variance(cell) / count_of(cell), halves_error(cell));
+              (double)light_mean_square(vec3f_sub(cell->first, cell->mean)));
+    learn(&sp->levels[level_of(cell_count(cell))], variance(cell) / cell_count(cell), cell_halves_error(cell));
     return cell->net - before;
 }
 
@@ -623,7 +544,7 @@ static void see_middles(Sampler *sp) {
             Middle own;
             const Middle *m = shared_middle(sp, shared, px, py);
             if (!m) see_middle(sp, px, py, NULL, &own);
-            begin_cell(&sp->cells[row * EDGE + column], m ? m : &own);
+            cell_begin(&sp->cells[row * EDGE + column], m ? m : &own);
         }
     middles_leave(sp->middles, sp->x0 / FILM_TILE, sp->y0 / FILM_TILE);
     bool at_border = sp->x0 == 0 || sp->y0 == 0 || sp->x0 + sp->columns == view->width ||
@@ -648,7 +569,7 @@ static double see_fixed(Sampler *sp) {
             *cell = (Cell){.net = 0};
             see_more(sp, row * EDGE + column, sp->plan.fixed);
             if (cell->net > 1)
-                learn(&sp->levels[level_of(cell->net)], variance(cell) / cell->net, halves_error(cell));
+                learn(&sp->levels[level_of(cell->net)], variance(cell) / cell->net, cell_halves_error(cell));
         }
     for (int row = 1; row <= sp->rows; row++)
         for (int column = 1; column <= sp->columns; column++) {
@@ -673,7 +594,7 @@ void sampler_tile(Sampler *sp, int x0, int y0, int x1, int y1, Radiance *out, Ao
     for (int row = 1; row <= sp->rows; row++)
         for (int column = 1; column <= sp->columns; column++) {
             const Cell *cell = &sp->cells[row * EDGE + column];
-            *out++ = light_of(cell);
-            sp->tally.refined += count_of(cell) > 1;
+            *out++ = cell_light(cell);
+            sp->tally.refined += cell_count(cell) > 1;
         }
 }

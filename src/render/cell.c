@@ -1,0 +1,63 @@
+#include "render/cell.h"
+
+/* A net of so many samples or more says more without the middle: its error falls with their power 3/2, and what another would add does not. */
+enum { NET_ALONE = 8 };
+/* The squared error of a mean from the squared difference of its halves: 1/4 if they were random, less where they are parts of a net. */
+static const double HALVES_TO_ERROR = 0.2;
+
+Vec3f light_shown(Vec3f color) {
+    return vec3f(float_clamp(color.x, 0, 1), float_clamp(color.y, 0, 1), float_clamp(color.z, 0, 1));
+}
+
+float light_mean_square(Vec3f a) { return vec3f_dot(a, a) / 3; }
+
+void cell_begin(Cell *cell, const Middle *m) {
+    Vec3f light = light_shown(m->seen.color);
+    *cell = (Cell){.first = light,
+                   .mean = light,
+                   .centred = true,
+                   .middle = m->seen,
+                   .object = m->object,
+                   .normal = m->normal,
+                   .refinable = m->refinable,
+                   .doubt = m->doubt};
+}
+
+static bool cell_counts_middle(const Cell *cell) { return cell->centred && cell->net < NET_ALONE; }
+int cell_count(const Cell *cell) { return cell->net + cell_counts_middle(cell); }
+
+void cell_add(Cell *cell, const Radiance *seen) {
+    Vec3f light = light_shown(seen->color);
+    cell->net++;
+    cell->sum.color = vec3f_add(cell->sum.color, seen->color);
+    cell->sum.alpha += seen->alpha;
+    cell->shown = vec3f_add(cell->shown, light);
+    cell->squares += vec3f_dot(light, light);
+    cell->late = vec3f_add(cell->late, light);
+    cell->late_count++;
+}
+
+/* Clamped, over all that counts. */
+Vec3f cell_shown_sum(const Cell *cell) {
+    return cell_counts_middle(cell) ? vec3f_add(cell->shown, cell->first) : cell->shown;
+}
+float cell_squares_sum(const Cell *cell) {
+    return cell->squares + (cell_counts_middle(cell) ? vec3f_dot(cell->first, cell->first) : 0);
+}
+
+Radiance cell_light(const Cell *cell) {
+    int count = cell_count(cell);
+    float share = count ? 1 / (float)count : 0;
+    Radiance sum = cell->sum;
+    if (cell_counts_middle(cell))
+        sum = (Radiance){vec3f_add(sum.color, cell->middle.color), sum.alpha + cell->middle.alpha};
+    return (Radiance){vec3f_scale(sum.color, share), sum.alpha * share};
+}
+
+double cell_halves_error(const Cell *cell) {
+    int early = cell_count(cell) - cell->late_count;
+    if (early < 1 || cell->late_count < 1) return 0;
+    Vec3f a = vec3f_scale(cell->late, 1 / (float)cell->late_count),
+          b = vec3f_scale(vec3f_sub(cell_shown_sum(cell), cell->late), 1 / (float)early);
+    return HALVES_TO_ERROR * (double)light_mean_square(vec3f_sub(a, b));
+}

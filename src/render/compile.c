@@ -164,6 +164,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     size_t errors = diags->error_count;
     *out = (CompiledScene){.scene = scene, .options = options, .arena = arena, .view = {.camera = scene->camera, .width = options->width, .height = options->height}};
     view_prepare(&out->view);
+    budget_begin(&out->budget);
     arena_init(&out->scratch, options->memory, 0);
     out->quadrature = quadrature_of(scene->settings.quadrature);
     out->filtering = filtering_of(scene->settings.filtering);
@@ -205,6 +206,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     out->skin_tree = tree_over_skins(out);
     if (out->volumes && !options->exact && !volumes_light_kept(out)) return COMPILE_INTERRUPTED;
     beam_pilot(out);
+    budget_trial(out);
     if (options->exact && out->skin_count) out->exact = exact_skins_build(out->skins, out->skin_count, hierarchy_device(out->hierarchy));
     if (options->exact && out->skin_count && !out->exact) memory_budget_fail(options->memory);
     out->build_seconds = stopwatch_wall() - start;

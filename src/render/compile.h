@@ -5,6 +5,7 @@
 #include "base/diag.h"
 #include "base/pool.h"
 #include "base/progress.h"
+#include "render/budget.h"
 #include "render/hierarchy.h"
 #include "render/skin.h"
 #include "render/skin_march.h"
@@ -70,6 +71,7 @@ typedef struct CompiledScene {
     bool clear_shadows;   /* some explicit objects let light through */
     bool voxels;          /* skins have voxels, not exact geometry alone */
     double max_error;     /* the RMSE that is accepted */
+    Budget budget;        /* who makes how much of it */
     int most_samples;     /* a pixel, to keep it */
     int samples;          /* a pixel, of the first pass of what is drawn by beams */
     int split;            /* cones per pixel side where explicit edges cross the pixel */
@@ -121,6 +123,9 @@ void beam_plan_skin(CompiledSkin *skin, bool everything, CompiledScene *compiled
 /* Moves the distances at which voxels begin to where they are as right as max_error asks, by what a few pixels tell; sets voxel_error. When all
  * else is compiled. beam_pilot.c */
 void beam_pilot(CompiledScene *compiled);
+/* Shares max_error out among samples, sky and media, by what trial pixels tell; nothing where there is only one of them. When all else is
+ * compiled. budget_trial.c */
+void budget_trial(CompiledScene *compiled);
 /* Voxels are built for distances from this part of the planned one on. */
 #define EARLIEST_VOXELS 0.4
 /* Of the scene's knob `detail`. */

@@ -278,13 +278,17 @@ static Vec3f to_floats(Vec3 v) {
     return vec3f((float)double_clamp(v.x, -1e30, 1e30), (float)double_clamp(v.y, -1e30, 1e30), (float)double_clamp(v.z, -1e30, 1e30));
 }
 
+static double tolerance_of(const CompiledScene *compiled) {
+    return compiled->max_error * (compiled->exact_paths ? EXACT_SHARE : SHARE * compiled->budget.slack[BUDGET_MEDIA]);
+}
+
 static Air gather(SurfaceTracer *tracer, const Leg *leg, const MediaMatter *matter) {
     const CompiledScene *compiled = tracer->compiled;
     Air air = {{1, 1, 1}, {0, 0, 0}, 0};
     if (!matter->count) return air;
     Way way = {.tracer = tracer, .leg = leg, .matter = matter, .ray = {leg->cone.origin, leg->cone.direction}, .places_left = MOST_PLACES,
                .through = {1, 1, 1}};
-    way.tolerance = compiled->max_error * (compiled->exact_paths ? EXACT_SHARE : SHARE) / double_max(1e-3, (double)leg->weight);
+    way.tolerance = tolerance_of(compiled) / double_max(1e-3, (double)leg->weight);
     way.scatters = scatters(matter);
     way.lit = way.scatters && any_lamp(compiled->scene);
     double extra[MOST_EXTRA], stops[MEDIA_MOST_STOPS];
@@ -298,6 +302,7 @@ static Air gather(SurfaceTracer *tracer, const Leg *leg, const MediaMatter *matt
         go(&way, &a, &m, &b, false, 0);
         a = b;
     }
+    tracer->counters->places += (uint64_t)(MOST_PLACES - way.places_left);
     air = (Air){to_floats(way.through), to_floats(way.sum), 0};
     air.cover = float_clamp(1 - (air.keep.x + air.keep.y + air.keep.z) / 3, 0, 1);
     return air;
@@ -355,7 +360,7 @@ static bool is_even(const MediaMatter *matter) {
 }
 
 static Vec3f what_passes(const CompiledScene *compiled, const MediaMatter *matter) {
-    Passing p = {.matter = matter, .tolerance = compiled->max_error * (compiled->exact_paths ? EXACT_SHARE : SHARE), .places_left = MOST_SHADOW_PLACES};
+    Passing p = {.matter = matter, .tolerance = tolerance_of(compiled), .places_left = MOST_SHADOW_PLACES};
     double stops[MEDIA_MOST_STOPS];
     if (!matter->count) return vec3f(1, 1, 1);
     if (is_even(matter)) return to_floats(passing(vec3_scale(media_extinction(matter, matter->t0), matter->t1 - matter->t0)));

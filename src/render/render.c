@@ -65,7 +65,7 @@ static void make_workers(Frame *frame, int workers) {
     }
     bool told = options->samples > 0;
     SamplePlan plan = {.fixed = compiled->skin_count ? 0 : options->samples, .most = told ? options->samples : HARDEST * compiled->most_samples,
-                       .most_mean = told ? options->samples : compiled->most_samples, .max_error = compiled->max_error, .seed = options->seed, .interrupted = options->interrupted};
+                       .most_mean = told ? options->samples : compiled->most_samples, .max_error = compiled->max_error * compiled->budget.slack[BUDGET_NOISE], .seed = options->seed, .interrupted = options->interrupted};
     frame->samplers = arena_new_array(arena, Sampler *, (size_t)workers);
     for (int i = 0; i < workers; i++) frame->samplers[i] = sampler_create(compiled, &plan, arena);
 }

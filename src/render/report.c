@@ -33,6 +33,22 @@ static void add_terrains(StrBuf *out, const BuiltTerrains *terrains) {
     strbuf_addc(out, ']');
 }
 
+/* Of each stage that trials were made of: the part of max_error that it is expected to make, the seconds of a pixel that it is thought to take (of an imagined
+ * machine: only their ratios count), and how far it was let out or drawn in. */
+static void add_budget(StrBuf *out, const CompiledScene *compiled) {
+    static const char *const names[BUDGET_STAGES] = {"samples", "voxels", "sky", "media"};
+    const Budget *b = &compiled->budget;
+    const char *comma = "";
+    strbuf_adds(out, ",\"budget\":[");
+    for (int i = 0; i < BUDGET_STAGES; i++) {
+        if (!b->known[i]) continue;
+        strbuf_addf(out, "%s{\"stage\":\"%s\",\"share\":%.4f,\"seconds\":%.3g,\"slack\":%.4g}", comma, names[i],
+                    budget_error(&b->laws[i], b->slack[i]) / compiled->max_error, budget_seconds(&b->laws[i], b->slack[i]), b->slack[i]);
+        comma = ",";
+    }
+    strbuf_addc(out, ']');
+}
+
 static void add_functions(StrBuf *out, const SolidWork *w) {
     strbuf_addf(out, "\"function_evaluations\":%llu,\"function_rays\":%llu,\"evaluations_per_ray\":%.4g,", (unsigned long long)w->evaluations,
                 (unsigned long long)w->lines, w->lines ? (double)w->evaluations / (double)w->lines : 0);
@@ -50,6 +66,7 @@ void report_add_frame(StrBuf *out, const FrameReport *f) {
                 (unsigned long long)c->camera_rays, (unsigned long long)c->shadow_rays, (unsigned long long)c->voxels_visited);
     add_functions(out, &c->functions);
     add_texels(out, f->compiled);
+    add_budget(out, f->compiled);
     add_terrains(out, &f->compiled->terrains);
     if (f->stats->error_estimate >= 0) strbuf_addf(out, ",\"error_estimate\":%.6f", f->stats->error_estimate);
     else strbuf_adds(out, ",\"error_estimate\":null");

@@ -9,6 +9,7 @@ enum { MOST_MATTER_HITS = 12 };
 
 typedef struct TraceCounters {
     uint64_t camera_rays, shadow_rays, steps, voxels_visited;
+    uint64_t places;    /* in media */
     uint64_t triangles; /* of texels, drawn by beams */
     SolidWork functions; /* of isosurfaces; counted for a picture as a whole */
 } TraceCounters;
@@ -18,6 +19,7 @@ static inline void trace_counters_add(TraceCounters *sum, const TraceCounters *c
     sum->shadow_rays += c->shadow_rays;
     sum->steps += c->steps;
     sum->voxels_visited += c->voxels_visited;
+    sum->places += c->places;
     sum->triangles += c->triangles;
     solid_work_add(&sum->functions, &c->functions);
 }

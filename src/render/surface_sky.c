@@ -101,7 +101,7 @@ static Vec3f past_objects(SurfaceTracer *tracer, const SkyPlace *place, double p
 }
 
 Vec3f surface_sky(SurfaceTracer *tracer, const SkyPlace *place, float worth, uint64_t seed) {
-    double part = tracer->part > 0 ? fmin(tracer->part, 1) : 1, error = tracer->compiled->max_error, contrast = (double)worth / error;
+    double part = tracer->part > 0 ? fmin(tracer->part, 1) : 1, error = tracer->compiled->max_error * tracer->compiled->budget.slack[BUDGET_SKY], contrast = (double)worth / error;
     if (!(contrast > WORTH)) return vec3f(1, 1, 1);
     if (place->even) contrast *= OF_MATTER;
     double few = double_clamp(contrast / MISSED, FEWEST, MOST_OF_FEW), many = double_clamp(pow(SCATTER * contrast / WRONG, 4.0 / 3), few, MOST_OF_MANY);

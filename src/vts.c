@@ -405,7 +405,7 @@ VtsStatus session_draw(VtsSession *session, bool exact, const MomentPlan *plan, 
     const VtsOptions *o = &session->options;
     RenderOptions options = {.pool = session->pool, .progress = &session->progress, .interrupted = &session->interrupted,
                              .samples = exact ? o->reference_samples : session->scene->settings.samples,
-                             .seed = o->seed ^ plan->seed, .noise = plan->noise, .tiles = plan->tiles, .kept = plan->apart ? NULL : session->kept, .exposure = o->exposure, .alpha = o->alpha};
+                             .seed = o->seed ^ plan->seed, .noise = plan->noise, .tiles = plan->tiles, .tile_noise = plan->tile_noise, .kept = plan->apart ? NULL : session->kept, .exposure = o->exposure, .alpha = o->alpha};
     if (plan->samples) options.samples = plan->samples;
     snprintf(session->stage, sizeof session->stage, "picture");
     if (o->aovs && !plan->unseen) options.aovs = &session->aovs;
@@ -462,9 +462,9 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
     if (status == VTS_OK) status = session_spare_sources(session, output_path);
     if (status != VTS_OK) return status;
     session->key = session_key(session, exact);
-    double parsed = stopwatch_wall();
+    double parsed = stopwatch_wall(), parsed_cpu = stopwatch_cpu();
     if ((status = session_compile_frame(session, scene_path, exact)) != VTS_OK) return status;
-    double built = stopwatch_wall();
+    double built = stopwatch_wall(), built_cpu = stopwatch_cpu();
     RenderStats stats;
     session_keep_tiles(session, output_path);
     session->audits = !exact && !o->unreported;
@@ -477,7 +477,7 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
     double written = stopwatch_wall();
     FrameReport report = {.frame = o->frame, .clock = o->clock, .output = output_path, .wall_s = written - session->started_wall,
                           .cpu_s = stopwatch_cpu() - session->started_cpu, .parse_s = parsed - session->started_wall,
-                          .build_s = built - parsed, .render_s = rendered - built, .write_s = written - rendered,
+                          .build_s = built - parsed, .build_cpu_s = built_cpu - parsed_cpu, .render_s = rendered - built, .write_s = written - rendered,
                           .peak_rss_bytes = peak_resident_bytes(), .compiled = &session->compiled, .stats = &stats};
     if (!session->in_film) strbuf_clear(&session->frames);
     report_add_frame(&session->frames, &report);

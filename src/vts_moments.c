@@ -23,6 +23,8 @@ void moment_mean_lay(MomentMean *m, int width, int height, Arena *arena) {
     size_t count = (size_t)m->tiles_x * (size_t)m->tiles_y;
     m->open = arena_new_array(arena, bool, count);
     m->moving = arena_new_array(arena, bool, count);
+    m->noise = arena_new_array(arena, float, count);
+    m->noise_between = arena_new_array(arena, float, count);
     memset(m->open, true, count * sizeof *m->open);
 }
 
@@ -43,9 +45,20 @@ static void drop(Image *image) {
     *image = (Image){0};
 }
 
-void moment_mean_add(MomentMean *m, MomentPlace place, Image *picture) {
+/* As those of a mean of which each picture is `part`. */
+static void add_noise(MomentMean *m, float *into, bool first, float part, const float *tile_noise, int side) {
+    int columns = (m->tiles_x + side - 1) / side;
+    for (int y = 0; y < m->tiles_y; y++)
+        for (int x = 0; x < m->tiles_x; x++) {
+            float *sum = &into[y * m->tiles_x + x];
+            *sum = (first ? 0 : *sum) + part * part * tile_noise[y / side * columns + x / side];
+        }
+}
+
+void moment_mean_add(MomentMean *m, MomentPlace place, Image *picture, const float *tile_noise, int side) {
     Image *into = place.intervals ? &m->between : &m->mean;
     float part = place.intervals ? 1 / (float)place.intervals : 0.5f;
+    add_noise(m, place.intervals ? m->noise_between : m->noise, place.index == 0, part, tile_noise, side);
     if (place.index == 0) {
         drop(into);
         *into = *picture;
@@ -87,17 +100,20 @@ static double squared_difference(const MomentMean *m, Rectangle r) {
     return sum;
 }
 
-/* Whether the mean of both may still be off by more than is accepted. */
-static bool tile_moves(const MomentMean *m, Rectangle r, double accepted) {
-    double sum = 0, most = MOST_IN_BLOCK * m->block * accepted;
+static double pixels_in(Rectangle r) { return (double)(r.x1 - r.x0) * (r.y1 - r.y0); }
+
+/* Whether the mean of both may still be off by more than is accepted: of what they differ by, noise is taken off, which lies as the difference does. */
+static bool tile_moves(const MomentMean *m, int tile, Rectangle r, double accepted) {
+    double all = squared_difference(m, r), noise = ((double)m->noise[tile] + (double)m->noise_between[tile]) * pixels_in(r) * m->channels;
+    if (!(all > noise)) return false;
+    double share = (1 - noise / all) / 4, most = MOST_IN_BLOCK * accepted;
+    if (share * all > accepted * accepted * pixels_in(r) * m->channels) return true;
     for (int y = r.y0; y < r.y1; y += m->block)
         for (int x = r.x0; x < r.x1; x += m->block) {
             Rectangle block = {x, y, int_min(x + m->block, r.x1), int_min(y + m->block, r.y1)};
-            double square = squared_difference(m, block) / 4;
-            if (square > most * most * m->channels) return true;
-            sum += square;
+            if (share * squared_difference(m, block) > most * most * m->block * m->block * m->channels) return true;
         }
-    return sum > accepted * accepted * (r.x1 - r.x0) * (r.y1 - r.y0) * m->channels;
+    return false;
 }
 
 static void take_in(MomentMean *m, Rectangle r) {
@@ -112,30 +128,41 @@ static void take_in(MomentMean *m, Rectangle r) {
 void moment_mean_finish(MomentMean *m, double accepted) {
     for (int i = 0; i < m->tiles_x * m->tiles_y; i++) {
         Rectangle r = tile_at(m, i % m->tiles_x, i / m->tiles_x);
-        m->moving[i] = m->open[i] && tile_moves(m, r, accepted);
-        if (m->open[i]) take_in(m, r);
+        m->moving[i] = m->open[i] && tile_moves(m, i, r, accepted);
+        if (!m->open[i]) continue;
+        take_in(m, r);
+        m->noise[i] = (m->noise[i] + m->noise_between[i]) / 4;
     }
     drop(&m->between);
 }
 
-/* How far, in tiles, things may go between two moments: those that cross the part of the picture where anything moves. */
-static int reach_of(const MomentMean *m, int intervals) {
-    Rectangle r = {m->tiles_x, m->tiles_y, -1, -1};
+/* Where something may be between two moments: within the part of the picture where anything moves, which what goes straight does not leave, and no
+ * farther from what moves, in tiles, than crossing all of it takes. */
+typedef struct Reach {
+    Rectangle tiles; /* x1, y1 exclusive */
+    int far;
+} Reach;
+
+static Reach reach_of(const MomentMean *m, int intervals) {
+    Rectangle r = {m->tiles_x, m->tiles_y, 0, 0};
     for (int y = 0; y < m->tiles_y; y++)
         for (int x = 0; x < m->tiles_x; x++)
-            if (m->moving[y * m->tiles_x + x]) r = (Rectangle){int_min(r.x0, x), int_min(r.y0, y), int_max(r.x1, x), int_max(r.y1, y)};
-    return r.x1 < 0 ? 0 : 1 + (int)ceil(hypot(r.x1 - r.x0, r.y1 - r.y0) / intervals);
+            if (m->moving[y * m->tiles_x + x]) r = (Rectangle){int_min(r.x0, x), int_min(r.y0, y), int_max(r.x1, x + 1), int_max(r.y1, y + 1)};
+    return (Reach){r, r.x1 == 0 ? 0 : (int)ceil(hypot(r.x1 - 1 - r.x0, r.y1 - 1 - r.y0) / intervals)};
 }
 
-static bool moves_near(const MomentMean *m, int tx, int ty, int reach) {
-    for (int y = int_max(ty - reach, 0); y <= int_min(ty + reach, m->tiles_y - 1); y++)
-        for (int x = int_max(tx - reach, 0); x <= int_min(tx + reach, m->tiles_x - 1); x++)
+static bool moves_near(const MomentMean *m, int tx, int ty, Reach reach) {
+    Rectangle r = reach.tiles;
+    if (tx < r.x0 || tx >= r.x1 || ty < r.y0 || ty >= r.y1) return false;
+    for (int y = int_max(ty - reach.far, r.y0); y <= int_min(ty + reach.far, r.y1 - 1); y++)
+        for (int x = int_max(tx - reach.far, r.x0); x <= int_min(tx + reach.far, r.x1 - 1); x++)
             if (m->moving[y * m->tiles_x + x]) return true;
     return false;
 }
 
 bool moment_mean_close(MomentMean *m, const MomentMean *scout, int first_x, int first_y, int intervals) {
-    int reach = scout ? reach_of(scout, intervals) : 0;
+    Reach reach = {.far = 0};
+    if (scout) reach = reach_of(scout, intervals);
     bool any = false;
     for (int y = 0; y < m->tiles_y; y++)
         for (int x = 0; x < m->tiles_x; x++) {

@@ -15,6 +15,7 @@ typedef struct MomentMean {
     int channels;         /* that are light */
     int tiles_x, tiles_y;
     bool *open, *moving;  /* of tiles: not finished; of these, those that the last moments changed */
+    float *noise, *noise_between; /* of tiles: the mean squares of the noise that is expected in the means, 0 where none is known */
 } MomentMean;
 
 /* The moments of a picture come in a fixed order: both ends, the middle, and then the middles of ever more intervals. */
@@ -28,9 +29,11 @@ static inline bool moment_is_last(MomentPlace place) { return place.intervals > 
 
 /* Tiles over `width` × `height` pixels, all of them open; arrays in `arena`. */
 void moment_mean_lay(MomentMean *m, int width, int height, Arena *arena);
-/* Takes over a picture of the moment at `place`; those of one number of intervals follow each other. */
-void moment_mean_add(MomentMean *m, MomentPlace place, Image *picture);
-/* After the last of so many intervals: the mean is over all of them, and `moving` says where they still change it by more than `accepted`, an RMSE. */
+/* Takes over a picture of the moment at `place`, with the noise of tiles of `tile_noise`, `side` of which lie along each of theirs; those of one
+ * number of intervals follow each other. */
+void moment_mean_add(MomentMean *m, MomentPlace place, Image *picture, const float *tile_noise, int side);
+/* After the last of so many intervals: the mean is over all of them, and `moving` says where they still change it by more than `accepted`, an RMSE, and
+ * by more than their noise. */
 void moment_mean_finish(MomentMean *m, double accepted);
 /* Which tiles stay open, now that there are so many intervals: those that move, and those that `scout`, whose tiles are the same parts of the whole
  * picture, sees something move in or near to, so far as it may go between two moments. `scout` may be `m`, or NULL: none; `first_x`, `first_y`: the tile of the scout

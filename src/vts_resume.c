@@ -62,7 +62,7 @@ typedef struct StateHeader {
     double error_estimate, noise_estimate;
 } StateHeader;
 
-static const char MAGIC[8] = "vtsmmnt1";
+static const char MAGIC[8] = "vtsmmnt2";
 
 static void path_of(const VtsSession *session, StrBuf *out) { strbuf_addf(out, "%s.moments-vts", session->kept_at); }
 
@@ -83,7 +83,9 @@ static size_t image_bytes(const MomentMean *m, int channels) {
     return (size_t)m->width * (size_t)m->height * (size_t)channels * sizeof(float);
 }
 
-static size_t tile_bytes(const MomentMean *m) { return (size_t)m->tiles_x * (size_t)m->tiles_y * sizeof *m->open; }
+static size_t tiles_of(const MomentMean *m) { return (size_t)m->tiles_x * (size_t)m->tiles_y; }
+
+static size_t tile_bytes(const MomentMean *m) { return tiles_of(m) * (sizeof *m->noise + sizeof *m->noise_between + sizeof *m->open); }
 
 static size_t size_of(const ExposureState *state, const StateHeader *header) {
     size_t size = tile_bytes(state->mean) + tile_bytes(state->scout);
@@ -99,11 +101,15 @@ static void copy_state(const ExposureState *state, unsigned char *bytes, bool in
         if (size) memcpy(into_state ? (void *)image->pixels : bytes, into_state ? bytes : (void *)image->pixels, size);
         bytes += size;
     }
-    MomentMean *const means[] = {state->mean, state->scout};
+    const MomentMean *const means[] = {state->mean, state->scout};
     for (int i = 0; i < 2; i++) {
-        size_t size = tile_bytes(means[i]);
-        memcpy(into_state ? (void *)means[i]->open : bytes, into_state ? bytes : (void *)means[i]->open, size);
-        bytes += size;
+        void *const parts[] = {means[i]->noise, means[i]->noise_between, means[i]->open};
+        const size_t each[] = {sizeof *means[i]->noise, sizeof *means[i]->noise_between, sizeof *means[i]->open};
+        for (int k = 0; k < 3; k++) {
+            size_t size = tiles_of(means[i]) * each[k];
+            memcpy(into_state ? parts[k] : bytes, into_state ? bytes : parts[k], size);
+            bytes += size;
+        }
     }
 }
 

@@ -81,6 +81,7 @@ typedef struct MomentPlan {
     double noise;
     const bool *tiles;
     const int *region; /* NULL: as in the options */
+    float *tile_noise;
     int samples;  /* 0: the usual */
     bool unseen;  /* by viewers */
     bool apart;   /* nothing of it is kept for other runs */

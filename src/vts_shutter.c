@@ -13,9 +13,11 @@
 enum { MOST_INTERVALS = 128, MOST_REFERENCE_INTERVALS = 64, BLOCK = 8 };
 /* So many moments are drawn with the same random numbers, so that what rests is told from what moves. */
 enum { MOMENTS_ALIKE = 3 };
-/* A pixel of the scout's is so many of the picture's each way, and has so many samples, each way where no skin is. Between the moments of more
- * intervals than these little passes through a tile unseen. */
-enum { SCOUT = 4, SCOUT_SAMPLES = 1, SCOUT_INTERVALS = 16 };
+/* A pixel of the scout's is so many of the picture's each way, and has so many samples; where skins are, which cost little more for that. Between the
+ * moments of more intervals than these little passes through a tile unseen. */
+enum { SCOUT = 4, SCOUT_SAMPLES = 1, SCOUT_SKIN_SAMPLES = 16, SCOUT_INTERVALS = 16 };
+/* The mean so far may have all the noise that is accepted, and the mean between so many times its square: that of both is then no more. */
+static const double NOISE_BETWEEN = 3;
 
 typedef struct Exposure {
     VtsSession *session;
@@ -65,21 +67,26 @@ static MomentPlan plan_of(const Exposure *e, MomentPlace place) {
     if (e->exact || e->moments >= MOMENTS_ALIKE) plan.seed = 0x9e3779b97f4a7c15u * (uint64_t)e->moments;
     int samples = e->session->options.reference_samples;
     if (e->exact) plan.samples = int_max(1, samples / intervals_of_reference(samples));
-    else if (e->moments >= MOMENTS_ALIKE) plan.noise = sqrt(place.intervals);
+    else if (e->moments >= MOMENTS_ALIKE) plan.noise = sqrt(NOISE_BETWEEN * place.intervals);
     return plan;
+}
+
+static float *new_noise(const Exposure *e, const int region[4]) {
+    return arena_new_array(e->session->compiled.arena, float, (size_t)film_tiles_x(region) * (size_t)film_tiles_y(region));
 }
 
 static VtsStatus draw_picture(Exposure *e, MomentPlace place) {
     VtsSession *session = e->session;
     RenderStats stats = {.error_estimate = -1};
     MomentPlan plan = plan_of(e, place);
+    plan.tile_noise = new_noise(e, e->region);
     session_keep_moment(session, e->moments, e->region);
     VtsStatus status = session_draw(session, e->exact, &plan, &stats);
     if (status != VTS_OK) return status;
     if (e->moments == 0) e->stats->error_estimate = stats.error_estimate, e->stats->noise_estimate = stats.noise_estimate;
     trace_counters_add(&e->stats->counters, &stats.counters);
     e->stats->split_pixels += stats.split_pixels;
-    moment_mean_add(e->mean, place, &session->picture);
+    moment_mean_add(e->mean, place, &session->picture, plan.tile_noise, 1);
     return VTS_OK;
 }
 
@@ -101,7 +108,8 @@ static VtsStatus draw_scout(Exposure *e, MomentPlace place) {
     CompiledScene *compiled = &session->compiled;
     const View view = compiled->view;
     const int region[4] = {0, 0, e->scout_size[0], e->scout_size[1]};
-    MomentPlan plan = {.unseen = true, .apart = true, .samples = SCOUT_SAMPLES, .region = region, .tiles = open_tiles(e)};
+    MomentPlan plan = {.unseen = true, .apart = true, .region = region, .tiles = open_tiles(e), .tile_noise = new_noise(e, region)};
+    plan.samples = compiled->skin_count ? SCOUT_SKIN_SAMPLES : SCOUT_SAMPLES;
     RenderStats stats;
     compiled->view.width = region[2], compiled->view.height = region[3];
     view_prepare(&compiled->view);
@@ -111,7 +119,7 @@ static VtsStatus draw_scout(Exposure *e, MomentPlace place) {
     compiled->view = view;
     if (status != VTS_OK) return status;
     trace_counters_add(&e->stats->counters, &stats.counters);
-    moment_mean_add(e->scout, place, &session->picture);
+    moment_mean_add(e->scout, place, &session->picture, plan.tile_noise, FILM_TILE / e->scout->tile);
     return VTS_OK;
 }
 
@@ -140,7 +148,7 @@ static VtsStatus expose(Exposure *e) {
         MomentPlace place = moment_place(e->moments);
         VtsStatus status = draw_moment(e, place);
         if (status != VTS_OK) return status;
-        e->moments++;
+        e->stats->moments = (uint64_t)++e->moments;
         if (place.moment == 1) more = most > 1;
         if (moment_is_last(place)) more = close_tiles(e, place.intervals) && 2 * place.intervals < most;
         const ExposureState state = {&e->moments, &e->scouting, e->stats, e->mean, e->scout};

@@ -44,6 +44,7 @@ struct BeamTracer {
     int samples;           /* a pixel, of the pass that is being made */
     int before;            /* of the passes before */
     BeamPlan plan;
+    double tile_noise; /* squared, of a pixel of the last tile */
     double squared_error, squared_noise; /* summed over the pixels of all tiles: what voxels are wrong by, and noise */
     uint64_t pixel_count, sample_count;
     uint64_t seed;

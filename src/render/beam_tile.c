@@ -288,6 +288,7 @@ void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out, Ao
     for (int i = 0; i < pixels; i++) tr->cones[i] = view_cone(&tr->compiled->view, x0 + i % tr->columns + 0.5, y0 + i / tr->columns + 0.5, 1);
     memset(out, 0, (size_t)pixels * sizeof *out);
     tr->pixel_count += (uint64_t)pixels;
+    tr->tile_noise = 0;
     if (beam_gather(&tr->draft, tr->compiled) == 0 && see_sky(tr, out)) return;
     ErrorLaw law = {.samples = 0, .power = 0.75};
     for (tr->before = 0; tr->before < wanted && !beam_is_interrupted(&tr->draft); tr->before += tr->samples) {
@@ -300,6 +301,7 @@ void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out, Ao
         if (tr->plan.first == tr->plan.most) wanted = tr->plan.most;
     }
     double error = tr->before > 0 ? law.error * pow(law.samples / tr->before, law.power) : 0;
+    tr->tile_noise = error * error;
     tr->squared_noise += error * error * pixels;
 }
 
@@ -309,3 +311,4 @@ double beam_tracer_error(const BeamTracer *tr, uint64_t *pixels) {
 }
 
 double beam_tracer_noise(const BeamTracer *tr) { return tr->squared_noise; }
+double beam_tile_noise(const BeamTracer *tr) { return tr->tile_noise; }

@@ -31,6 +31,8 @@ void beam_tile(BeamTracer *tracer, int x0, int y0, int x1, int y1, Radiance *out
 double beam_tracer_error(const BeamTracer *tracer, uint64_t *pixels);
 /* The same of noise alone. */
 double beam_tracer_noise(const BeamTracer *tracer);
+/* Of the last tile, for each of its pixels. */
+double beam_tile_noise(const BeamTracer *tracer);
 /* What has been done so far, in counts that hang on nothing but the scene and the picture. */
 typedef struct BeamWork {
     uint64_t triangles, nodes; /* mapped and drawn, and boxes around some */

@@ -59,26 +59,29 @@ static void see(Film *film, Place p, int worker) {
         }
 }
 
-/* Between the tile's rows in the picture and `samples`, as many as a kept tile has. */
-static size_t copy_tile(const Film *film, Place p, float *samples, bool into_picture) {
+/* Between the tile's rows in the picture and `samples`. */
+static void copy_tile(const Film *film, Place p, float *samples, bool into_picture) {
     size_t row = (size_t)(p.x1 - p.x0) * (size_t)film->image->channels;
     for (int y = p.y0; y < p.y1; y++, samples += row) {
         float *pixels = image_pixel(film->image, p.x0 - film->options->region[0], y - film->options->region[1]);
         memcpy(into_picture ? pixels : samples, into_picture ? samples : pixels, row * sizeof *samples);
     }
-    return row * (size_t)(p.y1 - p.y0);
 }
 
 /* Sees what no other run has seen. Pixels after an interruption are black, and not kept. */
 static void see_or_take(Film *film, size_t index, Place p, int worker) {
     const RenderOptions *options = film->options;
-    size_t count = (size_t)(p.x1 - p.x0) * (size_t)(p.y1 - p.y0) * (size_t)film->image->channels;
+    float *noise = options->tile_noise ? &options->tile_noise[index] : NULL; /* is kept behind the samples */
+    size_t count = (size_t)(p.x1 - p.x0) * (size_t)(p.y1 - p.y0) * (size_t)film->image->channels + (noise != NULL);
     float *samples = options->kept ? malloc(count * sizeof *samples) : NULL;
     if (samples && tile_file_read(options->kept, (uint32_t)index, samples, count)) {
         copy_tile(film, p, samples, true);
+        if (noise) *noise = samples[count - 1];
     } else {
         see(film, p, worker);
-        if (samples && !(options->interrupted && *options->interrupted)) tile_file_write(options->kept, (uint32_t)index, samples, copy_tile(film, p, samples, false));
+        if (samples) copy_tile(film, p, samples, false);
+        if (samples && noise) samples[count - 1] = *noise;
+        if (samples && !(options->interrupted && *options->interrupted)) tile_file_write(options->kept, (uint32_t)index, samples, count);
     }
     free(samples);
 }

@@ -26,6 +26,7 @@ typedef struct RenderOptions {
     double noise;    /* so many times as noisy as else may be what random samples draw, 1 or more; 0: 1. The same for all that is not random */
     TileFile *kept;    /* tiles of another run, which are taken as they are, and those of this one; or NULL */
     const bool *tiles; /* those of the region that are wanted, rows from the top; the others stay black. NULL: all */
+    float *tile_noise; /* of each of these tiles: the mean square of the noise that beams expect to be in its pixels, 0 where none is known; or NULL */
     double exposure; /* EV */
     bool alpha;      /* keep the background transparent */
     const AovPlan *aovs; /* further channels; or NULL */

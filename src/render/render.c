@@ -14,6 +14,15 @@ typedef struct Frame {
     AovSum *aovs;       /* of the tile that each worker sees; or NULL */
 } Frame;
 
+static void see_by_beams(Frame *frame, int worker, const int tile[4], Radiance *seen, AovSum *aovs) {
+    const RenderOptions *options = frame->options;
+    const int *region = options->region;
+    beam_tile(frame->beams[worker], tile[0], tile[1], tile[2], tile[3], seen, aovs);
+    if (!options->tile_noise) return;
+    int column = tile[0] / FILM_TILE - region[0] / FILM_TILE, row = tile[1] / FILM_TILE - region[1] / FILM_TILE;
+    options->tile_noise[row * film_tiles_x(region) + column] = (float)beam_tile_noise(frame->beams[worker]);
+}
+
 /* The whole tile, of which a region may want a part: what is seen hangs on all of it. */
 static void see_tile(void *context, int worker, int x0, int y0, int x1, int y1, Radiance *out, AovSum *aovs) {
     Frame *frame = context;
@@ -23,7 +32,7 @@ static void see_tile(void *context, int worker, int x0, int y0, int x1, int y1, 
     if (whole) memset(whole, 0, sizeof *whole * FILM_TILE * FILM_TILE);
     int left = x0 - x0 % FILM_TILE, top = y0 - y0 % FILM_TILE;
     int right = int_min(left + FILM_TILE, view->width), bottom = int_min(top + FILM_TILE, view->height);
-    if (frame->beams) beam_tile(frame->beams[worker], left, top, right, bottom, seen, whole);
+    if (frame->beams) see_by_beams(frame, worker, (const int[4]){left, top, right, bottom}, seen, whole);
     else sampler_tile(frame->samplers[worker], left, top, right, bottom, seen, whole);
     for (int y = y0; y < y1; y++)
         for (int x = x0; x < x1; x++) {
@@ -40,7 +49,7 @@ static bool has_exact_skins(const CompiledScene *compiled) {
 }
 
 static BeamPlan noisier(BeamPlan plan, double factor) {
-    plan.first = int_max(1, (int)(plan.first / (factor * factor)));
+    plan.first = int_max(2, (int)(plan.first / (factor * factor))); /* both halves of one pass tell the noise */
     plan.most = int_max(plan.first, (int)(plan.most / (factor * factor)));
     plan.max_error *= factor;
     return plan;

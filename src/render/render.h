@@ -10,6 +10,7 @@ typedef struct RenderStats {
     TraceCounters counters;
     uint64_t kept_tiles;   /* that another run had seen; they are counted nowhere else */
     uint64_t kept_moments; /* the same of pictures of moments */
+    uint64_t moments;      /* that a blurred picture is the mean of; 0: sharp */
     uint64_t split_pixels; /* traced by several cones */
     double noise_estimate; /* the RMSE to be expected from samples alone */
     double error_estimate; /* the RMSE to be expected; negative: not known, as voxels are seen */

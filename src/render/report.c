@@ -71,10 +71,10 @@ void report_add_frame(StrBuf *out, const FrameReport *f) {
     if (f->stats->error_estimate >= 0) strbuf_addf(out, ",\"error_estimate\":%.6f", f->stats->error_estimate);
     else strbuf_adds(out, ",\"error_estimate\":null");
     strbuf_addf(out, ",\"error_noise\":%.6f", f->stats->noise_estimate);
-    strbuf_addf(out, ",\"stages\":{\"parse_s\":%.4f,\"build_s\":%.4f,\"render_s\":%.4f,\"write_s\":%.4f,"
-                     "\"march_steps\":%llu,\"texel_triangles\":%llu,\"split_pixels\":%llu,\"kept_tiles\":%llu,\"kept_moments\":%llu,\"trials\":%d,\"volume_light_kept\":%s}}",
-                f->parse_s, f->build_s, f->render_s, f->write_s, (unsigned long long)c->steps, (unsigned long long)c->triangles,
-                (unsigned long long)f->stats->split_pixels, (unsigned long long)f->stats->kept_tiles, (unsigned long long)f->stats->kept_moments, f->compiled->trials, f->compiled->volume_light_kept ? "true" : "false");
+    strbuf_addf(out, ",\"stages\":{\"parse_s\":%.4f,\"build_s\":%.4f,\"build_cpu_s\":%.4f,\"render_s\":%.4f,\"write_s\":%.4f,"
+                     "\"march_steps\":%llu,\"texel_triangles\":%llu,\"split_pixels\":%llu,\"kept_tiles\":%llu,\"kept_moments\":%llu,\"moments\":%llu,\"trials\":%d,\"volume_light_kept\":%s}}",
+                f->parse_s, f->build_s, f->build_cpu_s, f->render_s, f->write_s, (unsigned long long)c->steps, (unsigned long long)c->triangles,
+                (unsigned long long)f->stats->split_pixels, (unsigned long long)f->stats->kept_tiles, (unsigned long long)f->stats->kept_moments, (unsigned long long)f->stats->moments, f->compiled->trials, f->compiled->volume_light_kept ? "true" : "false");
 }
 
 void report_write(StrBuf *out, const char *scene, const char *version, const StrBuf *frames) {

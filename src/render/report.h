@@ -8,7 +8,7 @@ typedef struct FrameReport {
     int frame;
     double clock;
     const char *output;
-    double wall_s, cpu_s, parse_s, build_s, render_s, write_s;
+    double wall_s, cpu_s, parse_s, build_s, render_s, write_s, build_cpu_s;
     size_t peak_rss_bytes;
     const CompiledScene *compiled;
     const RenderStats *stats;

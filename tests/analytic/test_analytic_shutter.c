@@ -112,6 +112,47 @@ static void threads_do_not_matter(void **state) {
     picture_free(&b);
 }
 
+/* Blades that go by a pixel: what differs from moment to moment is mostly noise, and asks for no more of them. */
+#define SWAYING                                                                                                                           \
+    LOOK_DOWN(5, 4) "light_source { <3, 9, 4>, rgb 1 }\nglobal_settings { max_error 0.01 }\n#declare R = seed(3);\n"                      \
+    "#declare Blades = texel { layer { mesh { #for (I, 1, 40) #local P = <rand(R), 0, rand(R)>;"                                           \
+    " triangle { P, P + 0.2*x, P + <0.3*rand(R), 1, 0.3*rand(R)> } #end } texture { pigment { rgb <0.6, 0.7, 0.4> } finish { ambient 1 diffuse 0 } } } }\n"              \
+    "skin { surface { patch_grid 4, 4 function(u, v) { <3*u - 1.5 + 0.1*clock, -1, 3*v - 1.5> } } texel { Blades } mapping { repeat <9, 9> height 0.3 } }\n"
+
+static int moments_in(const char *report) {
+    const char *at = strstr(report, "\"moments\":");
+    return at ? atoi(at + strlen("\"moments\":")) : -1;
+}
+
+static void as_many_moments_as_tell_something(void **state) {
+    enum { TIMES = 8 };
+    Bench *bench = *state;
+    VtsOptions o = exposed(1);
+    bench_write(bench, SWAYING);
+    VtsSession *session = vts_session_create(&o, NULL);
+    assert_int_equal(vts_render(session, bench->scene, bench->output), VTS_OK);
+    int moments = moments_in(vts_report(session));
+    assert_true(moments >= 3 && moments <= 9);
+    vts_session_destroy(session);
+    Picture blurred = picture_read(bench->output);
+    double squares = 0, apart = 0;
+    float mean[3 * 48 * 48] = {0};
+    for (int i = 0; i < TIMES; i++) {
+        VtsOptions sharp = exposed(0);
+        sharp.clock = (i + 0.5) / TIMES;
+        sharp.seed = (unsigned long long)i + 5;
+        Picture p = bench_render(bench, &sharp, SWAYING);
+        for (int k = 0; k < 3 * 48 * 48; k++) mean[k] += p.pixels[k] / TIMES;
+        if (i == 0)
+            for (int k = 0; k < 3 * 48 * 48; k++) apart += pow((double)(p.pixels[k] - blurred.pixels[k]), 2);
+        picture_free(&p);
+    }
+    for (int k = 0; k < 3 * 48 * 48; k++) squares += pow((double)(mean[k] - blurred.pixels[k]), 2);
+    assert_true(sqrt(squares / (3 * 48 * 48)) < 0.012);
+    assert_true(squares < 0.25 * apart);
+    picture_free(&blurred);
+}
+
 /* What is wrong at some moment alone is told, and there is no picture. */
 static void wrong_later(void **state) {
     Bench *bench = *state;
@@ -129,6 +170,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(moving_square), cmocka_unit_test(turning_half_plane), cmocka_unit_test(growing_light), cmocka_unit_test(still_scenes),
         cmocka_unit_test(as_the_reference_has_it), cmocka_unit_test(threads_do_not_matter), cmocka_unit_test(wrong_later),
+        cmocka_unit_test(as_many_moments_as_tell_something),
     };
     return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
 }

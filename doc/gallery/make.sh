@@ -30,6 +30,10 @@ size_of() {
     contents | deformed | forest | kinds | jitter | larches | superimposed) echo 640x360 ;;
     pinwheels) echo 560x350 ;;
     cloud | glade | orchard | planet) echo 480x300 ;;
+    haze) echo 480x270 ;;
+    head) echo 400x320 ;;
+    smoke) echo 300x400 ;;
+    shafts) echo 400x300 ;;
     *) echo 480x360 ;;
   esac
 }
@@ -39,6 +43,7 @@ clock_of() {
   case $1 in
     pinwheels) echo '--clock 0.1667' ;;
     wind) echo '--clock 0.3' ;;
+    smoke) echo '--clock 0.5' ;;
   esac
 }
 

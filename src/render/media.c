@@ -7,7 +7,7 @@
 /* Light comes from so many lamps whose share is carried from place to place; that of others is asked for everywhere. */
 enum { KEPT_LAMPS = 8, MOST_HALVINGS = 18, MOST_PLACES = 1500, MOST_SHADOW_PLACES = 300 };
 /* Of the error that a picture may have, what one piece may add; and of a reference. */
-static const double SHARE = 0.25, EXACT_SHARE = 0.02;
+static const double SHARE = 0.4, EXACT_SHARE = 0.02;
 /* What is behind so much is not seen. */
 static const double OPAQUE_BELOW = 1e-4;
 /* Without an end there is nothing beyond. */
@@ -86,8 +86,13 @@ static Vec3 turned(const Way *way, const Vec3 *densities, Vec3 to_light) {
 
 static bool shines_on_media(const Light *light) { return !light->shadowless && !light->unscattered && light_shines_on(light, NULL); }
 
+/* What a line of sight gets is the sum of many places, that of a surface one of them. */
+static const double SLACK = 8;
+
 static Vec3 lamp_at(const Way *way, const Light *light, const LightRay *ray, Vec3 point) {
-    Vec3f share = surface_shadow(way->tracer, light, ray, way->leg, point, 0, way->tracer->seed);
+    SurfaceTracer tracer = *way->tracer;
+    if (!tracer.compiled->exact_paths) tracer.media_slack = SLACK;
+    Vec3f share = surface_shadow(&tracer, light, ray, way->leg, point, 0, way->tracer->seed);
     return vec3_from_f(vec3f_mul(share, ray->color));
 }
 
@@ -244,14 +249,14 @@ static void stop_for_light(const Light *light, const Ray *ray, double *extra, in
 }
 
 static int find_extra(const Way *way, double t0, double t1, double *extra) {
-    enum { LEAST_PIECES = 4, MOST_PIECES = 48, PLACES = 5, POWERS = 18 };
+    enum { LEAST_PIECES = 12, MOST_PIECES = 48, PLACES = 5, POWERS = 18 };
     const Scene *scene = way->tracer->compiled->scene;
     int count = 0;
     for (size_t i = 0; i < scene->light_count && way->scatters; i++)
         if (shines_on_media(&scene->lights[i])) stop_for_light(&scene->lights[i], &way->ray, extra, &count);
     double samples = 0;
     for (int i = 0; i < way->matter->count; i++) samples = double_max(samples, way->matter->sites[i].medium->samples);
-    int pieces = (int)double_clamp(samples / PLACES, way->lit ? LEAST_PIECES : 1, MOST_PIECES);
+    int pieces = (int)double_clamp(samples / PLACES, !way->lit ? 1 : way->tracer->compiled->exact_paths ? MOST_PIECES : LEAST_PIECES, MOST_PIECES);
     for (int i = 1; i < pieces && t1 < FAR; i++) add_extra(extra, &count, t0 + (t1 - t0) * i / pieces);
     double power = 1e-3;
     for (int i = 0; i < POWERS && t1 >= FAR; i++, power *= 6) add_extra(extra, &count, power);
@@ -359,8 +364,10 @@ static bool is_even(const MediaMatter *matter) {
     return true;
 }
 
-static Vec3f what_passes(const CompiledScene *compiled, const MediaMatter *matter) {
+static Vec3f what_passes(const CompiledScene *compiled, MediaMatter *matter, double slack) {
     Passing p = {.matter = matter, .tolerance = tolerance_of(compiled), .places_left = MOST_SHADOW_PLACES};
+    if (slack > 1) p.tolerance *= slack;
+    for (int i = 0; i < matter->count && slack > 1; i++) matter->sites[i].stride *= sqrt(slack);
     double stops[MEDIA_MOST_STOPS];
     if (!matter->count) return vec3f(1, 1, 1);
     if (is_even(matter)) return to_floats(passing(vec3_scale(media_extinction(matter, matter->t0), matter->t1 - matter->t0)));
@@ -375,7 +382,7 @@ static Vec3f what_passes(const CompiledScene *compiled, const MediaMatter *matte
     return to_floats(passing(p.depth));
 }
 
-Vec3f media_passing(const CompiledScene *compiled, const Enclosure *enclosures, int count, const Ray *ray, double t0, double t1) {
+Vec3f media_passing(const CompiledScene *compiled, const Enclosure *enclosures, int count, const Ray *ray, double t0, double t1, double slack) {
     MediaMatter matter;
     if (!count || !surface_in_air(enclosures, count)) return vec3f(1, 1, 1);
     media_matter_begin(&matter, t0, end_of(t1));
@@ -383,12 +390,12 @@ Vec3f media_passing(const CompiledScene *compiled, const Enclosure *enclosures, 
         const Enclosure *e = &enclosures[i];
         if (e->interior && e->interior->media.count) media_matter_add(&matter, &e->interior->media, &e->to_interior, ray);
     }
-    return what_passes(compiled, &matter);
+    return what_passes(compiled, &matter, slack);
 }
 
-Vec3f media_air_passing(const CompiledScene *compiled, const Ray *ray, double distance) {
+Vec3f media_air_passing(const CompiledScene *compiled, const Ray *ray, double distance, double slack) {
     MediaMatter matter;
     media_matter_begin(&matter, 0, end_of(distance));
     media_matter_add(&matter, &compiled->scene->media, NULL, ray);
-    return what_passes(compiled, &matter);
+    return what_passes(compiled, &matter, slack);
 }

@@ -8,10 +8,10 @@
  * not hollow there are none. */
 Air media_air(SurfaceTracer *tracer, const Leg *leg, double t_max);
 
-/* The share of light that passes the media of these objects between t0 and t1 of the ray of unit direction; */
-Vec3f media_passing(const CompiledScene *compiled, const Enclosure *enclosures, int count, const Ray *ray, double t0, double t1);
+/* The share of light that passes the media of these objects between t0 and t1 of the ray of unit direction; slack: SurfaceTracer.media_slack. */
+Vec3f media_passing(const CompiledScene *compiled, const Enclosure *enclosures, int count, const Ray *ray, double t0, double t1, double slack);
 /* and that passes the scene's own. */
-Vec3f media_air_passing(const CompiledScene *compiled, const Ray *ray, double distance);
+Vec3f media_air_passing(const CompiledScene *compiled, const Ray *ray, double distance, double slack);
 
 /* ---- media_matter.c: what is there along a ray ---- */
 

@@ -41,6 +41,7 @@ typedef struct SurfaceTracer {
     bool exact;         /* of a ray without width, so that any number of them may be asked */
     void *skins;
     bool no_volumes;    /* whoever asks sees to what volumes take of light */
+    double media_slack; /* so much more than else may be wrong with what media take of light, for many ways count together; 0: 1 */
 } SurfaceTracer;
 
 /* A leg that is in nothing. */

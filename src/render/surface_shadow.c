@@ -94,19 +94,18 @@ static RayWidth width_at(const Leg *leg, Vec3 point) {
     return (RayWidth){cone_diameter(&leg->cone, vec3_length(vec3_sub(point, leg->cone.origin))), 0};
 }
 
-static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from, double distance, const Leg *leg) {
+static Vec3f clear_surfaces(const SurfaceTracer *tracer, const Ray *ray, double from, double distance, const Leg *leg, bool media) {
     const CompiledScene *compiled = tracer->compiled;
     Vec3f through = {1, 1, 1};
     Enclosure enclosures[MOST_ENCLOSURES];
     int count = leg->enclosure_count;
     double bailout = compiled->scene->settings.adc_bailout, begun = 0;
-    bool media = compiled->scene->has_media;
     if (count) memcpy(enclosures, leg->enclosures, (size_t)count * sizeof *enclosures);
     for (int i = 0; i < MOST_CLEAR; i++) {
         SurfaceHit hit;
         bool met = hierarchy_meet_wide(compiled->hierarchy, RAY_SHADOWS, ray, width_at(leg, ray->origin), from, distance, false, &hit);
         if (met && hit.look->opaque) break;
-        if (media) through = vec3f_mul(through, media_passing(compiled, enclosures, count, ray, begun, met ? hit.t : distance));
+        if (media) through = vec3f_mul(through, media_passing(compiled, enclosures, count, ray, begun, met ? hit.t : distance, tracer->media_slack));
         if (!met) return through;
         through = vec3f_mul(through, filtered(ray, &hit));
         if (hit.interior && surface_enclosure(enclosures, count, &hit) >= 0)
@@ -119,13 +118,19 @@ static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from,
     return vec3f(0, 0, 0);
 }
 
+/* Media take long: they are asked only where something else lets light through. */
+static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from, double distance, const Leg *leg) {
+    Vec3f through = clear_surfaces(tracer, ray, from, distance, leg, false);
+    return tracer->compiled->scene->has_media && most_of(through) > 0 ? clear_surfaces(tracer, ray, from, distance, leg, true) : through;
+}
+
 /* `air`: the scene's own media count, in solids as well (measured). */
 static Vec3f open_way(SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, double clear, bool air) {
     const CompiledScene *compiled = tracer->compiled;
     tracer->counters->shadow_rays++;
     if (!compiled->clear_shadows) return hierarchy_occluded_wide(compiled->hierarchy, ray, width_at(leg, ray->origin), clear, distance) ? vec3f(0, 0, 0) : vec3f(1, 1, 1);
     Vec3f through = clear_way(tracer, ray, clear, distance, leg);
-    if (air && compiled->scene->media.count && most_of(through) > 0) through = vec3f_mul(through, media_air_passing(compiled, ray, distance));
+    if (air && compiled->scene->media.count && most_of(through) > 0) through = vec3f_mul(through, media_air_passing(compiled, ray, distance, tracer->media_slack));
     if (!compiled->volumes || tracer->no_volumes || most_of(through) <= 0) return through;
     return vec3f_mul(through, volumes_passing(compiled->volumes, ray, clear, distance, RAY_SHADOWS));
 }

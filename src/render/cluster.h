@@ -44,12 +44,13 @@ typedef struct ClusterTriangleList {
 } ClusterTriangleList;
 
 struct Cluster {
-    RTCScene scene;
+    RTCScene scene; /* NULL where there are few items */
     Vec3 origin;   /* Embree's floats count from here */
     Box3 bounds;   /* of what Embree knows */
     Box3 box;      /* of everything, infinite where something is endless */
     ItemList items;
     size_t loose;  /* from this one on items are tested one by one: endless ones, and giants that would cost the others their digits */
+    const Box3 *few; /* boxes of the items before `loose`, slightly wider, where these are all and need no tree; or NULL */
     ItemList owners; /* of triangles; of a mesh: one, in the cluster's own space */
     ClusterTriangleList triangles; /* few ones of the owners */
     const MeshData *mesh;          /* all of a mesh instead */
@@ -60,7 +61,7 @@ struct Cluster {
     } filled;      /* items that have an interior or hold what has one */
 };
 
-enum { CLUSTER_DEEPEST = 32 };
+enum { CLUSTER_DEEPEST = 32, CLUSTER_FEW = 8 };
 
 /* Looks by texture. */
 typedef struct LookTable {

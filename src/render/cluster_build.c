@@ -395,6 +395,20 @@ static void set_giants_apart(Cluster *cluster) {
     }
 }
 
+/* Wider by roundings, so that no ray lies in a side. */
+static Box3 wider(Box3 box) {
+    Vec3 far = vec3(fmax(fabs(box.min.x), fabs(box.max.x)), fmax(fabs(box.min.y), fabs(box.max.y)), fmax(fabs(box.min.z), fabs(box.max.z)));
+    Vec3 margin = vec3_add(vec3_scale(vec3_add(far, vec3_splat(vec3_length(far))), 1e-9), vec3_splat(1e-30));
+    return (Box3){vec3_sub(box.min, margin), vec3_add(box.max, margin)};
+}
+
+static void bound_few(Builder *b, Cluster *cluster) {
+    if (cluster->loose > CLUSTER_FEW || cluster->triangles.count || cluster->mesh) return;
+    Box3 *few = arena_new_array(b->arena, Box3, CLUSTER_FEW);
+    for (size_t i = 0; i < cluster->loose; i++) few[i] = wider(item_box(&cluster->items.items[i]));
+    cluster->few = few;
+}
+
 static void finish_cluster(Builder *b, Cluster *cluster) {
     cluster->loose = cluster->items.count;
     for (size_t i = 0; i < cluster->loose;) {
@@ -405,7 +419,8 @@ static void finish_cluster(Builder *b, Cluster *cluster) {
             swap_items(&items[i], &items[--cluster->loose]);
     }
     cluster->box = cluster->bounds;
-    set_giants_apart(cluster);
+    if (cluster->loose > CLUSTER_FEW || cluster->triangles.count) set_giants_apart(cluster);
+    bound_few(b, cluster);
     for (size_t i = 0; i < cluster->items.count; i++) {
         Box3 box = item_box(&cluster->items.items[i]);
         if (i < cluster->loose) cluster->bounds = box3_union(cluster->bounds, box);

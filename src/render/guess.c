@@ -3,20 +3,27 @@
 #include "base/random.h"
 
 /* Squares of this size are tried first. */
-enum { WIDEST = 4 };
+enum { WIDEST = 8 };
 /* What is seen between corners is as smooth a part of the same surface. */
 static const float SAME_NORMAL = 0.98f;
 /* One guess of so many is tried. */
 enum { TRIED = 16 };
+/* Guesses are told apart by how much the light at the corners differs, in powers of four; what is known of all of them counts in each kind
+ * as much as so many. */
+enum { KINDS = 6 };
+static const double PRIOR = 2;
 
-typedef enum Known { UNKNOWN, GUESSED, FOUND } Known;
+typedef enum Known { UNKNOWN, FOUND, GUESSED /* and those after it: plus the kind */ } Known;
 
 typedef struct Tile {
     const GuessSight *sight;
     Middle *middles;
     uint8_t known[FILM_TILE * FILM_TILE];
-    double wrong; /* sum of squared errors of the guesses tried, */
-    int tried;    /* so many */
+    struct Kind {
+        double wrong; /* sum of squared errors of the guesses tried, */
+        int tried;    /* so many */
+        int guessed;
+    } kinds[KINDS];
 } Tile;
 
 static int place(int x, int y) { return y * FILM_TILE + x; }
@@ -88,15 +95,28 @@ static bool agree(Tile *t, const Square *s, int mx, int my) {
     return (double)float_max(fabsf(off.x), float_max(fabsf(off.y), fabsf(off.z))) <= t->sight->tolerance;
 }
 
+static int kind_of(const Tile *t, const Square *s) {
+    const Middle *corners[4];
+    corners_of(t, s, corners);
+    float most = 0;
+    for (int k = 1; k < 4; k++) {
+        Vec3f off = error_of(&corners[0]->seen, corners[k]);
+        most = float_max(most, vec3f_dot(off, off));
+    }
+    int kind = 0;
+    for (float least = 0.1f; kind < KINDS - 1 && most < least; kind++) least /= 16;
+    return kind;
+}
+
 /* Finds what could have been guessed, for all the others. */
-static void try_guess(Tile *t, const Guess *guess, int x, int y) {
+static void try_guess(Tile *t, const Guess *guess, struct Kind *kind, int x, int y) {
     Middle *m = &t->middles[place(x, y)];
     Radiance guessed;
     find(t, x, y);
     if (!guess_light(guess, m->object, m->normal, &guessed)) return;
     Vec3f off = error_of(&guessed, m);
-    t->wrong += (double)vec3f_dot(off, off) / 3;
-    t->tried++;
+    kind->wrong += (double)vec3f_dot(off, off) / 3;
+    kind->tried++;
 }
 
 /* Of what the corners see, in their light. */
@@ -110,24 +130,42 @@ static void put_guess(Tile *t, const Guess *guess, int x, int y) {
     if (length > 0) m->normal = vec3f_scale(normal, 1 / length);
 }
 
+/* Where one of two pixels is looked at, like squares of a checkerboard, all beside this one see what the corners see. */
+static bool is_among(const Tile *t, const Square *s, int x, int y) {
+    static const int beside[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+    const Middle *corner = &t->middles[place(s->x0, s->y0)];
+    for (int k = 0; k < 4; k++) {
+        int bx = x + beside[k][0], by = y + beside[k][1];
+        if (bx < s->x0 || by < s->y0 || bx > s->x1 || by > s->y1) continue;
+        const Middle *m = &t->middles[place(bx, by)];
+        if (t->known[place(bx, by)] == UNKNOWN || !same_surface(m, corner->object, corner->normal)) return false;
+    }
+    return true;
+}
+
+static void fill_pixel(Tile *t, const Square *s, int kind, bool even, int x, int y) {
+    const Guess guess = guess_at(t, s, x, y);
+    bool holds = true;
+    if (random_hash((uint64_t)x, (uint64_t)y, 0, 0) % TRIED == 0) {
+        try_guess(t, &guess, &t->kinds[kind], x, y);
+        return;
+    }
+    if (even) put_guess(t, &guess, x, y);
+    else holds = t->sight->see(t->sight->context, x, y, &guess, &t->middles[place(x, y)]);
+    t->known[place(x, y)] = (uint8_t)(holds ? GUESSED + kind : FOUND);
+    t->kinds[kind].guessed += holds;
+}
+
+/* First the one, then the other half of a checkerboard's squares. */
 static void fill(Tile *t, const Square *s) {
     const GuessSight *sight = t->sight;
-    bool even = sight->even && sight->even(sight->context, s->x0, s->y0, s->x1, s->y1,
-                                           t->middles[place(s->x0, s->y0)].object);
-    for (int y = s->y0; y <= s->y1; y++)
-        for (int x = s->x0; x <= s->x1; x++) {
-            if (t->known[place(x, y)] != UNKNOWN) continue;
-            const Guess guess = guess_at(t, s, x, y);
-            if (random_hash((uint64_t)x, (uint64_t)y, 0, 0) % TRIED == 0) {
-                try_guess(t, &guess, x, y);
-                continue;
-            }
-            if (even)
-                put_guess(t, &guess, x, y);
-            else
-                sight->see(sight->context, x, y, &guess, &t->middles[place(x, y)]);
-            t->known[place(x, y)] = GUESSED;
-        }
+    const int kind = kind_of(t, s);
+    VistaView view = sight->view ? sight->view(sight->context, s->x0, s->y0, s->x1, s->y1, t->middles[place(s->x0, s->y0)].object) : VISTA_OPEN;
+    for (int half = 0; half < 2; half++)
+        for (int y = s->y0; y <= s->y1; y++)
+            for (int x = s->x0 + ((s->x0 + y + half) & 1); x <= s->x1; x += 2)
+                if (t->known[place(x, y)] == UNKNOWN)
+                    fill_pixel(t, s, kind, view == VISTA_EVEN || (view == VISTA_ONE && half == 1 && is_among(t, s, x, y)), x, y);
 }
 
 static void find_all(Tile *t, const Square *s) {
@@ -163,6 +201,35 @@ static void find_lattice(Tile *t, int columns, int rows) {
                 find(t, x, y);
 }
 
+/* Guesses of the kinds that are most wrong are found instead, until what is left may be. */
+static void settle(Tile *t, int columns, int rows) {
+    struct Kind all = {.guessed = 0};
+    double doubts[KINDS], sum = 0;
+    for (int k = 0; k < KINDS; k++) all.wrong += t->kinds[k].wrong, all.tried += t->kinds[k].tried;
+    for (int k = 0; k < KINDS; k++) {
+        const struct Kind *kind = &t->kinds[k];
+        doubts[k] = (kind->wrong + PRIOR * (all.tried ? all.wrong / all.tried : 0)) / (kind->tried + PRIOR);
+        sum += doubts[k] * kind->guessed;
+    }
+    while (sum > t->sight->accepted * columns * rows) {
+        int worst = 0;
+        for (int k = 1; k < KINDS; k++)
+            if (doubts[k] * t->kinds[k].guessed > doubts[worst] * t->kinds[worst].guessed) worst = k;
+        if (t->kinds[worst].guessed == 0) break;
+        sum -= doubts[worst] * t->kinds[worst].guessed;
+        t->kinds[worst].guessed = 0;
+    }
+    for (int y = 0; y < rows; y++)
+        for (int x = 0; x < columns; x++) {
+            int kind = t->known[place(x, y)] - GUESSED;
+            if (kind < 0) continue;
+            if (t->kinds[kind].guessed == 0)
+                find(t, x, y);
+            else
+                t->middles[place(x, y)].doubt = (float)doubts[kind];
+        }
+}
+
 void guess_tile(const GuessSight *sight, int columns, int rows, Middle *out) {
     Tile t = {.sight = sight, .middles = out};
     if (!(sight->tolerance > 0)) {
@@ -173,13 +240,5 @@ void guess_tile(const GuessSight *sight, int columns, int rows, Middle *out) {
     for (int y = 0; y < rows - 1; y += WIDEST)
         for (int x = 0; x < columns - 1; x += WIDEST)
             divide(&t, &(Square){x, y, int_min(x + WIDEST, columns - 1), int_min(y + WIDEST, rows - 1)});
-    double doubt = t.tried ? t.wrong / t.tried : 0;
-    for (int y = 0; y < rows; y++)
-        for (int x = 0; x < columns; x++) {
-            if (t.known[place(x, y)] != GUESSED) continue;
-            if (doubt > sight->accepted)
-                find(&t, x, y);
-            else
-                out[place(x, y)].doubt = (float)doubt;
-        }
+    settle(&t, columns, rows);
 }

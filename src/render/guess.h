@@ -5,6 +5,7 @@
 #define VTS_RENDER_GUESS_H
 
 #include "render/middles.h"
+#include "render/vista.h"
 
 /* The middles at the corners of a square, which see the same, and what each counts at a place within. */
 typedef struct Guess {
@@ -17,16 +18,16 @@ bool guess_light(const Guess *guess, uint32_t object, Vec3f normal, Radiance *ou
 
 /* How the middle of a pixel of the tile is seen: its light is found when `guess` is NULL, or does not hold there. */
 typedef struct GuessSight {
-    void (*see)(void *context, int x, int y, const Guess *guess, Middle *out);
-    /* Whether between these pixels nothing but `object`, which all four corners see, can be; or NULL. */
-    bool (*even)(void *context, int x0, int y0, int x1, int y1, uint32_t object);
+    bool (*see)(void *context, int x, int y, const Guess *guess, Middle *out); /* whether it holds */
+    /* What can be seen between these pixels, which all see `object`; or NULL: anything. */
+    VistaView (*view)(void *context, int x0, int y0, int x1, int y1, uint32_t object);
     void *context;
     double
         tolerance; /* of light in [0, 1]: how far the middle of a square may be from what its corners tell; 0: nothing is guessed */
     double accepted; /* squared error of light that was guessed */
 } GuessSight;
 
-/* The middles of `columns` × `rows` pixels, at most FILM_TILE each way, in rows of FILM_TILE. Those at the tile's border are never guessed. */
+/* The middles of `columns` × `rows` pixels, at most FILM_TILE each way, in rows of FILM_TILE. */
 void guess_tile(const GuessSight *sight, int columns, int rows, Middle *out);
 
 #endif

@@ -295,7 +295,7 @@ Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags) {
         return NULL;
     }
     for (size_t i = 0; i < h->set.clusters.count; i++)
-        if (!commit(h->device, h->set.clusters.items[i])) {
+        if (!h->set.clusters.items[i]->few && !commit(h->device, h->set.clusters.items[i])) {
             hierarchy_destroy(h);
             diag_error(diags, (Span){0}, "there is not enough memory for the objects");
             return NULL;
@@ -357,9 +357,38 @@ static bool meet_loose(const Query *query) {
     return met;
 }
 
+static bool clip(double low, double high, double origin, double inverse, double *near, double *far) {
+    double in = (low - origin) * inverse, out = (high - origin) * inverse;
+    if (in > out) {
+        double swap = in;
+        in = out, out = swap;
+    }
+    if (in > *near) *near = in;
+    if (out < *far) *far = out;
+    return *near <= *far;
+}
+
+/* Those that need no tree. */
+static bool meet_few(const Query *query) {
+    const Cluster *cluster = query->cluster;
+    const Vec3 o = query->ray.origin, d = query->ray.direction, inverse = vec3(1 / d.x, 1 / d.y, 1 / d.z);
+    bool met = false;
+    for (size_t i = 0; i < cluster->loose; i++) {
+        const Box3 *box = &cluster->few[i];
+        double near = query->t_min, far = query->found->t;
+        if (!clip(box->min.x, box->max.x, o.x, inverse.x, &near, &far) || !clip(box->min.y, box->max.y, o.y, inverse.y, &near, &far) ||
+            !clip(box->min.z, box->max.z, o.z, inverse.z, &near, &far))
+            continue;
+        met |= meet_item(query, &cluster->items.items[i]);
+        if (met && query->any) break;
+    }
+    return met;
+}
+
 static bool cluster_meet(Query *query) {
     struct RTCRayHit rayhit = {.hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
     bool met = meet_loose(query);
+    if (query->cluster->few) return (met && query->any) || meet_few(query) || met;
     if ((met && query->any) || !to_embree(query, &rayhit.ray)) return met;
     rtcInitIntersectContext(&query->context);
     if (query->any) {

@@ -163,6 +163,7 @@ typedef struct Aim {
 
 typedef struct Sighting {
     bool found;
+    bool known;     /* the light is known from others */
     SurfaceHit hit; /* where something was found */
     float reaching; /* the share that explicit surfaces have */
     Radiance seen;
@@ -182,7 +183,8 @@ static void see_light(Sampler *sp, const Aim *aim, Cell *cell, const Guess *gues
     Radiance known;
     bool shared = cell && shared_light(sp, cell, aim->x, aim->y, hit, &known);
     bool guessed = guess && guess_light(guess, hit ? hit->object + 1 : 0, normal, &known);
-    if (guessed || (shared && cell->checked)) {
+    out->known = guessed || (shared && cell->checked);
+    if (out->known) {
         sp->tracer.counters.camera_rays++;
         out->seen = known;
         return;
@@ -207,6 +209,7 @@ static void see(Sampler *sp, const Aim *aim, Cell *cell, const Guess *guess, Sig
     tracer->matter = aovs ? &matter : NULL;
     out->found = ray && find_surface(sp->compiled, &cone, aovs, &out->hit);
     out->reaching = 1;
+    out->known = false;
     out->seen = (Radiance){{0, 0, 0}, 0};
     const SurfaceHit *hit = out->found ? &out->hit : NULL;
     if (ray) see_light(sp, aim, cell, guess, &cone, out);
@@ -219,7 +222,7 @@ static void see(Sampler *sp, const Aim *aim, Cell *cell, const Guess *guess, Sig
 }
 
 /* The first sample, by which it is found whether the pixel's error can be that of edges. */
-static void see_first(Sampler *sp, const Aim *aim, const Guess *guess, Middle *out) {
+static bool see_first(Sampler *sp, const Aim *aim, const Guess *guess, Middle *out) {
     Sighting s;
     see(sp, aim, NULL, guess, &s);
     out->seen = s.seen;
@@ -228,12 +231,13 @@ static void see_first(Sampler *sp, const Aim *aim, const Guess *guess, Middle *o
     out->refinable = view_has_lens(&sp->compiled->view) || s.reaching >= ALL_EXPLICIT ||
                      (s.reaching >= EDGE_WORTH &&
                       surfaces_vary(sp->compiled, aim->px + aim->x, aim->py + aim->y, s.found, &s.hit));
+    return s.known;
 }
 
 /* The first sample of each pixel lies in its middle: of light that changes evenly it is the mean. */
-static void see_middle(Sampler *sp, int px, int py, const Guess *guess, Middle *out) {
+static bool see_middle(Sampler *sp, int px, int py, const Guess *guess, Middle *out) {
     out->doubt = 0;
-    see_first(sp, &(Aim){px, py, 0, 0.5, 0.5, 1, 1}, guess, out);
+    return see_first(sp, &(Aim){px, py, 0, 0.5, 0.5, 1, 1}, guess, out);
 }
 
 static void place_of(const Sampler *sp, int cell, int *px, int *py) {
@@ -366,7 +370,8 @@ static float contrast_of(const Sampler *sp, int index) {
     for (int k = 0; k < 4; k++) {
         Vec3f after = vec3f_sub(sp->cells[index + across[k]].mean, here),
               before = vec3f_sub(here, sp->cells[index - across[k]].mean);
-        most = float_max(most, light_mean_square(vec3f_sub(after, before)) * step_like(before, after));
+        float second = light_mean_square(vec3f_sub(after, before));
+        if (second > most) most = float_max(most, second * step_like(before, after));
     }
     return most * (float)(STEP_TO_ERROR * STEP_TO_ERROR / 4);
 }
@@ -475,11 +480,11 @@ static void sight_corners(const SharedSight *sight, int x0, int y0, int x1, int 
     }
 }
 
-static bool even_in_tile(void *context, int x0, int y0, int x1, int y1, uint32_t object) {
+static VistaView view_in_tile(void *context, int x0, int y0, int x1, int y1, uint32_t object) {
     const SharedSight *sight = context;
     Ray corners[4];
     sight_corners(sight, x0, y0, x1, y1, corners);
-    return vista_is_even(&sight->vista, corners, object);
+    return vista_view(&sight->vista, corners, object);
 }
 
 /* Lines of sight between others are between them in space, too; and whoever wants more than light looks at everything. */
@@ -487,12 +492,11 @@ static bool has_vistas(const Sampler *sp) {
     return sp->shares && !sp->aovs && view_is_flat(&sp->compiled->view);
 }
 
-static void see_of_tile(void *context, int x, int y, const Guess *guess, Middle *out) {
+static bool see_of_tile(void *context, int x, int y, const Guess *guess, Middle *out) {
     const SharedSight *sight = context;
-    if (stopped(sight->sampler))
-        *out = (Middle){.object = 0};
-    else
-        see_middle(sight->sampler, sight->x0 + x, sight->y0 + y, guess, out);
+    if (!stopped(sight->sampler)) return see_middle(sight->sampler, sight->x0 + x, sight->y0 + y, guess, out);
+    *out = (Middle){.object = 0};
+    return false;
 }
 
 /* All of a tile, for whoever needs them. */
@@ -509,7 +513,7 @@ static void see_shared(void *context, int tile_x, int tile_y, Middle *rows) {
         sight_corners(&shared, 0, 0, columns - 1, row_count - 1, corners);
         shared.vista = vista_of(hierarchy_pieces(sp->compiled->hierarchy), corners);
     }
-    const GuessSight sight = {see_of_tile, vistas ? even_in_tile : NULL, &shared, ALIKE * error,
+    const GuessSight sight = {see_of_tile, vistas ? view_in_tile : NULL, &shared, ALIKE * error,
                               GUESSES_MAY * error * error};
     guess_tile(&sight, columns, row_count, rows);
 }

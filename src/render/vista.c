@@ -57,13 +57,14 @@ Vista vista_of(const VistaPieces *pieces, const Ray corners[4]) {
 
 /* Of what is convex the points that the corners meet span a part, which is seen between them; planes that are behind its corners are
  * behind all of it. From within it is not what is met first. */
-bool vista_is_even(const Vista *vista, const Ray corners[4], uint32_t object) {
+VistaView vista_view(const Vista *vista, const Ray corners[4], uint32_t object) {
     Shaft shaft;
-    if (vista->count > VISTA_MOST || !shaft_of(corners, &shaft)) return false;
+    int others = 0;
+    if (vista->count > VISTA_MOST || !shaft_of(corners, &shaft)) return VISTA_OPEN;
     for (int i = 0; i < vista->count; i++) {
         const VistaPiece *piece = vista->near[i];
-        if (!may_touch(&shaft, &piece->box)) continue;
-        if (!piece->object || piece->object != object || holds(&piece->box, corners[0].origin)) return false;
+        bool hides = piece->object && piece->object == object && !holds(&piece->box, corners[0].origin);
+        if (!hides && may_touch(&shaft, &piece->box)) others++;
     }
-    return true;
+    return others == 0 ? VISTA_EVEN : others == 1 ? VISTA_ONE : VISTA_OPEN;
 }

@@ -29,7 +29,13 @@ typedef struct Vista {
 
 /* `corners`: lines of sight, unit directions, through one point or parallel, all others of that part are between them; rows of two. */
 Vista vista_of(const VistaPieces *pieces, const Ray corners[4]);
-/* Whether all lines between these, which are of the vista's part and all meet `object` first (0: nothing, or a plane), meet that first. */
-bool vista_is_even(const Vista *vista, const Ray corners[4], uint32_t object);
+typedef enum VistaView {
+    VISTA_OPEN,
+    VISTA_ONE,  /* one thing may be seen besides planes, and holes in it */
+    VISTA_EVEN, /* all see what the corners see */
+} VistaView;
+
+/* What may be seen between these lines, which are of the vista's part and all meet `object` first (0: nothing, or a plane). */
+VistaView vista_view(const Vista *vista, const Ray corners[4], uint32_t object);
 
 #endif

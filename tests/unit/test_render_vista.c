@@ -26,7 +26,7 @@ static bool even_with(VistaPiece piece, const Ray corners[4], uint32_t object) {
     corners_at(-1, -1, 1, 1, wide);
     const VistaPieces pieces = {&piece, 1, false};
     Vista vista = vista_of(&pieces, wide);
-    return vista_is_even(&vista, corners, object);
+    return vista_view(&vista, corners, object) == VISTA_EVEN;
 }
 
 static void test_what_is_beside_does_not_count(void **state) {
@@ -50,6 +50,20 @@ static void test_what_is_convex_hides_what_is_behind(void **state) {
     assert_false(even_with((VistaPiece){box_at(0, 0, 0, 2), 7}, corners, 7)); /* seen from within */
 }
 
+static void test_one_thing_alone_is_told(void **state) {
+    (void)state;
+    Ray corners[4];
+    VistaPiece two[] = {{box_at(0.5, 0.5, 10, 2), 0}, {box_at(0.5, 0.5, 20, 2), 8}};
+    corners_at(0, 0, 0.1, 0.1, corners);
+    VistaPieces pieces = {two, 1, false};
+    Vista vista = vista_of(&pieces, corners);
+    assert_int_equal(vista_view(&vista, corners, 7), VISTA_ONE);
+    pieces.count = 2;
+    vista = vista_of(&pieces, corners);
+    assert_int_equal(vista_view(&vista, corners, 7), VISTA_OPEN);
+    assert_int_equal(vista_view(&vista, corners, 8), VISTA_ONE); /* what is before it may be seen */
+}
+
 /* Whatever a line between the corners meets must not be called nothing. */
 static void test_nothing_that_can_be_met_is_left_out(void **state) {
     (void)state;
@@ -68,7 +82,7 @@ static void test_nothing_that_can_be_met_is_left_out(void **state) {
         const VistaPiece piece = {box, 0};
         const VistaPieces pieces = {(VistaPiece *)&piece, 1, false};
         Vista vista = vista_of(&pieces, corners);
-        bool even = vista_is_even(&vista, corners, 0);
+        bool even = vista_view(&vista, corners, 0) == VISTA_EVEN;
         told += even;
         for (int k = 0; even && k < 16; k++) {
             double u = x + w * (k % 4) / 3.0, v = y + w * (k / 4) / 3.0,
@@ -88,24 +102,24 @@ static void test_what_cannot_be_told(void **state) {
     corners_at(0, 0, 0.1, 0.1, corners);
     VistaPieces pieces = {many, 0, true};
     Vista vista = vista_of(&pieces, corners);
-    assert_false(vista_is_even(&vista, corners, 0)); /* something has no end */
+    assert_int_equal(vista_view(&vista, corners, 0), VISTA_OPEN); /* something has no end */
     for (int i = 0; i <= VISTA_MOST; i++) many[i] = (VistaPiece){box_at(0.5, 0.5, 10 + i, 0.1), 0};
     pieces = (VistaPieces){many, VISTA_MOST + 1, false};
     vista = vista_of(&pieces, corners);
-    assert_false(vista_is_even(&vista, corners, 0));
+    assert_int_equal(vista_view(&vista, corners, 0), VISTA_OPEN);
     pieces.count = 0;
     vista = vista_of(&pieces, corners);
-    assert_true(vista_is_even(&vista, corners, 0));
+    assert_int_equal(vista_view(&vista, corners, 0), VISTA_EVEN);
     for (int k = 0; k < 4; k++) corners[k].direction = vec3(0, 0, 1); /* no width */
-    assert_false(vista_is_even(&vista, corners, 0));
+    assert_int_equal(vista_view(&vista, corners, 0), VISTA_OPEN);
     corners[1].direction = vec3(NAN, 0, 1);
-    assert_false(vista_is_even(&vista, corners, 0));
+    assert_int_equal(vista_view(&vista, corners, 0), VISTA_OPEN);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_is_beside_does_not_count),
                                        cmocka_unit_test(test_what_is_convex_hides_what_is_behind),
                                        cmocka_unit_test(test_nothing_that_can_be_met_is_left_out),
-                                       cmocka_unit_test(test_what_cannot_be_told)};
+                                       cmocka_unit_test(test_what_cannot_be_told), cmocka_unit_test(test_one_thing_alone_is_told)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,7 +21,7 @@ static const double SAMPLE_WIDTH = 0.7;
 /* Whoever stops where errors seem to be small stops more often where they only seem so: what was found true of the sum of squares. */
 static const double CAUTION = 2.4;
 /* Samples at edges share the light of the middles around, of two at least, that see as smooth a part of the same surface and agree. */
-static const double SAME_NORMAL = 0.98, NEAREST = 0.05;
+static const double SAME_NORMAL = 0.98, NEAREST = 0.05, SHARED_RANGE = 4;
 /* Middles are guessed where this is found to be no further off than so many times the error that is accepted, unless the guesses take
  * more than this part of it. */
 static const double ALIKE = 1, GUESSES_MAY = 0.25;
@@ -148,7 +148,7 @@ static bool shared_light(const Sampler *sp, const Cell *cell, double x, double y
             share_middle(&shared, other, x - 0.5 - column, y - 0.5 - row);
         }
     Vec3f range = vec3f_sub(shared.most, shared.least);
-    if (shared.count < 2 || (double)float_max(range.x, float_max(range.y, range.z)) > sp->plan.max_error)
+    if (shared.count < 2 || (double)float_max(range.x, float_max(range.y, range.z)) > SHARED_RANGE * sp->plan.max_error)
         return false;
     *out = (Radiance){vec3f_scale(shared.color, 1 / shared.weight), shared.alpha / shared.weight};
     return true;

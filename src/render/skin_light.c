@@ -1,11 +1,10 @@
 #include "render/skin_light.h"
 
 #include "render/skin_joint.h"
+#include "texel/light_share.h"
 
 /* Light that is less than this makes no difference: it is but a part of a pixel. */
-static const float DARK_BELOW = 1.0f / 64;
-/* The surroundings of a place, to both sides, in voxels of the shadow's cone: the blur of a blade. */
-static const double SURROUNDINGS = 1.5;
+static const float DARK_BELOW = 1.0f / 1024;
 
 void skin_light_init(SkinLight *light, const CompiledScene *compiled, TraceCounters *counters, Arena *arena) {
     *light = (SkinLight){compiled, arena_new_array(arena, SkinMarch, compiled->skin_count + 1),
@@ -56,31 +55,10 @@ float skin_light_through_voxels(SkinLight *light, const Cone *cone, double t_max
     return transmittance > DARK_BELOW ? transmittance : 0;
 }
 
-/* More hides nothing more. */
-static const float MOST_AREA = 1e4f;
-
-/* Blur spreads a blade over the voxels around it, and it must not shadow itself; but where many blades share a voxel they
- * shadow each other. What decides is that light is neither lost nor gained: what the beam loses, 1 − exp(−depth), falls on the
- * matter that is there. Its share of light is taken to fall as A·exp(−B·area passed), with A from that balance. B = 1 for matter at
- * random, depth = area; less where it hides itself in clumps; 0 for one sheet, which is lit all alike and has but been blurred: its area
- * is 1 at most, whatever is behind it, and what it hides. */
-float skin_light_share(const LightSurroundings *s) {
-    float depth = float_min(s->depth, MOST_AREA), area = float_min(s->area, MOST_AREA), before = float_min(s->before, area), single = s->sheet * float_min(area, 1);
-    if (!(area > 0.01f)) return area > 0 ? float_clamp(depth / area, 0, 1) : 1; /* too thin to shadow itself */
-    float lost = float_max(1 - expf(-depth), single);
-    float shrink = (single + (1 - s->sheet) * area) / area;
-    float fall = (1 - s->sheet) * float_min(depth / area, 1), along = fall * area * shrink;
-    float share = along > 1e-3f ? lost * fall * expf(-fall * shrink * before) / (1 - expf(-along)) : lost / (area * shrink);
-    return float_clamp(share, 0, 1);
-}
-
-/* From this mean gamma on, matter is one sheet, or the wall of a solid (whose two walls have less). */
-static const float SHEET_GAMMA = 0.6f;
-
 float skin_light_on_matter(SkinLight *light, const Cone *cone, double t_max, uint32_t own, const SkinPoint *at, double tolerance, Vec3 to_eye) {
     SkinMarch *march = &light->marches[own];
-    double reach = skin_march_begin_around(march, cone, at, SURROUNDINGS, tolerance, t_max, &light->compiled->shadow_march, light->counters);
-    LightSurroundings around = {0};
+    double reach = skin_march_begin_around(march, cone, at, LIGHT_SURROUNDINGS, tolerance, t_max, &light->compiled->shadow_march, light->counters);
+    LightSurroundings around = {.facing = light_facing((float)vec3_dot(to_eye, cone->direction))};
     float transmittance = 1, gamma_area = 0;
     SkinSegment s;
     while (skin_march_next(march, &s)) {
@@ -94,6 +72,6 @@ float skin_light_on_matter(SkinLight *light, const Cone *cone, double t_max, uin
             break;
         }
     }
-    around.sheet = around.area > 0 ? float_clamp(gamma_area / (SHEET_GAMMA * around.area), 0, 1) : 0;
-    return skin_joint_matter(march, to_eye, skin_light_share(&around) * transmittance);
+    around.sheet = around.area > 0 ? float_clamp(gamma_area / (LIGHT_SHEET_GAMMA * around.area), 0, 1) : 0;
+    return skin_joint_matter(march, to_eye, light_share(&around) * transmittance);
 }

@@ -25,15 +25,4 @@ float skin_light_through_voxels(SkinLight *light, const Cone *cone, double t_max
  * other skins take away is left out. `tolerance` (scene units) is that of finding places in the skin. In [0, 1]. */
 float skin_light_on_matter(SkinLight *light, const Cone *cone, double t_max, uint32_t own, const SkinPoint *at, double tolerance, Vec3 to_eye);
 
-/* The surroundings of a place: a way along a beam with the place in its middle. */
-typedef struct LightSurroundings {
-    float depth;  /* optical */
-    float area;   /* of matter, for each unit of area across the beam; >= 0 */
-    float before; /* of it, what the beam meets before the place */
-    float sheet;  /* how much of it is one sheet and not many pieces: 0 to 1 */
-} LightSurroundings;
-
-/* The share of the light at the beginning of that way that the matter at the place gets. In [0, 1]. */
-float skin_light_share(const LightSurroundings *around);
-
 #endif

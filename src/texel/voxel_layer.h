@@ -57,6 +57,7 @@ typedef struct VoxelLevel {
 typedef struct VoxelPairs {
     float lit[PAIR_NODES * PAIR_NODES]; /* by direction to the eye, then to the light; below 0: not known */
     float spot;                         /* difference of slopes over which gaps forget each other; 0: not known */
+    uint8_t matter[TRIM_LEVELS][PAIR_NODES * PAIR_NODES], ground[TRIM_LEVELS][PAIR_NODES * PAIR_NODES]; /* powers: voxel_lit.h */
 } VoxelPairs;
 
 struct VoxelLayer {

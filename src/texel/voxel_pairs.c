@@ -1,7 +1,9 @@
 #include "texel/voxel_pairs.h"
 
+#include "texel/voxel_lit.h"
+
 /* A surface meets its own picture on the grid at heights that differ by some of the grid's sides. */
-static const float OWN_HEIGHT = 2, MOST_OWN_HEIGHT = 6;
+static const float OWN_HEIGHT = 1, MOST_OWN_HEIGHT = 3;
 /* Every so many places, along both axes, matter is asked whether it is lit. */
 enum { LIT_STRIDE = 2 };
 /* Widths of the spot are held below this. */
@@ -10,6 +12,7 @@ static const float WIDEST_SPOT = 2;
 void voxel_layer_forget_pairs(VoxelLayer *layer) {
     for (int i = 0; i < PAIR_NODES * PAIR_NODES; i++) layer->pairs.lit[i] = -1;
     layer->pairs.spot = 0;
+    voxel_layer_forget_powers(layer);
 }
 
 bool voxel_layer_is_paired(const VoxelLayer *layer) { return layer->pairs.lit[0] >= 0 || layer->pairs.spot > 0; }
@@ -73,6 +76,15 @@ static float lit_share(const PairView *eye, const PairView *light, int grid, con
     return float_clamp(2 * fine - coarse, 0, 1);
 }
 
+float pair_open(const PairView *eye, const PairView *light, int grid) {
+    int seen = 0, lit = 0;
+    for (int i = 0; i < grid * grid; i++) {
+        seen += eye->top[i] < 0;
+        lit += eye->top[i] < 0 && light->top[i] < 0;
+    }
+    return seen ? (float)lit / (float)seen : -1;
+}
+
 /* Where eye and light look along one line all that is seen is lit; but a few degrees beside it that is over, far less than the way to the next node: the
  * entry gets the mean of those around it. */
 static void flatten_peak(float *table) {
@@ -89,6 +101,13 @@ static void flatten_peak(float *table) {
     }
 }
 
+float pair_lit_beside(const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid, const float size[2]) {
+    float sum = 0;
+    for (int i = 0; i < SPOT_GROUPS * SPOT_VIEWS; i++)
+        if (i % SPOT_VIEWS) sum += lit_share(&views[i - i % SPOT_VIEWS], &views[i], grid, size) + lit_share(&views[i], &views[i - i % SPOT_VIEWS], grid, size);
+    return sum / (2 * SPOT_GROUPS * (SPOT_VIEWS - 1));
+}
+
 void voxel_layer_pair(VoxelLayer *layer, const PairView views[PAIR_NODES], int grid, const float size[2]) {
     for (int a = 0; a < PAIR_NODES; a++)
         for (int b = 0; b < PAIR_NODES; b++) layer->pairs.lit[a * PAIR_NODES + b] = lit_share(&views[a], &views[b], grid, size);
@@ -103,11 +122,16 @@ typedef struct NodesAround {
     float weight[4];
 } NodesAround;
 
+/* How far from the zenith, 0 to 1, as the nodes have it: the last of them are not on the horizon, but a little above. */
+static const float LAST_NODES = 0.8f;
+static float ring_of(float r) { return r <= 0.5f ? r : float_min(1, 0.5f + 0.5f * (r - 0.5f) / (LAST_NODES - 0.5f)); }
+
 /* The upper hemisphere as an octahedron's upper half, unfolded to a square. False below the horizon. */
 static bool nodes_around(Vec3f d, NodesAround *out) {
     float sum = fabsf(d.x) + fabsf(d.y) + fabsf(d.z);
     if (!(sum > 0 && sum < INFINITY) || !(d.y > 0)) return false;
-    float x = d.x / sum, z = d.z / sum, a = (x + z + 1) * 0.5f * (PAIR_SIDE - 1), b = (x - z + 1) * 0.5f * (PAIR_SIDE - 1);
+    float r = (fabsf(d.x) + fabsf(d.z)) / sum, stretch = r > 0 ? ring_of(r) / (r * sum) : 0;
+    float x = d.x * stretch, z = d.z * stretch, a = (x + z + 1) * 0.5f * (PAIR_SIDE - 1), b = (x - z + 1) * 0.5f * (PAIR_SIDE - 1);
     int column = int_clamp((int)a, 0, PAIR_SIDE - 2), row = int_clamp((int)b, 0, PAIR_SIDE - 2);
     a -= (float)column, b -= (float)row;
     for (int i = 0; i < 4; i++) {
@@ -117,11 +141,14 @@ static bool nodes_around(Vec3f d, NodesAround *out) {
     return true;
 }
 
-static float read_table(const float *table, const NodesAround *eye, const NodesAround *light) {
-    float sum = 0;
-    for (int i = 0; i < 4; i++)
-        for (int k = 0; k < 4; k++) sum += eye->weight[i] * light->weight[k] * table[eye->node[i] * PAIR_NODES + light->node[k]];
-    return sum;
+bool pair_place(Vec3f to_eye, Vec3f to_light, PairPlace *out) {
+    NodesAround eye, light;
+    if (!nodes_around(to_eye, &eye) || !nodes_around(to_light, &light)) return false;
+    for (int i = 0; i < PAIR_CORNERS; i++) {
+        out->entry[i] = eye.node[i / 4] * PAIR_NODES + light.node[i % 4];
+        out->weight[i] = eye.weight[i / 4] * light.weight[i % 4];
+    }
+    return true;
 }
 
 float voxel_layer_spot(const VoxelLayer *layer, Vec3f to_eye, Vec3f to_light) {
@@ -132,8 +159,9 @@ float voxel_layer_spot(const VoxelLayer *layer, Vec3f to_eye, Vec3f to_light) {
 }
 
 float voxel_layer_lit_pair(const VoxelLayer *layer, Vec3f to_eye, Vec3f to_light) {
-    NodesAround eye, light;
-    if (layer->pairs.lit[0] < 0 || !nodes_around(to_eye, &eye) || !nodes_around(to_light, &light)) return -1;
-    float lit = read_table(layer->pairs.lit, &eye, &light);
+    PairPlace place;
+    float lit = 0;
+    if (layer->pairs.lit[0] < 0 || !pair_place(to_eye, to_light, &place)) return -1;
+    for (int i = 0; i < PAIR_CORNERS; i++) lit += place.weight[i] * layer->pairs.lit[place.entry[i]];
     return lit + (1 - lit) * voxel_layer_spot(layer, to_eye, to_light);
 }

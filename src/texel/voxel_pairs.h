@@ -18,15 +18,27 @@ typedef struct PairView {
 /* Sets layer->pairs.lit from views along the directions of even nodes. `grid`: a power of two; `size`: of the period along x and z; the middle of the first place is the
  * same in all views. */
 void voxel_layer_pair(VoxelLayer *layer, const PairView views[PAIR_NODES], int grid, const float size[2]);
+/* The share of the ground seen by `eye` that `light` falls on; below 0 where none is seen. */
+float pair_open(const PairView *eye, const PairView *light, int grid);
 /* Sets layer->pairs.spot from groups of SPOT_VIEWS views: one along a direction, the others with slopes that differ by SPOT_OFFSET from its. */
 enum { SPOT_VIEWS = 3, SPOT_GROUPS = 4 };
 #define SPOT_OFFSET 0.15f
+/* The share that is lit of the matter seen in these, where the light is one of the others of the group; the mean. `size` as above. */
+float pair_lit_beside(const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid, const float size[2]);
 void voxel_layer_find_spot(VoxelLayer *layer, const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid);
 /* As if nothing was known. */
 void voxel_layer_forget_pairs(VoxelLayer *layer);
 bool voxel_layer_is_paired(const VoxelLayer *layer);
 /* Whether the numbers of a file are such as voxel_layer_pair() makes. */
 bool voxel_pairs_are_sound(const VoxelPairs *pairs);
+
+/* The entries of a table of pairs around two directions of any length, and their weights, which sum to 1. False below the horizon. */
+enum { PAIR_CORNERS = 16 };
+typedef struct PairPlace {
+    int entry[PAIR_CORNERS];
+    float weight[PAIR_CORNERS];
+} PairPlace;
+bool pair_place(Vec3f to_eye, Vec3f to_light, PairPlace *out);
 
 /* Directions of texel space, of any length, to the eye and to the light: how much of what the eye's way through the layer's gaps tells holds for the
  * light's: 1 where both are one, 0 where they have nothing in common or nothing is known. */

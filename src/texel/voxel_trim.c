@@ -2,6 +2,7 @@
 
 #include "base/random.h"
 #include "texel/opacity.h"
+#include "texel/voxel_lit.h"
 #include "texel/voxel_pairs.h"
 #include "texel/voxel_view.h"
 
@@ -29,7 +30,7 @@ typedef struct TrimWork {
     bool coarse;       /* many triangles */
     int levels;        /* that are trimmed */
     bool known[TRIM_DIRECTIONS];
-    bool paired;       /* what even nodes see is kept: of a period */
+    bool paired;       /* what even nodes see is kept: of the layer, repeated along x and z */
     PairView pairs[PAIR_NODES], spots[SPOT_GROUPS * SPOT_VIEWS];
     float *tops;       /* for all of these; NULL: nothing is kept */
 } TrimWork;
@@ -71,7 +72,7 @@ static LayerView look_along(const TrimWork *work, Vec3f d, uint64_t number, bool
 
 /* Of a node; of a period place by place as of all others. */
 static LayerView look_along_node(const TrimWork *work, int node) {
-    return look_along(work, trim_direction(node), work->paired ? 0 : (uint64_t)node, false);
+    return look_along(work, trim_direction(node), is_period(work->layer) ? 0 : (uint64_t)node, false);
 }
 
 /* Once around at a steep slope, and a little beside that, along it and across. */
@@ -157,17 +158,26 @@ static void look_at_spot(TrimWork *work, int spot) {
     work->spots[spot] = (PairView){view.slope_x, view.slope_z, layer_view_hidden(&view, work->mesh, top) >= 0 ? top : NULL};
 }
 
+/* Of what does not repeat the view is wider than what is kept. */
+static bool is_kept_as_seen(const TrimWork *work, int kept) { return kept >= 0 && is_period(work->layer); }
+
+static void keep_view(TrimWork *work, int kept, const LayerView *v, float *top) {
+    float *repeated = room_for_view(work, kept);
+    work->pairs[kept] = (PairView){v->slope_x, v->slope_z, repeated};
+    if (!is_kept_as_seen(work, kept) && top) layer_view_repeat(v, top, repeated);
+}
+
 static void look_at_node(TrimWork *work, int node) {
     VoxelLayer *layer = work->layer;
     work->known[node] = true;
     if (work->coarse && !is_even(node)) return; /* between others */
     LayerView view = look_along_node(work, node);
     int kept = work->paired && is_even(node) ? pair_node(node) : -1;
-    float *top = room_for_view(work, kept);
+    float *top = room_for_view(work, is_kept_as_seen(work, kept) ? kept : -1);
     double hidden = top ? layer_view_hidden(&view, work->mesh, top) : -1;
     work->known[node] = hidden >= 0;
-    if (kept >= 0) work->pairs[kept] = (PairView){view.slope_x, view.slope_z, top};
-    else free(top);
+    if (kept >= 0) keep_view(work, kept, &view, top);
+    if (!is_kept_as_seen(work, kept)) free(top);
     for (int i = 0; work->known[node] && i < work->levels; i++)
         layer->trim[i][node] = trim_level(layer, layer->levels - 1 - i, &view, hidden);
 }
@@ -245,14 +255,17 @@ static bool find_bounds(TrimWork *work) {
 /* Without room pairs stay unknown. */
 static void keep_views(TrimWork *work) {
     work->tops = malloc((PAIR_NODES + SPOT_GROUPS * SPOT_VIEWS) * (size_t)VIEW_PLACES * sizeof *work->tops);
-    work->paired = work->tops && is_period(work->layer);
+    work->paired = work->tops != NULL;
 }
 
-static void compare_views(const TrimWork *work) {
+static void compare_views(const TrimWork *work, Pool *pool) {
     bool seen = work->tops != NULL;
     for (int i = 0; i < SPOT_GROUPS * SPOT_VIEWS; i++) seen &= work->spots[i].top != NULL;
     if (seen) voxel_layer_find_spot(work->layer, work->spots, VIEW_GRID);
-    if (work->paired) voxel_layer_pair(work->layer, work->pairs, VIEW_GRID, (float[2]){work->extent.x, work->extent.z});
+    if (!seen) return;
+    const float size[2] = {work->extent.x, work->extent.z};
+    voxel_layer_pair(work->layer, work->pairs, VIEW_GRID, size);
+    voxel_layer_find_powers(work->layer, work->pairs, pair_lit_beside(work->spots, VIEW_GRID, size), VIEW_GRID, work->extent, work->levels, pool);
 }
 
 /* Voxels that are not much larger than triangles need no factors; of N triangles in a layer they are about so many levels below the coarsest. */
@@ -273,11 +286,9 @@ void voxel_layer_trim(VoxelLayer *layer, const TexelMesh *mesh, Vec3f extent, Po
     bool known = find_bounds(&work) && pool_run(pool, TRIM_DIRECTIONS + SPOT_GROUPS * SPOT_VIEWS, look_through, &work);
     for (int node = 0; node < TRIM_DIRECTIONS; node++) known &= work.known[node];
     if (known && work.coarse) fill_between(layer);
-    if (known) compare_views(&work);
-    if (known)
-        join_horizon(layer);
-    else
-        voxel_layer_forget_trim(layer);
+    if (known) join_horizon(layer);
+    else voxel_layer_forget_trim(layer);
+    if (known) compare_views(&work, pool);
     free(work.tops);
 }
 

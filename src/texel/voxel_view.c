@@ -232,3 +232,22 @@ double layer_view_hidden(const LayerView *view, const TexelMesh *mesh, float *to
     free(corners);
     return known && work < MOST_WORK ? (double)hidden / VIEW_PLACES : -1;
 }
+
+static float highest_of_copies(const LayerView *v, const float *top, float x, float z) {
+    float highest = -1, cell_x = v->size[0] / (float)VIEW_GRID, cell_z = v->size[1] / (float)VIEW_GRID;
+    x -= v->extent.x * floorf((x - v->origin[0]) / v->extent.x);
+    z -= v->extent.z * floorf((z - v->origin[1]) / v->extent.z);
+    for (float b = z; b < v->origin[1] + v->size[1]; b += v->extent.z)
+        for (float a = x; a < v->origin[0] + v->size[0]; a += v->extent.x) {
+            int column = wrapped_place((int)lrintf((a - v->origin[0]) / cell_x - v->shift[0]), v->cyclic[0]),
+                row = wrapped_place((int)lrintf((b - v->origin[1]) / cell_z - v->shift[1]), v->cyclic[1]);
+            if (column >= 0 && row >= 0) highest = float_max(highest, top[row * VIEW_GRID + column]);
+        }
+    return highest;
+}
+
+void layer_view_repeat(const LayerView *v, const float *top, float *repeated) {
+    float cell_x = v->extent.x / VIEW_GRID, cell_z = v->extent.z / VIEW_GRID;
+    for (int i = 0; i < VIEW_PLACES; i++)
+        repeated[i] = highest_of_copies(v, top, ((float)(i % VIEW_GRID) + 0.5f) * cell_x, ((float)(i / VIEW_GRID) + 0.5f) * cell_z);
+}

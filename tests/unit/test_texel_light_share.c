@@ -1,5 +1,5 @@
 /* Light on matter of skins: the balance of what a beam loses and what the matter on its way receives. */
-#include "render/skin_light.h"
+#include "texel/light_share.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,7 +12,7 @@ static const float areas[] = {0.003f, 0.02f, 0.2f, 0.7f, 1, 2.5f, 8};
 
 static float share_of(float depth, float area, float before, float sheet) {
     LightSurroundings around = {depth, area, before, sheet};
-    return skin_light_share(&around);
+    return light_share(&around);
 }
 
 static void matter_at_random_sees_what_comes_through(void **state) {

@@ -17,6 +17,7 @@ static const float FINER_TO_EYE = 1.5f;
 static const float DARK_BELOW = 1.0f / 256;
 /* Shares are held within these before they are compared. */
 static const float LEAST_SHARE = 0.005f, MOST_SHARE = 0.995f;
+static const float SOME_TRIANGLES = 2000;
 /* A power is 2^((code − POWER_ONE) / POWER_STEPS). */
 enum { POWER_ONE = 128, POWER_STEPS = 32 };
 
@@ -96,15 +97,20 @@ static float through_from_ground(const LitWay *w, Vec3f foot) {
 
 typedef struct PowerWork {
     VoxelLayer *layer;
-    const PairView *views;
+    const LitTruth *truth;
     Vec3f extent, d[PAIR_NODES];
-    int grid;
     float beside[TRIM_LEVELS][PAIR_NODES]; /* the share that is lit, the light beside the eye, by its direction */
 } PowerWork;
 
 static uint8_t power_code(float truth, float share) {
     float power = logf(float_clamp(truth, LEAST_SHARE, MOST_SHARE)) / logf(float_clamp(share, LEAST_SHARE, MOST_SHARE));
     return (uint8_t)int_clamp((int)lrintf(POWER_ONE + POWER_STEPS * log2f(power)), 0, 255);
+}
+
+/* Gaps between few pieces coincide, or exclude each other, in some directions and not in those between. */
+static uint8_t less_certain(uint8_t code, size_t triangles) {
+    float certain = (float)triangles / ((float)triangles + SOME_TRIANGLES);
+    return (uint8_t)lrintf(POWER_ONE + certain * ((float)code - POWER_ONE));
 }
 
 /* On a lattice, each moved by lot. */
@@ -143,9 +149,11 @@ static void find_ground_powers(const PowerWork *work, int from_top) {
     }
     for (int eye = 0; eye < PAIR_NODES; eye++)
         for (int light = 0; light < PAIR_NODES; light++) {
-            float both = 0, seen = 0, truth = pair_open(&work->views[eye], &work->views[light], work->grid);
+            float both = 0, seen = 0, truth = pair_open(&work->truth->views[eye], &work->truth->views[light], work->truth->grid);
             for (int i = 0; i < GROUND_PLACES; i++) both += through[eye][i] * through[light][i], seen += through[eye][i];
-            if (seen > 0 && truth >= 0) layer->pairs.ground[from_top][eye * PAIR_NODES + light] = power_code(truth, both / seen);
+            float spot = float_min(0.9f, voxel_layer_spot(layer, work->d[eye], work->d[light])); /* is added when the power is used */
+            if (truth >= 0) truth = float_max(0, (truth - spot) / (1 - spot));
+            if (seen > 0 && truth >= 0) layer->pairs.ground[from_top][eye * PAIR_NODES + light] = less_certain(power_code(truth, both / seen), work->truth->triangles);
         }
 }
 
@@ -183,12 +191,12 @@ void voxel_layer_forget_powers(VoxelLayer *layer) {
     memset(layer->pairs.ground, POWER_ONE, sizeof layer->pairs.ground);
 }
 
-bool voxel_layer_find_powers(VoxelLayer *layer, const PairView views[PAIR_NODES], float lit_beside, int grid, Vec3f extent, int levels, Pool *pool) {
-    PowerWork work = {.layer = layer, .views = views, .extent = extent, .grid = grid};
+bool voxel_layer_find_powers(VoxelLayer *layer, const LitTruth *truth, Vec3f extent, int levels, Pool *pool) {
+    PowerWork work = {.layer = layer, .truth = truth, .extent = extent};
     voxel_layer_forget_powers(layer);
-    for (int i = 0; i < PAIR_NODES; i++) work.d[i] = vec3f_normalize(vec3f(views[i].slope_x, 1, views[i].slope_z));
+    for (int i = 0; i < PAIR_NODES; i++) work.d[i] = vec3f_normalize(vec3f(truth->views[i].slope_x, 1, truth->views[i].slope_z));
     bool done = pool_run(pool, (size_t)(levels * (PAIR_NODES + 1)), find_powers, &work);
-    for (int i = 0; i < levels; i++) lay_peak(layer->pairs.matter[i], lit_beside, work.beside[i]), flatten_peak(layer->pairs.ground[i]);
+    for (int i = 0; i < levels; i++) lay_peak(layer->pairs.matter[i], truth->lit_beside, work.beside[i]), flatten_peak(layer->pairs.ground[i]);
     return done;
 }
 

@@ -8,9 +8,16 @@
 
 #include "texel/voxel_pairs.h"
 
-/* Sets the powers of layer->pairs for the `levels` coarsest levels from layer->pairs.lit and the same views, and pair_lit_beside(). The layer is
- * trimmed. False if the pool was cancelled. */
-bool voxel_layer_find_powers(VoxelLayer *layer, const PairView views[PAIR_NODES], float lit_beside, int grid, Vec3f extent, int levels, Pool *pool);
+/* What the triangles of a layer say. */
+typedef struct LitTruth {
+    const PairView *views; /* PAIR_NODES, of which voxel_layer_pair() has made pairs.lit */
+    int grid;
+    float lit_beside;      /* pair_lit_beside() */
+    size_t triangles;
+} LitTruth;
+
+/* Sets the powers of layer->pairs for the `levels` coarsest levels. The layer is trimmed, and its pairs are known. False if the pool was cancelled. */
+bool voxel_layer_find_powers(VoxelLayer *layer, const LitTruth *truth, Vec3f extent, int levels, Pool *pool);
 /* 1 throughout. */
 void voxel_layer_forget_powers(VoxelLayer *layer);
 

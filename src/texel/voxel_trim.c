@@ -265,7 +265,8 @@ static void compare_views(const TrimWork *work, Pool *pool) {
     if (!seen) return;
     const float size[2] = {work->extent.x, work->extent.z};
     voxel_layer_pair(work->layer, work->pairs, VIEW_GRID, size);
-    voxel_layer_find_powers(work->layer, work->pairs, pair_lit_beside(work->spots, VIEW_GRID, size), VIEW_GRID, work->extent, work->levels, pool);
+    const LitTruth truth = {work->pairs, VIEW_GRID, pair_lit_beside(work->spots, VIEW_GRID, size), work->mesh->triangle_count};
+    voxel_layer_find_powers(work->layer, &truth, work->extent, work->levels, pool);
 }
 
 /* Voxels that are not much larger than triangles need no factors; of N triangles in a layer they are about so many levels below the coarsest. */

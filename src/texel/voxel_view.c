@@ -233,14 +233,17 @@ double layer_view_hidden(const LayerView *view, const TexelMesh *mesh, float *to
     return known && work < MOST_WORK ? (double)hidden / VIEW_PLACES : -1;
 }
 
+/* Of copies that are so narrow beside their height that more of them lie over one place, the first. */
+enum { MOST_COPIES = 8 };
+
 static float highest_of_copies(const LayerView *v, const float *top, float x, float z) {
     float highest = -1, cell_x = v->size[0] / (float)VIEW_GRID, cell_z = v->size[1] / (float)VIEW_GRID;
     x -= v->extent.x * floorf((x - v->origin[0]) / v->extent.x);
     z -= v->extent.z * floorf((z - v->origin[1]) / v->extent.z);
-    for (float b = z; b < v->origin[1] + v->size[1]; b += v->extent.z)
-        for (float a = x; a < v->origin[0] + v->size[0]; a += v->extent.x) {
-            int column = wrapped_place((int)lrintf((a - v->origin[0]) / cell_x - v->shift[0]), v->cyclic[0]),
-                row = wrapped_place((int)lrintf((b - v->origin[1]) / cell_z - v->shift[1]), v->cyclic[1]);
+    for (int j = 0; j < MOST_COPIES && z + (float)j * v->extent.z < v->origin[1] + v->size[1]; j++)
+        for (int i = 0; i < MOST_COPIES && x + (float)i * v->extent.x < v->origin[0] + v->size[0]; i++) {
+            float a = x + (float)i * v->extent.x - v->origin[0], b = z + (float)j * v->extent.z - v->origin[1];
+            int column = wrapped_place((int)lrintf(a / cell_x - v->shift[0]), v->cyclic[0]), row = wrapped_place((int)lrintf(b / cell_z - v->shift[1]), v->cyclic[1]);
             if (column >= 0 && row >= 0) highest = float_max(highest, top[row * VIEW_GRID + column]);
         }
     return highest;

@@ -1,6 +1,8 @@
 /* Light on matter of skins: the balance of what a beam loses and what the matter on its way receives. */
 #include "texel/light_share.h"
 
+#include "base/vec.h"
+
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,7 +13,7 @@
 static const float areas[] = {0.003f, 0.02f, 0.2f, 0.7f, 1, 2.5f, 8};
 
 static float share_of(float depth, float area, float before, float sheet) {
-    LightSurroundings around = {depth, area, before, sheet};
+    LightSurroundings around = {depth, area, before, sheet, 0};
     return light_share(&around);
 }
 
@@ -57,6 +59,19 @@ static void a_sheet_is_lit_all_over(void **state) {
     assert_float_equal(share_of(50, 6, 2, 1), 1, 1e-4); /* the wall of a solid, whose inside is behind it */
 }
 
+/* A clump that hides itself is a body: its side to the eye is lit as far as the light falls on it, and less by what is before it. */
+static void clumps_show_the_side_that_faces_the_eye(void **state) {
+    (void)state;
+    for (int k = 0; k <= 4; k++) {
+        float facing = (float)k / 4;
+        LightSurroundings dense = {0.4f, 40, 0, 0, facing}, behind = {0.4f, 40, 40, 0, facing}, random = {3, 3, 1, 0, facing};
+        assert_float_equal(light_share(&dense), facing, 0.012);
+        assert_float_equal(light_share(&behind), expf(-0.4f) * facing, 0.012);
+        assert_float_equal(light_share(&random), expf(-1.0f), 1e-4); /* what is no clump is lit from all sides */
+    }
+    assert_true(light_facing(1) == 1 && light_facing(-1) == 0 && light_facing(0) == 0.5f && light_facing(NAN) == 0);
+}
+
 static void nothing_bad_comes_of_odd_numbers(void **state) {
     (void)state;
     static const float odd[] = {0, 1e-30f, 1e-6f, 1, 1e6f, INFINITY};
@@ -74,6 +89,7 @@ int main(void) {
         cmocka_unit_test(matter_at_random_sees_what_comes_through),
         cmocka_unit_test(no_light_is_lost),
         cmocka_unit_test(a_sheet_is_lit_all_over),
+        cmocka_unit_test(clumps_show_the_side_that_faces_the_eye),
         cmocka_unit_test(nothing_bad_comes_of_odd_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

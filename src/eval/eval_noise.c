@@ -20,7 +20,7 @@ static void eval_worley(const void *data, const double *in, double *out) {
 }
 
 static void bound_worley(const void *data, const Interval *in, Interval *out) {
-    for (int k = 0; k <= *(const int *)data; k++) out[k] = interval_worley(in, k);
+    interval_worley_nearest(in, *(const int *)data, out);
 }
 
 static void forms_worley(const void *data, int count, const AffineForm *in, AffineForm *out, struct NodeCache *cells) {

@@ -191,9 +191,10 @@ static bool search(Lanes *lanes, double *t, bool *falling) {
 bool line_search_lanes(LineSearch *s, double from, double to, double *t, bool *falling) {
     AffineLanes few[FEW_LANES];
     size_t slots = s->line->sum->scratch_size;
-    Lanes lanes = {.search = s, .scratch = slots > FEW_LANES ? malloc(slots * sizeof *few) : few, .count = 1};
+    Lanes lanes; /* its stack is large: nothing is written to it in vain */
+    lanes.search = s, lanes.scratch = slots > FEW_LANES ? malloc(slots * sizeof *few) : few;
     if (!lanes.scratch) return false;
-    lanes.stack[0] = (LanePiece){.a = from, .b = to};
+    lanes.count = 1, lanes.stack[0].a = from, lanes.stack[0].b = to, lanes.stack[0].settled.terms = 0;
     bool found = search(&lanes, t, falling);
     if (lanes.scratch != few) free(lanes.scratch);
     return found;

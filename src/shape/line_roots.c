@@ -74,6 +74,9 @@ void line_cut(AffineForm f, double *a, double *b) {
 
 double line_shortest(const Line *line, double t) { return 0x1p-40 * size_at(line, t); }
 
+/* Over a place a function is a line, or it jumps. */
+static double between(double a, double at_a, double b, double at_b) { return double_clamp(a + (b - a) * (at_a / (at_a - at_b)), a, b); }
+
 static double value_on(const void *context, double t) {
     return line_value((LineSearch *)(uintptr_t)context, t);
 }
@@ -83,9 +86,11 @@ bool line_place_between(LineSearch *s, double a, double b, double *t, bool *fall
     double at_a = line_value(s, a), at_b = line_value(s, b);
     if ((at_a <= 0) == (at_b <= 0)) return false;
     *falling = at_b <= 0;
-    *t = isfinite(at_a) && isfinite(at_b)
-             ? roots_between(value_on, s, a, at_a, b, at_b, 0x1p-52 * (fabs(a) + fabs(b)))
-             : b;
+    *t = b;
+    if (isfinite(at_a) && isfinite(at_b)) {
+        bool is_place = b - a <= 2 * line_shortest(s->line, b);
+        *t = is_place ? between(a, at_a, b, at_b) : roots_between(value_on, s, a, at_a, b, at_b, 0x1p-52 * (fabs(a) + fabs(b)));
+    }
     return true;
 }
 

@@ -51,7 +51,22 @@ static inline void affine_sub_lanes(AffineLanes *restrict out, const AffineLanes
     }
 }
 
+/* Numbers change no bits but their exponents: what is neither huge nor tiny is exact. */
+static inline bool affine_is_power_of_two(double k) {
+    uint64_t bits;
+    memcpy(&bits, &k, sizeof bits);
+    return bits << 12 == 0 && fabs(k) > 0x1p-64 && fabs(k) < 0x1p64;
+}
+
 static inline void affine_scale_lanes(AffineLanes *restrict out, const AffineLanes *a, double k) {
+    if (affine_is_power_of_two(k)) {
+        /* Of subnormal numbers bits are lost, by less than is added; what becomes infinite makes the error no number. */
+        AFFINE_EACH_LANE {
+            double c = a->centre[l] * k, slope = a->slope[l] * k;
+            out->centre[l] = c, out->slope[l] = slope, out->error[l] = a->error[l] * fabs(k) + 0x1p-1000 + 0 * (c + slope);
+        }
+        return;
+    }
     AFFINE_EACH_LANE {
         double c = a->centre[l] * k, s = a->slope[l] * k, e = a->error[l] * fabs(k);
         out->centre[l] = c, out->slope[l] = s, out->error[l] = affine_lane_error(e, fabs(c) + fabs(s) + e);

@@ -11,6 +11,8 @@ Interval lattice_over_box(LatticeFind *find, LatticeCurve *curve, double most, c
 
 /* noise_worley() and noise_sparse_convolution() over boxes: of the balls around them. */
 Interval interval_worley(const Interval box[3], int index);
+/* Of the nodes number 0 … last, in one search. */
+void interval_worley_nearest(const Interval box[3], int last, Interval *out);
 Interval interval_sparse_convolution(const Interval box[3], int count);
 
 #endif

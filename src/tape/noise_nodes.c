@@ -113,12 +113,21 @@ static Ball ball_around(const Interval box[3]) {
 
 /* A distance changes by no more than the way. No place of a cell is further from a node of it or of its 26 neighbours, which all have
  * one, than 2√3. */
-Interval interval_worley(const Interval box[3], int index) {
+void interval_worley_nearest(const Interval box[3], int last, Interval *out) {
     const double most = 3.4642;
     Ball b = ball_around(box);
-    if (!b.near || !(b.radius < most)) return (Interval){0, most, b.nan};
-    double at = noise_worley(b.centre, index), off = b.radius + b.rounding;
-    return (Interval){bound_max(0, at - off), bound_min(most, at + off), b.nan};
+    bool known = b.near && b.radius < most;
+    double at[WORLEY_NODES] = {0}, off = b.radius + b.rounding;
+    if (known) noise_worley_nearest(b.centre, last, at);
+    for (int k = 0; k <= last; k++)
+        out[k] = known ? (Interval){bound_max(0, at[k] - off), bound_min(most, at[k] + off), b.nan} : (Interval){0, most, b.nan};
+}
+
+Interval interval_worley(const Interval box[3], int index) {
+    Interval out[WORLEY_NODES];
+    index = int_clamp(index, 0, WORLEY_NODES - 1);
+    interval_worley_nearest(box, index, out);
+    return out[index];
 }
 
 /* ---- Lewis, Algorithms for solid noise synthesis, SIGGRAPH 1989 ---- */

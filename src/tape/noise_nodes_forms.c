@@ -230,23 +230,39 @@ static AffineForm root_of(AffineForm a) {
                         slope * a.error + gap_ / 2 + 0x1p-46, false};
 }
 
-static AffineForm along_nodes(const Points *points, const Piece *p, int index) {
-    const Vec3 c = p->centre;
+/* Of all nodes the squares of their distances from the piece's centre, and how these change along it. */
+typedef struct Squares {
+    double middle[MOST_POINTS + TOGETHER], slope[MOST_POINTS + TOGETHER];
+    int count;
+} Squares;
+
+static void find_squares(const Points *restrict points, const Piece *p, Squares *restrict out) {
+    const Vec3 c = p->centre, way = p->way;
+    out->count = points->count;
+    for (int i = 0; i < points->count; i++) {
+        double x = c.x - points->x[i], y = c.y - points->y[i], z = c.z - points->z[i];
+        out->middle[i] = x * x + y * y + z * z, out->slope[i] = 2 * (x * way.x + y * way.y + z * way.z);
+    }
+}
+
+/* squares[k]: of the centre, to node number k; highest[k]: above all that this may be along the piece. */
+static void find_least(const Squares *s, int last, double *restrict squares, double *restrict highest) {
+    for (int k = 0; k <= last; k++) squares[k] = highest[k] = HUGE_VAL;
+    for (int i = 0; i < s->count; i++) {
+        keep_least(squares, last + 1, s->middle[i]);
+        keep_least(highest, last + 1, s->middle[i] + fabs(s->slope[i]));
+    }
+}
+
+static AffineForm along_nodes(const Squares *s, const Piece *p, int index, double highest) {
     Rival rivals[MOST_RIVALS];
-    double highest[WORLEY_NODES], square = p->length * p->length;
+    double square = p->length * p->length;
     int count = 0;
-    for (int k = 0; k <= index; k++) highest[k] = HUGE_VAL;
-    for (int pass = 0; pass < 2; pass++)
-        for (int i = 0; i < points->count; i++) {
-            Vec3 to = vec3(c.x - points->x[i], c.y - points->y[i], c.z - points->z[i]);
-            Rival r = {vec3_length_squared(to), 2 * vec3_dot(to, p->way)};
-            if (pass == 0)
-                keep_least(highest, index + 1, r.middle + fabs(r.slope));
-            else if (r.middle - fabs(r.slope) <= highest[index] + 0x1p-40) {
-                if (count == MOST_RIVALS) return affine_unknown(false);
-                rivals[count++] = r;
-            }
-        }
+    for (int i = 0; i < s->count; i++) {
+        if (s->middle[i] - fabs(s->slope[i]) > highest + 0x1p-40) continue;
+        if (count == MOST_RIVALS) return affine_unknown(false);
+        rivals[count++] = (Rival){s->middle[i], s->slope[i]};
+    }
     AffineForm level = level_of(rivals, count, index);
     level.centre += square / 2, level.error += square / 2;
     if (!(level.centre - fabs(level.slope) - level.error > 0x1p-20)) return affine_unknown(false);
@@ -255,18 +271,20 @@ static AffineForm along_nodes(const Points *points, const Piece *p, int index) {
 
 static void worley_group(const Piece *pieces, int count, const Box3 *box, int last, AffineForm *out, int stride, NodeCache *cells) {
     Points points;
+    Squares all;
     gather_nodes(&points, pieces, count, box, last, cells);
     for (int i = 0; i < count; i++) {
         const Piece *p = &pieces[i];
-        double squares[WORLEY_NODES], off = p->length + p->off;
-        nearest(&points, p, last, squares);
+        double squares[WORLEY_NODES], highest[WORLEY_NODES], off = p->length + p->off;
+        find_squares(&points, p, &all);
+        find_least(&all, last, squares, highest);
         for (int k = 0; k <= last; k++) {
             double at = sqrt(squares[k]);
             AffineForm *form = &out[k * stride + i];
             /* Further away there may be nodes that were not gathered. */
             bool complete = at + 2 * off < 1 - SLACK;
             if (!(at < 1 - SLACK)) at = noise_worley(p->centre, k);
-            *form = complete ? along_nodes(&points, p, k) : affine_unknown(false);
+            *form = complete ? along_nodes(&all, p, k, highest[k]) : affine_unknown(false);
             form->error += p->off;
             *form = affine_within(*form, interval(bound_max(0, at - off), at + off));
         }
@@ -286,7 +304,9 @@ void affine_worley(int count, const AffineForm *place, int last, AffineForm *out
         }
         const Interval range[3] = {affine_range(place[i]), affine_range(place[count + i]),
                                    affine_range(place[2 * count + i])};
-        for (int k = 0; k <= last; k++) out[k * count + i] = affine_of_interval(interval_worley(range, k));
+        Interval spans[WORLEY_NODES];
+        interval_worley_nearest(range, last, spans);
+        for (int k = 0; k <= last; k++) out[k * count + i] = affine_of_interval(spans[k]);
     }
 }
 

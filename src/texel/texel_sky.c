@@ -8,6 +8,7 @@
 
 /* Second-order fits are smooth, and so is the sky's light: a few thousand places are enough. */
 enum { MOST_CELLS = 8192, DIRECTIONS = 32, MOST_STEPS = 96 };
+enum { SKY_EMPTY = 0, SKY_ASKED = 1, SKY_FIRST_ROUND = 2 };
 enum { VIEW_NUMBERS = 10 }; /* mean, first, second: xx yy zz xy xz yz */
 /* Numbers of a view are within ±3 (7.5 times a mean of products below 0.4). */
 static const float VIEW_UNIT = 1.0f / 8192;
@@ -36,6 +37,9 @@ typedef struct SkyBuild {
     float extent[3], finest; /* side of the finest voxels, geometric mean */
     float longest_finest;    /* along the longest side, as opacity.h wants it */
     int level;               /* whose voxels are the cells */
+    uint16_t *rank;          /* of each cell: SKY_EMPTY, SKY_ASKED, or the round in which it was filled */
+    uint16_t round;
+    size_t asked, filled;    /* cells with matter; those that this round filled */
     Vec3f direction[DIRECTIONS];
 } SkyBuild;
 
@@ -181,6 +185,69 @@ static void store_view(const SkyBuild *b, size_t cell, const float v[DIRECTIONS]
         b->sky->views[cell][k] = (int16_t)lrintf(float_clamp(sums[k], -3.9f, 3.9f) / VIEW_UNIT);
 }
 
+/* ---- which cells are asked ---- */
+
+static size_t sky_cell(const TexelSky *sky, const int at[3]) { return ((size_t)at[2] * (size_t)sky->size[1] + (size_t)at[1]) * (size_t)sky->size[0] + (size_t)at[0]; }
+
+/* The cell `by` away from a cell; false beyond the end. */
+static bool sky_neighbour(const TexelSky *sky, const int at[3], const int by[3], size_t *out) {
+    int there[3];
+    for (int k = 0; k < 3; k++) {
+        there[k] = at[k] + by[k];
+        if (sky->repeated[k]) there[k] &= sky->size[k] - 1;
+        if (there[k] < 0 || there[k] >= sky->size[k]) return false;
+    }
+    *out = sky_cell(sky, there);
+    return true;
+}
+
+typedef void (*SkyVisit)(SkyBuild *b, const int at[3]);
+
+static void visit_sky_cells(SkyBuild *b, SkyVisit visit) {
+    int at[3];
+    for (at[2] = 0; at[2] < b->sky->size[2]; at[2]++)
+        for (at[1] = 0; at[1] < b->sky->size[1]; at[1]++)
+            for (at[0] = 0; at[0] < b->sky->size[0]; at[0]++) visit(b, at);
+}
+
+/* The cells between which what is read in matter is interpolated. */
+static void mark_around_matter(SkyBuild *b, const int at[3]) {
+    size_t other;
+    if (!(matter_of_voxel(b, b->level, at) > 0)) return;
+    b->asked++;
+    for (int i = 0; i < 27; i++)
+        if (sky_neighbour(b->sky, at, (const int[3]){i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}, &other)) b->rank[other] = SKY_ASKED;
+}
+
+/* The mean of the neighbours that were known before this round. */
+static void fill_from_neighbours(SkyBuild *b, const int at[3]) {
+    static const int beside[6][3] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
+    size_t cell = sky_cell(b->sky, at), other;
+    int sum[VIEW_NUMBERS] = {0}, count = 0;
+    if (b->rank[cell] != SKY_EMPTY) return;
+    for (int i = 0; i < 6; i++) {
+        if (!sky_neighbour(b->sky, at, beside[i], &other) || b->rank[other] == SKY_EMPTY || b->rank[other] == b->round) continue;
+        count++;
+        for (int k = 0; k < VIEW_NUMBERS; k++) sum[k] += b->sky->views[other][k];
+    }
+    if (!count) return;
+    b->rank[cell] = b->round;
+    b->filled++;
+    for (int k = 0; k < VIEW_NUMBERS; k++) b->sky->views[cell][k] = (int16_t)(sum[k] / count);
+}
+
+static void see_all(SkyBuild *b, const int at[3]) { b->sky->views[sky_cell(b->sky, at)][0] = (int16_t)lrintf(1 / VIEW_UNIT); }
+
+/* Far from matter nobody looks, but that coarse voxels spread theirs: it has the sky of what is nearest. */
+static void fill_rest(SkyBuild *b) {
+    if (!b->asked) visit_sky_cells(b, see_all);
+    b->round = SKY_FIRST_ROUND;
+    do {
+        b->filled = 0;
+        visit_sky_cells(b, fill_from_neighbours);
+    } while (b->filled && b->round++ < UINT16_MAX);
+}
+
 /* A row of cells along x. */
 static void build_row(void *context, size_t row, int worker) {
     (void)worker;
@@ -190,11 +257,12 @@ static void build_row(void *context, size_t row, int worker) {
     for (int x = 0; x < sky->size[0]; x++) {
         const int at[3] = {x, y, z};
         float v[DIRECTIONS], place[3];
+        if (b->rank[sky_cell(sky, at)] != SKY_ASKED) continue;
         for (int i = 0; i < DIRECTIONS; i++) {
             pick_place(b, at, i, place);
             v[i] = march_out(b, place, b->direction[i]);
         }
-        store_view(b, row * (size_t)sky->size[0] + (size_t)x, v);
+        store_view(b, sky_cell(sky, at), v);
     }
 }
 
@@ -229,6 +297,17 @@ static TexelSky *create(const VoxelLayer *layer, int level, const TexelSkyOption
     return sky;
 }
 
+static bool find_views(SkyBuild *b) {
+    const TexelSky *sky = b->sky;
+    b->rank = calloc((size_t)sky->size[0] * (size_t)sky->size[1] * (size_t)sky->size[2], sizeof *b->rank);
+    if (!b->rank) return false;
+    visit_sky_cells(b, mark_around_matter);
+    bool done = pool_run(b->options->pool, (size_t)sky->size[1] * (size_t)sky->size[2], build_row, b);
+    if (done) fill_rest(b);
+    free(b->rank);
+    return done;
+}
+
 TexelSky *texel_sky_build(const VoxelLayer *const *layers, size_t count, const TexelSkyOptions *options) {
     if (count == 0) return NULL;
     const VoxelLevel *finest = &layers[0]->level[0];
@@ -239,7 +318,7 @@ TexelSky *texel_sky_build(const VoxelLayer *const *layers, size_t count, const T
     b.finest = cbrtf(finest->sides[0] * finest->sides[1] * finest->sides[2]);
     b.longest_finest = 1 / finest->density_unit;
     spread_directions(b.direction);
-    if (pool_run(options->pool, (size_t)b.sky->size[1] * (size_t)b.sky->size[2], build_row, &b)) return b.sky;
+    if (find_views(&b)) return b.sky;
     texel_sky_destroy(b.sky);
     return NULL;
 }

@@ -35,7 +35,8 @@ TexelSky *texel_sky_build(const VoxelLayer *const *layers, size_t count, const T
 void texel_sky_destroy(TexelSky *sky);
 size_t texel_sky_bytes(const TexelSky *sky);
 
-/* At p of texel space (inside the extent, which repeated axes wrap and the others clamp), interpolated. */
+/* At p of texel space (inside the extent, which repeated axes wrap and the others clamp), interpolated. Of places in matter: elsewhere it is what
+ * the nearest matter sees. */
 SkyView texel_sky_at(const TexelSky *sky, Vec3f p);
 
 /* Transmittance towards the unit direction d, in [0, 1]. */

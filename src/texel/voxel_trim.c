@@ -25,7 +25,7 @@ static const double TRIM_INERTIA = 0.005;
 typedef struct TrimWork {
     VoxelLayer *layer;
     const TexelMesh *mesh;
-    Vec3f extent, low; /* low: the least coordinates of the mesh */
+    Vec3f extent, low, high; /* low, high: the least and the most coordinates of the mesh */
     bool contained;    /* nothing of it lies beyond the extent, but along cyclic axes */
     bool coarse;       /* many triangles */
     int levels;        /* that are trimmed */
@@ -88,12 +88,36 @@ static LayerView look_along_spot(const TrimWork *work, int spot) {
 
 static float wrapped_length(float x, float size) { return x - size * floorf(x / size); }
 
-static float ray_depth(const VoxelLayer *layer, int level, const LayerView *v, float x, float z) {
-    float h = 1 / layer->level[level].density_unit, step = TRIM_STEP * h * v->d.y;
+/* The range of the factor t for which from + t·slope is between two bounds, within what is given. */
+static void clip_range(float from, float slope, float least, float most, float range[2]) {
+    float a = (least - from) / slope, b = (most - from) / slope;
+    if (!(fabsf(slope) > 1e-6f)) {
+        if (from < least || from > most) range[1] = range[0] - 1;
+        return;
+    }
+    range[0] = float_max(range[0], float_min(a, b));
+    range[1] = float_min(range[1], float_max(a, b));
+}
+
+/* The heights between which a ray may meet voxels: as far as interpolation reaches around the triangles. */
+static void find_heights(const TrimWork *work, int level, const LayerView *v, float x, float z, float range[2]) {
+    static const float REACH = 1.5f;
+    const float *sides = work->layer->level[level].sides;
+    range[0] = float_max(0, work->low.y - REACH * sides[1]);
+    range[1] = float_min(v->extent.y, work->high.y + REACH * sides[1]);
+    if (!v->cyclic[0]) clip_range(x, v->slope_x, work->low.x - REACH * sides[0], work->high.x + REACH * sides[0], range);
+    if (!v->cyclic[1]) clip_range(z, v->slope_z, work->low.z - REACH * sides[2], work->high.z + REACH * sides[2], range);
+}
+
+static float ray_depth(const TrimWork *work, int level, const LayerView *v, float x, float z) {
+    const VoxelLayer *layer = work->layer;
+    float h = 1 / layer->level[level].density_unit, step = TRIM_STEP * h * v->d.y, range[2];
     int steps = int_max(1, (int)ceilf(v->extent.y / step));
     float height = v->extent.y / (float)steps, depth = 0;
     Vec3f along = vec3f_scale(v->d, height / v->d.y);
-    for (int i = 0; i < steps; i++) {
+    find_heights(work, level, v, x, z, range);
+    int first = int_max(0, (int)(range[0] / height - 0.5f)), end = range[1] < range[0] ? first : int_min(steps, (int)(range[1] / height + 1.5f));
+    for (int i = first; i < end; i++) {
         float y = ((float)i + 0.5f) * height;
         Vec3f p = {x + y * v->slope_x, y, z + y * v->slope_z};
         VoxelSample s;
@@ -104,46 +128,56 @@ static float ray_depth(const VoxelLayer *layer, int level, const LayerView *v, f
     return depth;
 }
 
+/* Of a view of `rays`: the depths along those that meet any matter. */
+typedef struct TrimDepths {
+    float depth[TRIM_MOST_RAYS * TRIM_MOST_RAYS];
+    int count, rays;
+} TrimDepths;
+
 /* The share of the view that is hidden with all depths times `factor`; *rate: its derivative by the factor. */
-static double hidden_by_depths(const float *depths, int count, double factor, double *rate) {
+static double hidden_by_depths(const TrimDepths *d, double factor, double *rate) {
     double sum = 0;
     *rate = 0;
-    for (int i = 0; i < count; i++) {
-        double through = exp(-factor * (double)depths[i]);
+    for (int i = 0; i < d->count; i++) {
+        double through = exp(-factor * (double)d->depth[i]);
         sum += 1 - through;
-        *rate += (double)depths[i] * through;
+        *rate += (double)d->depth[i] * through;
     }
-    *rate /= count;
-    return sum / count;
+    *rate /= d->rays;
+    return sum / d->rays;
 }
 
-static float find_factor(const float *depths, int count, double hidden) {
-    double low = (double)TRIM_LEAST, high = (double)TRIM_MOST, rate;
-    for (int i = 0; i < 20; i++) {
-        double middle = (low + high) / 2;
-        if (hidden_by_depths(depths, count, middle, &rate) < hidden)
-            low = middle;
-        else
-            high = middle;
+/* The share grows with the factor, ever more slowly: Newton's steps, and halves of what is left where they lead out of it. */
+static float find_factor(const TrimDepths *d, double hidden) {
+    static const double CLOSE = 1e-5;
+    double low = (double)TRIM_LEAST, high = (double)TRIM_MOST, factor = 1, rate = 0;
+    for (int i = 0; i < 20 && high - low > CLOSE; i++) {
+        double off = hidden_by_depths(d, factor, &rate) - hidden, next;
+        if (off < 0) low = factor;
+        else high = factor;
+        next = factor - off / rate;
+        if (!(next > low && next < high)) next = (low + high) / 2;
+        bool there = fabs(next - factor) < CLOSE;
+        factor = next;
+        if (there) break;
     }
-    double factor = (low + high) / 2;
-    hidden_by_depths(depths, count, factor, &rate);
-    return (float)(1 + (factor - 1) * rate /
-                           (rate + TRIM_INERTIA)); /* of what is opaque in any case nothing is known */
+    return (float)(1 + (factor - 1) * rate / (rate + TRIM_INERTIA)); /* of what is opaque in any case nothing is known */
 }
 
-static float trim_level(const VoxelLayer *layer, int level, const LayerView *v, double hidden) {
-    float depths[TRIM_MOST_RAYS * TRIM_MOST_RAYS];
+static float trim_level(const TrimWork *work, int level, const LayerView *v, double hidden) {
+    const VoxelLayer *layer = work->layer;
     int side =
         int_clamp(TRIM_RAYS_A_VOXEL * (int)layer->level[level].density_unit, TRIM_LEAST_RAYS, TRIM_MOST_RAYS);
     if (is_period(layer)) side /= 2;
+    TrimDepths depths = {.rays = side * side};
     for (int i = 0; i < side * side; i++) {
         uint64_t bits = random_hash((uint64_t)i, (uint64_t)level, 0, 0);
         float a = ((float)(i % side) + random_unitf(bits)) / (float)side,
               b = ((float)(i / side) + random_unitf(random_mix(bits))) / (float)side;
-        depths[i] = ray_depth(layer, level, v, v->origin[0] + a * v->size[0], v->origin[1] + b * v->size[1]);
+        float depth = ray_depth(work, level, v, v->origin[0] + a * v->size[0], v->origin[1] + b * v->size[1]);
+        if (depth > 0) depths.depth[depths.count++] = depth;
     }
-    return find_factor(depths, side * side, hidden);
+    return find_factor(&depths, hidden);
 }
 
 /* Room for what a view sees: kept with the pair, or to be freed. */
@@ -179,7 +213,7 @@ static void look_at_node(TrimWork *work, int node) {
     if (kept >= 0) keep_view(work, kept, &view, top);
     if (!is_kept_as_seen(work, kept)) free(top);
     for (int i = 0; work->known[node] && i < work->levels; i++)
-        layer->trim[i][node] = trim_level(layer, layer->levels - 1 - i, &view, hidden);
+        layer->trim[i][node] = trim_level(work, layer->levels - 1 - i, &view, hidden);
 }
 
 static void look_through(void *context, size_t number, int worker) {
@@ -246,7 +280,7 @@ static bool find_bounds(TrimWork *work) {
             high = vec3f(float_max(high.x, q.x), float_max(high.y, q.y), float_max(high.z, q.z));
         }
     const bool *cyclic = work->layer->cyclic;
-    work->low = low;
+    work->low = low, work->high = high;
     work->contained = low.y >= 0 && high.y <= work->extent.y && (cyclic[0] || (low.x >= 0 && high.x <= work->extent.x)) &&
                       (cyclic[2] || (low.z >= 0 && high.z <= work->extent.z));
     return true;

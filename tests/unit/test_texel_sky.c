@@ -61,6 +61,9 @@ static void test_a_roof_hides_the_sky(void **state) {
     uint32_t q[4];
     for (int i = 0; i < 4; i++) q[i] = scene_vertex(&roof, vec3(i == 1 || i == 2, .5, i >= 2));
     scene_quad(&roof, q[0], q[1], q[2], q[3], false);
+    /* Something small to look from. */
+    scene_leaf(&roof, vec3(.3, .2, .7), vec3(0, 1, 0), .01);
+    scene_leaf(&roof, vec3(.3, .8, .7), vec3(0, 1, 0), .01);
     VoxelLayer *layer;
     TexelSky *sky = sky_of(&roof, 64, TEXEL_CYCLIC_X | TEXEL_CYCLIC_Z, &layer);
     SkyView below = texel_sky_at(sky, vec3f(.3f, .2f, .7f)), above = texel_sky_at(sky, vec3f(.3f, .8f, .7f));
@@ -74,6 +77,22 @@ static void test_a_roof_hides_the_sky(void **state) {
     texel_sky_destroy(sky);
     voxel_layer_destroy(layer);
     scene_free(&roof);
+}
+
+/* Where nothing is, the sky is that of the nearest matter: beside a wall that stands alone, of its sides. */
+static void test_air_has_the_sky_of_what_is_near(void **state) {
+    (void)state;
+    TestMesh wall = {0};
+    uint32_t q[4];
+    for (int i = 0; i < 4; i++) q[i] = scene_vertex(&wall, vec3(.5, i == 1 || i == 2, i >= 2));
+    scene_quad(&wall, q[0], q[1], q[2], q[3], false);
+    VoxelLayer *layer;
+    TexelSky *sky = sky_of(&wall, 64, 0, &layer);
+    SkyView near = texel_sky_at(sky, vec3f(.55f, .5f, .5f)), far = texel_sky_at(sky, vec3f(.95f, .5f, .5f)), left = texel_sky_at(sky, vec3f(.05f, .5f, .5f));
+    assert_true(fabsf(near.mean - far.mean) < .15f && far.first.x > .3f && left.first.x < -.3f);
+    texel_sky_destroy(sky);
+    voxel_layer_destroy(layer);
+    scene_free(&wall);
 }
 
 static double seen_along(const TestMesh *mesh, Vec3 at, Vec3 d) {
@@ -165,7 +184,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_empty_texels_see_everything),
         cmocka_unit_test(test_means_are_integrals),
-        cmocka_unit_test(test_a_roof_hides_the_sky),
+        cmocka_unit_test(test_a_roof_hides_the_sky), cmocka_unit_test(test_air_has_the_sky_of_what_is_near),
         cmocka_unit_test(test_leaves_against_rays),
         cmocka_unit_test(test_same_for_any_threads_and_all_memory_returned),
     };

@@ -12,9 +12,9 @@ static Vec3 fbm3(Vec3 p, int octaves, uint32_t seed) {
 }
 
 static double gust(const WindField *wind, double s) {
-    if (wind->gust_amplitude == 0) return 0;
+    if (wind->gust_amplitude == 0) return wind->gust_mean;
     double wave = (1 + sin(2 * VTS_PI * s / wind->gust_wavelength)) / 2;
-    return wind->gust_amplitude * (2 * pow(wave, wind->gust_sharpness) - 1);
+    return wind->gust_mean + wind->gust_amplitude * (2 * pow(wave, wind->gust_sharpness) - 1);
 }
 
 static Vec3 function_force(const WindField *wind, Vec3 p, double time) {
@@ -88,11 +88,9 @@ static double mean_gust(double sharpness) {
 }
 
 void wind_smooth(WindField *wind, double shortest) {
-    if (wind->gust_amplitude != 0 && wind->gust_wavelength < shortest) {
-        wind->gust_amplitude *= mean_gust(wind->gust_sharpness);
-        wind->gust_sharpness = 0; /* the same everywhere */
-        wind->gust_wavelength = HUGE_VAL;
-    }
-    while (wind->turbulence_octaves > 0 && ldexp(wind->turbulence_scale, 1 - wind->turbulence_octaves) < shortest) wind->turbulence_octaves--;
+    double share = double_clamp(2 * wind->gust_wavelength / shortest - 1, 0, 1);
+    wind->gust_mean += (1 - share) * wind->gust_amplitude * mean_gust(wind->gust_sharpness);
+    wind->gust_amplitude *= share;
+    while (wind->turbulence_octaves > 0 && ldexp(wind->turbulence_scale, 1 - wind->turbulence_octaves) < 0.75 * shortest) wind->turbulence_octaves--;
     if (wind->turbulence_octaves == 0) wind->turbulence_amplitude = 0;
 }

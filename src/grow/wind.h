@@ -27,7 +27,8 @@ Vec3 wind_bend(Vec3 h, Vec3 force, double stiffness);
  * it. HUGE_VAL where it is the same everywhere, or not known (a function). */
 double wind_wavelength(const WindField *wind);
 
-/* Puts the means in place of what changes over less than `shortest` scene units: of gusts that of a wave, of octaves of turbulence 0. */
+/* Puts the means in place of what changes over less than `shortest` scene units: of gusts that of a wave, by and by, and the whole of it from half of that
+ * length down; of octaves of turbulence 0, below three quarters of it. */
 void wind_smooth(WindField *wind, double shortest);
 
 #endif

@@ -476,13 +476,13 @@ static bool make_mesh(const Skin *skin, CompiledScene *compiled, DiagList *diags
     return false;
 }
 
-/* Waves shorter than two cells would not be drawn but sampled at random, and bend each cell's corners apart at great cost: the skin in a wind
- * without them. NULL: there are none. */
+/* Waves shorter than two cells would not be drawn but sampled at random, and those of up to four, to which cells are cut, badly; both bend each cell's
+ * corners apart at great cost: the skin in a wind without the former, in which the latter are weaker. NULL: there are none. */
 static const Skin *without_short_waves(const Skin *skin, const SurfaceMesh *mesh, Arena *arena, DiagList *diags) {
-    double shortest = 2 * mesh->shortest_cut;
+    double shortest = 4 * mesh->shortest_cut;
     if (!skin->wind || !(wind_wavelength(skin->wind) < shortest)) return NULL;
-    diag_warning(diags, skin->span, "the wind changes over %.3g units, less than two of the surface's cells, which cannot be cut below %.3g: "
-                 "the mean of such short waves takes their place", wind_wavelength(skin->wind), mesh->shortest_cut);
+    diag_warning(diags, skin->span, "the wind changes over %.3g units, less than four of the surface's cells, which cannot be cut below %.3g: "
+                 "such short waves are weaker, and below two cells their mean takes their place", wind_wavelength(skin->wind), mesh->shortest_cut);
     WindField *wind = arena_copy(arena, skin->wind, sizeof *wind);
     wind_smooth(wind, shortest);
     wind_rehash(wind);

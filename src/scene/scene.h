@@ -583,6 +583,7 @@ typedef struct WindField {
     Vec3 direction;              /* unit */
     double speed, strength;      /* scene units a second; 1 */
     double gust_wavelength, gust_amplitude, gust_sharpness;
+    double gust_mean; /* added to gusts: what is left of those that wind_smooth() took */
     double turbulence_amplitude, turbulence_scale;
     int turbulence_octaves;
     uint32_t turbulence_seed;

@@ -415,7 +415,7 @@ static void add_jitter(Hash128 *h, const SkinJitter *j) {
 
 void wind_rehash(WindField *w) {
     Hash128 h = hash_begin(KIND_WIND);
-    const double numbers[] = {w->speed, w->strength, w->gust_wavelength, w->gust_amplitude, w->gust_sharpness, w->turbulence_amplitude,
+    const double numbers[] = {w->speed, w->strength, w->gust_wavelength, w->gust_amplitude, w->gust_sharpness, w->gust_mean, w->turbulence_amplitude,
                               w->turbulence_scale, w->turbulence_octaves, w->turbulence_seed, w->stiffness, w->cycle};
     for (size_t i = 0; i < VTS_ARRAY_COUNT(numbers); i++) hash_add_double(&h, numbers[i]);
     hash_add_vec3(&h, w->direction);

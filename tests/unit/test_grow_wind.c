@@ -157,9 +157,15 @@ static void short_waves_leave_their_mean(void **state) {
         enum { STEPS = 100000 };
         double sum = 0;
         for (int k = 0; k < STEPS; k++) sum += wind_force(&bare, vec3(3.0 * (k + 0.5) / STEPS, 0, 0), 0).x;
-        wind_smooth(&smooth, 3.5);
+        wind_smooth(&smooth, 4);
         assert_int_equal(smooth.turbulence_octaves, 2);
-        assert_true(wind_wavelength(&smooth) == 4);
+        WindField half = smooth; /* whose waves are of three quarters of that length */
+        half.turbulence_amplitude = 0;
+        for (int k = 0; k < 20; k++) {
+            Vec3 p = some_place((uint64_t)k, 40);
+            assert_true(fabs(wind_force(&half, p, k).x - (wind_force(&bare, p, k).x + sum / STEPS) / 2) < 1e-3);
+        }
+        assert_true(wind_wavelength(&smooth) == 3);
         wind_smooth(&smooth, 100);
         assert_true(isinf(wind_wavelength(&smooth)));
         for (int k = 0; k < 20; k++) {

@@ -2,7 +2,6 @@
 
 #include "image/image_part.h"
 #include "image/oiio_module.h"
-#include "image/png.h"
 #include "image/pnm.h"
 #include "image/srgb.h"
 #include "image/whole_file.h"
@@ -225,15 +224,6 @@ static void narrow(uint16_t *codes, size_t count) {
     for (size_t i = 0; i < count; i++) bytes[i] = (uint8_t)codes[i];
 }
 
-static bool save_png(const Image *image, const char *path, const uint16_t *codes, int channels, bool wide, StrBuf *error) {
-    const PngPicture picture = {.width = image->width, .height = image->height, .channels = channels, .wide = wide, .codes = codes,
-                                .attributes = image->attributes, .attribute_count = image->attribute_count};
-    StrBuf file = {0};
-    bool done = png_encode(&picture, &file) ? whole_file_replace(path, file.data, file.size, error) : fail(error, path, "not enough memory");
-    strbuf_free(&file);
-    return done;
-}
-
 static bool save_codes(const Image *image, const char *path, const char *format, bool with_alpha, bool wide,
                        StrBuf *error) {
     Selection selection = select_channels(image, with_alpha);
@@ -243,11 +233,6 @@ static bool save_codes(const Image *image, const char *path, const char *format,
     if (!codes) return fail(error, path, "not enough memory");
     for (int y = 0; y < image->height; y++)
         encode_row(image, &selection, y, wide ? 0xFFFF : 0xFF, codes + (size_t)y * row);
-    if (image_format_of(path) == IMAGE_FORMAT_PNG) {
-        bool saved = save_png(image, path, codes, channels, wide, error);
-        free(codes);
-        return saved;
-    }
     if (!wide) narrow(codes, count);
     OiioPicture picture = {.format = format, .width = image->width, .height = image->height, .channels = channels,
                            .names = names_of(&selection), .sample = wide ? IMAGE_SAMPLE_U16 : IMAGE_SAMPLE_U8, .data = codes,

@@ -39,7 +39,6 @@ typedef struct RigidTexel {
 } RigidTexel;
 
 struct RigidCopies {
-    const EmbreeShim *embree;
     RTCScene scene;
     Vec3 origin;         /* from which places count: the eye, around which they must be finest */
     Box3 bounds;
@@ -154,7 +153,7 @@ bool skin_is_rigid(const CompiledSkin *skin) {
 
 typedef struct Building {
     CompiledScene *compiled;
-    const EmbreeDevice *device;
+    RTCDevice device;
     RigidCopies *out;
     struct {
         RigidCopy *items;
@@ -206,27 +205,26 @@ static void leave_cut_off(const struct RTCFilterFunctionNArguments *args) {
 }
 
 static RigidTexel *texel_of(Building *b, const BeamTexel *beam) {
-    const EmbreeShim *embree = b->out->embree;
     for (RigidTexel *t = b->out->texels; t; t = t->next)
         if (t->beam == beam) return t;
     RigidTexel *texel = arena_new(b->compiled->arena, RigidTexel);
     uint32_t *facets = arena_new_array(b->compiled->arena, uint32_t, beam->triangle_count);
     size_t vertices = 0;
     for (size_t c = 0; c < beam->cluster_count; c++) vertices += (size_t)beam->clusters[c].vertex_count;
-    *texel = (RigidTexel){beam, embree->NewScene(b->device->handle), facets, b->out, b->out->texels};
+    *texel = (RigidTexel){beam, rtcNewScene(b->device), facets, b->out, b->out->texels};
     b->out->texels = texel;
-    RTCGeometry geometry = embree->NewGeometry(b->device->handle, RTC_GEOMETRY_TYPE_TRIANGLE);
-    float *v = embree->SetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices);
-    unsigned *t = embree->SetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), beam->triangle_count);
+    RTCGeometry geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices);
+    unsigned *t = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), beam->triangle_count);
     if (v && t) fill_texel(beam, v, t, facets);
-    embree->SetGeometryUserData(geometry, texel);
-    embree->SetGeometryIntersectFilterFunction(geometry, leave_cut_off);
-    embree->SetGeometryOccludedFilterFunction(geometry, leave_cut_off);
-    embree->SetSceneFlags(texel->scene, RTC_SCENE_FLAG_ROBUST);
-    embree->CommitGeometry(geometry);
-    embree->AttachGeometry(texel->scene, geometry);
-    embree->ReleaseGeometry(geometry);
-    embree->CommitScene(texel->scene);
+    rtcSetGeometryUserData(geometry, texel);
+    rtcSetGeometryIntersectFilterFunction(geometry, leave_cut_off);
+    rtcSetGeometryOccludedFilterFunction(geometry, leave_cut_off);
+    rtcSetSceneFlags(texel->scene, RTC_SCENE_FLAG_ROBUST);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(texel->scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(texel->scene);
     return texel;
 }
 
@@ -261,12 +259,12 @@ static void add_copy(Building *b, const RigidCopy *r) {
     put_column(columns + 3, vec3_scale(high, r->w_y));
     put_column(columns + 6, vec3_madd(vec3_scale(foot[1], r->a_z), foot[2], r->b_z));
     put_column(columns + 9, vec3_sub(from, b->out->origin));
-    RTCGeometry geometry = b->out->embree->NewGeometry(b->device->handle, RTC_GEOMETRY_TYPE_INSTANCE);
-    b->out->embree->SetGeometryInstancedScene(geometry, texel_of(b, r->copy.texel->beam)->scene);
-    b->out->embree->SetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
-    b->out->embree->CommitGeometry(geometry);
-    b->out->embree->AttachGeometryByID(b->out->scene, geometry, (unsigned)b->copies.count);
-    b->out->embree->ReleaseGeometry(geometry);
+    RTCGeometry geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, texel_of(b, r->copy.texel->beam)->scene);
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(b->out->scene, geometry, (unsigned)b->copies.count);
+    rtcReleaseGeometry(geometry);
     *list_push(b->compiled->arena, &b->copies) = *r;
 }
 
@@ -316,23 +314,22 @@ RigidCopies *rigid_copies_build(CompiledScene *compiled) {
         tiles += tiles_of(skin);
         exact_to = fmax(exact_to, skin->exact_to);
     }
-    const EmbreeDevice *device = tiles ? hierarchy_device(compiled->hierarchy) : NULL;
-    bool too_many = !device || tiles > MOST_RIGID_COPIES;
+    bool too_many = tiles > MOST_RIGID_COPIES;
     for (size_t i = 0; i < compiled->skin_count; i++) {
         CompiledSkin *skin = &compiled->skins[i];
         skin->rigid &= !too_many;
         if (skin->rigid) skin->exact_to = exact_to; /* a ray ends at one distance */
     }
     if (!tiles || too_many) return NULL;
-    const EmbreeShim *embree = device->shim;
+    RTCDevice device = hierarchy_device(compiled->hierarchy);
     RigidCopies *out = arena_new(compiled->arena, RigidCopies);
-    *out = (RigidCopies){.embree = embree, .scene = embree->NewScene(device->handle), .origin = compiled->view.camera.location, .bounds = box3_empty(),
-                         .wide = embree->GetDeviceProperty(device->handle, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0};
+    *out = (RigidCopies){.scene = rtcNewScene(device), .origin = compiled->view.camera.location, .bounds = box3_empty(),
+                         .wide = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0};
     Building b = {.compiled = compiled, .device = device, .out = out};
-    embree->SetSceneFlags(out->scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(out->scene, RTC_SCENE_FLAG_ROBUST);
     for (size_t i = 0; i < compiled->skin_count; i++)
         if (compiled->skins[i].rigid) add_skin(&b, out->skin = &compiled->skins[i]);
-    embree->CommitScene(out->scene);
+    rtcCommitScene(out->scene);
     out->items = b.copies.items;
     out->count = b.copies.count;
     return out;
@@ -340,8 +337,8 @@ RigidCopies *rigid_copies_build(CompiledScene *compiled) {
 
 void rigid_copies_destroy(RigidCopies *copies) {
     if (!copies) return;
-    copies->embree->ReleaseScene(copies->scene);
-    for (RigidTexel *t = copies->texels; t; t = t->next) copies->embree->ReleaseScene(t->scene);
+    rtcReleaseScene(copies->scene);
+    for (RigidTexel *t = copies->texels; t; t = t->next) rtcReleaseScene(t->scene);
 }
 
 bool rigid_meets(const RigidCopies *copies, const Beam *beam) { return beam_meets_box(beam, &copies->bounds); }
@@ -389,12 +386,12 @@ static void intersect_bundle(const RigidCopies *copies, Bundle *bundle) {
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     if (copies->wide) {
-        copies->embree->Intersect8(bundle->valid, copies->scene, &context, &bundle->rays);
+        rtcIntersect8(bundle->valid, copies->scene, &context, &bundle->rays);
         return;
     }
     for (int i = 0; i < bundle->count; i++) {
         struct RTCRayHit one = {.ray = ray_of(bundle, i), .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .instID = {RTC_INVALID_GEOMETRY_ID}}};
-        copies->embree->Intersect1(copies->scene, &context, &one);
+        rtcIntersect1(copies->scene, &context, &one);
         bundle->rays.ray.tfar[i] = one.ray.tfar;
         bundle->rays.hit.geomID[i] = one.hit.geomID, bundle->rays.hit.primID[i] = one.hit.primID, bundle->rays.hit.instID[0][i] = one.hit.instID[0];
     }
@@ -405,12 +402,12 @@ static void occlude_bundle(const RigidCopies *copies, Bundle *bundle) {
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     if (copies->wide) {
-        copies->embree->Occluded8(bundle->valid, copies->scene, &context, &bundle->rays.ray);
+        rtcOccluded8(bundle->valid, copies->scene, &context, &bundle->rays.ray);
         return;
     }
     for (int i = 0; i < bundle->count; i++) {
         struct RTCRay one = ray_of(bundle, i);
-        copies->embree->Occluded1(copies->scene, &context, &one);
+        rtcOccluded1(copies->scene, &context, &one);
         bundle->rays.ray.tfar[i] = one.tfar;
     }
 }

@@ -3,9 +3,10 @@
 #define VTS_RENDER_CLUSTER_H
 
 #include "base/diag.h"
-#include "render/embree_shim.h"
 #include "render/look.h"
 #include "shape/body.h"
+
+#include <embree3/rtcore.h>
 
 typedef struct Cluster Cluster;
 
@@ -43,8 +44,7 @@ typedef struct ClusterTriangleList {
 } ClusterTriangleList;
 
 struct Cluster {
-    const EmbreeShim *embree; /* with the scene; NULL where there are few items */
-    RTCScene scene;
+    RTCScene scene; /* NULL where there are few items */
     Vec3 origin;   /* Embree's floats count from here */
     Box3 bounds;   /* of what Embree knows */
     Box3 box;      /* of everything, infinite where something is endless */

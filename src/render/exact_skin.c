@@ -1,10 +1,10 @@
 #include "render/exact_skin.h"
 
 #include "render/embree_ray.h"
-#include "render/embree_shim.h"
 #include "render/skin_cross.h"
 #include "render/skin_fold.h"
 
+#include <embree3/rtcore.h>
 #include <stdlib.h>
 
 /* A cell as the hierarchy knows it. */
@@ -18,7 +18,6 @@ typedef struct ExactCell {
 } ExactCell;
 
 struct ExactSkins {
-    const EmbreeShim *embree;
     RTCScene scene;
     ExactCell *cells;
     size_t cell_count;
@@ -422,31 +421,31 @@ static bool collect_cells(ExactSkins *exact, const CompiledSkin *skins, size_t c
     return true;
 }
 
-ExactSkins *exact_skins_build(const CompiledSkin *skins, size_t count, const EmbreeDevice *device) {
-    ExactSkins *exact = device ? calloc(1, sizeof *exact) : NULL;
+ExactSkins *exact_skins_build(const CompiledSkin *skins, size_t count, void *embree_device) {
+    ExactSkins *exact = calloc(1, sizeof *exact);
     if (!exact || !collect_cells(exact, skins, count)) {
         free(exact);
         return NULL;
     }
-    const EmbreeShim *embree = exact->embree = device->shim;
-    RTCGeometry geometry = embree->NewGeometry(device->handle, RTC_GEOMETRY_TYPE_USER);
-    embree->SetGeometryUserPrimitiveCount(geometry, (unsigned)exact->cell_count);
-    embree->SetGeometryUserData(geometry, exact);
-    embree->SetGeometryBoundsFunction(geometry, bound_exactly, NULL);
-    embree->SetGeometryIntersectFunction(geometry, intersect_exactly);
-    embree->SetGeometryOccludedFunction(geometry, occlude_exactly);
-    embree->CommitGeometry(geometry);
-    exact->scene = embree->NewScene(device->handle);
-    embree->SetSceneFlags(exact->scene, RTC_SCENE_FLAG_ROBUST);
-    embree->AttachGeometry(exact->scene, geometry);
-    embree->ReleaseGeometry(geometry);
-    embree->CommitScene(exact->scene);
+    RTCDevice device = embree_device;
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)exact->cell_count);
+    rtcSetGeometryUserData(geometry, exact);
+    rtcSetGeometryBoundsFunction(geometry, bound_exactly, NULL);
+    rtcSetGeometryIntersectFunction(geometry, intersect_exactly);
+    rtcSetGeometryOccludedFunction(geometry, occlude_exactly);
+    rtcCommitGeometry(geometry);
+    exact->scene = rtcNewScene(device);
+    rtcSetSceneFlags(exact->scene, RTC_SCENE_FLAG_ROBUST);
+    rtcAttachGeometry(exact->scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(exact->scene);
     return exact;
 }
 
 void exact_skins_destroy(ExactSkins *exact) {
     if (!exact) return;
-    exact->embree->ReleaseScene(exact->scene);
+    rtcReleaseScene(exact->scene);
     free(exact->cells);
     free(exact);
 }
@@ -497,7 +496,7 @@ bool exact_skins_intersect(const ExactSkins *exact, const Ray *ray, double t_min
     Walk w;
     struct RTCRayHit rayhit = {.hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
     if (!begin_walk(&w, exact, ray, t_min, t_max, false, counters, &rayhit.ray)) return false;
-    exact->embree->Intersect1(exact->scene, &w.context, &rayhit);
+    rtcIntersect1(exact->scene, &w.context, &rayhit);
     if (!w.found) return false;
     *hit = describe(&w);
     return true;
@@ -507,6 +506,6 @@ bool exact_skins_occluded(const ExactSkins *exact, const Ray *ray, double t_min,
     Walk w;
     struct RTCRay shadow;
     if (!begin_walk(&w, exact, ray, t_min, t_max, true, counters, &shadow)) return false;
-    exact->embree->Occluded1(exact->scene, &w.context, &shadow);
+    rtcOccluded1(exact->scene, &w.context, &shadow);
     return w.found;
 }

@@ -21,9 +21,8 @@ typedef struct SkinHit {
     Vec3 place_normal; /* the normal there, unit or zero */
 } SkinHit;
 
-struct EmbreeDevice;
 /* The cells of all skins, whose texels were compiled as exact, under one hierarchy. The skins must stay. NULL when memory is out. */
-ExactSkins *exact_skins_build(const CompiledSkin *skins, size_t count, const struct EmbreeDevice *device);
+ExactSkins *exact_skins_build(const CompiledSkin *skins, size_t count, void *embree_device);
 /* Also of NULL. */
 void exact_skins_destroy(ExactSkins *exact);
 

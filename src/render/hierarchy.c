@@ -1,13 +1,12 @@
 #include "render/hierarchy.h"
 
-#include "base/module.h"
 #include "render/embree_ray.h"
 #include "render/hit.h"
 #include "shape/box_tree.h"
 #include "shape/intersect.h"
 
 struct Hierarchy {
-    EmbreeDevice device; /* once it is needed */
+    RTCDevice device;
     ClusterSet set;
     const Cluster *all;
     bool clear; /* something lets light through */
@@ -172,22 +171,20 @@ static void occlude_item(const struct RTCOccludedFunctionNArguments *args) {
     if (meet_item(query, &cluster->items.items[args->primID])) ((struct RTCRay *)(void *)args->ray)->tfar = -INFINITY;
 }
 
-static void attach(RTCGeometry geometry, const Cluster *cluster, unsigned id) {
-    const EmbreeShim *embree = cluster->embree;
-    embree->SetGeometryUserData(geometry, (void *)(uintptr_t)cluster);
-    embree->CommitGeometry(geometry);
-    embree->AttachGeometryByID(cluster->scene, geometry, id);
-    embree->ReleaseGeometry(geometry);
+static void attach(RTCScene scene, RTCGeometry geometry, const Cluster *cluster, unsigned id) {
+    rtcSetGeometryUserData(geometry, (void *)(uintptr_t)cluster);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, id);
+    rtcReleaseGeometry(geometry);
 }
 
-static void attach_solids(const EmbreeDevice *device, const Cluster *cluster) {
-    const EmbreeShim *embree = device->shim;
-    RTCGeometry geometry = embree->NewGeometry(device->handle, RTC_GEOMETRY_TYPE_USER);
-    embree->SetGeometryUserPrimitiveCount(geometry, (unsigned)cluster->loose);
-    embree->SetGeometryBoundsFunction(geometry, bound_item, NULL);
-    embree->SetGeometryIntersectFunction(geometry, intersect_item);
-    embree->SetGeometryOccludedFunction(geometry, occlude_item);
-    attach(geometry, cluster, SOLIDS);
+static void attach_solids(RTCDevice device, const Cluster *cluster) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)cluster->loose);
+    rtcSetGeometryBoundsFunction(geometry, bound_item, NULL);
+    rtcSetGeometryIntersectFunction(geometry, intersect_item);
+    rtcSetGeometryOccludedFunction(geometry, occlude_item);
+    attach(cluster->scene, geometry, cluster, SOLIDS);
 }
 
 static void put_vertex(const Cluster *cluster, float *out, Vec3 p) {
@@ -198,17 +195,17 @@ static void put_vertex(const Cluster *cluster, float *out, Vec3 p) {
 /* The mesh's own triangles serve Embree. */
 static bool share_mesh(const Cluster *cluster, RTCGeometry geometry) {
     const MeshData *mesh = cluster->mesh;
-    float *v = cluster->embree->SetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh->vertex_count);
+    float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh->vertex_count);
     if (!v) return false;
     for (size_t i = 0; i < mesh->vertex_count; i++) put_vertex(cluster, v + 3 * i, mesh->vertices[i]);
-    cluster->embree->SetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh->triangles, 0, sizeof *mesh->triangles, mesh->triangle_count);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh->triangles, 0, sizeof *mesh->triangles, mesh->triangle_count);
     return true;
 }
 
 static bool fill_single(const Cluster *cluster, RTCGeometry geometry) {
     const size_t count = cluster->triangles.count;
-    float *vertices = cluster->embree->SetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * count);
-    unsigned *indices = cluster->embree->SetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), count);
+    float *vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * count);
+    unsigned *indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), count);
     if (!vertices || !indices) return false;
     for (size_t i = 0; i < cluster->triangles.count; i++) {
         const ClusterTriangle *t = &cluster->triangles.items[i];
@@ -223,33 +220,30 @@ static bool fill_single(const Cluster *cluster, RTCGeometry geometry) {
     return true;
 }
 
-static bool attach_triangles(const EmbreeDevice *device, const Cluster *cluster) {
-    const EmbreeShim *embree = device->shim;
-    RTCGeometry geometry = embree->NewGeometry(device->handle, RTC_GEOMETRY_TYPE_TRIANGLE);
+static bool attach_triangles(RTCDevice device, const Cluster *cluster) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (!(cluster->mesh ? share_mesh : fill_single)(cluster, geometry)) {
-        embree->ReleaseGeometry(geometry);
+        rtcReleaseGeometry(geometry);
         return false;
     }
-    embree->SetGeometryIntersectFilterFunction(geometry, filter_triangle);
-    embree->SetGeometryOccludedFilterFunction(geometry, filter_triangle);
-    attach(geometry, cluster, TRIANGLES);
+    rtcSetGeometryIntersectFilterFunction(geometry, filter_triangle);
+    rtcSetGeometryOccludedFilterFunction(geometry, filter_triangle);
+    attach(cluster->scene, geometry, cluster, TRIANGLES);
     return true;
 }
 
 /* Of more triangles than this Embree keeps the numbers of their vertices in place of copies. */
 enum { VAST = 2000000 };
 
-static bool commit(const EmbreeDevice *device, Cluster *cluster) {
-    const EmbreeShim *embree = device->shim;
+static bool commit(RTCDevice device, Cluster *cluster) {
     bool ok = true;
-    cluster->embree = embree;
-    cluster->scene = embree->NewScene(device->handle);
+    cluster->scene = rtcNewScene(device);
     const bool vast = cluster->mesh && cluster->mesh->triangle_count > VAST;
-    embree->SetSceneFlags(cluster->scene, vast ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT : RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(cluster->scene, vast ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT : RTC_SCENE_FLAG_ROBUST);
     if (cluster->loose) attach_solids(device, cluster);
     if (cluster->mesh ? cluster->mesh->triangle_count : cluster->triangles.count) ok = attach_triangles(device, cluster);
-    embree->CommitScene(cluster->scene);
-    return ok && embree->GetDeviceError(device->handle) == RTC_ERROR_NONE;
+    rtcCommitScene(cluster->scene);
+    return ok && rtcGetDeviceError(device) == RTC_ERROR_NONE;
 }
 
 /* ---- what the eye can see ---- */
@@ -295,32 +289,25 @@ Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags) {
     }
     find_pieces(h->all, arena, &h->pieces);
     /* From here on nothing is taken from the arena: if memory ran out, the device would be lost. */
-    for (size_t i = 0; i < h->set.clusters.count; i++) {
-        Cluster *cluster = h->set.clusters.items[i];
-        if (cluster->few) continue;
-        const EmbreeDevice *device = hierarchy_device(h);
-        if (device && commit(device, cluster)) continue;
-        diag_error(diags, (Span){0}, device ? "there is not enough memory for the objects" : "Embree cannot be started on this machine");
-        hierarchy_destroy(h);
+    h->device = rtcNewDevice("threads=1,set_affinity=0");
+    if (!h->device) {
+        diag_error(diags, (Span){0}, "Embree cannot be started on this machine");
         return NULL;
     }
+    for (size_t i = 0; i < h->set.clusters.count; i++)
+        if (!h->set.clusters.items[i]->few && !commit(h->device, h->set.clusters.items[i])) {
+            hierarchy_destroy(h);
+            diag_error(diags, (Span){0}, "there is not enough memory for the objects");
+            return NULL;
+        }
     return h;
 }
 
 void hierarchy_destroy(Hierarchy *h) {
-    if (!h || !h->device.handle) return;
+    if (!h) return;
     for (size_t i = 0; i < h->set.clusters.count; i++)
-        if (h->set.clusters.items[i]->scene) h->device.shim->ReleaseScene(h->set.clusters.items[i]->scene);
-    h->device.shim->ReleaseDevice(h->device.handle);
-}
-
-const EmbreeDevice *hierarchy_device(Hierarchy *h) {
-    EmbreeDevice *device = &h->device;
-    StrBuf why = {0};
-    if (!device->shim) device->shim = module_load("libvts_embree.so", "vts_embree_shim", EMBREE_SHIM_VERSION, &why);
-    strbuf_free(&why);
-    if (device->shim && !device->handle) device->handle = device->shim->NewDevice("threads=1,set_affinity=0");
-    return device->handle ? device : NULL;
+        if (h->set.clusters.items[i]->scene) rtcReleaseScene(h->set.clusters.items[i]->scene);
+    if (h->device) rtcReleaseDevice(h->device);
 }
 
 size_t hierarchy_object_count(const Hierarchy *h) { return h->set.part_count; }
@@ -339,6 +326,7 @@ double hierarchy_coarseness(const Hierarchy *h, Vec3 point) {
 bool hierarchy_is_plain(const Hierarchy *h) { return h->plain; }
 void hierarchy_work(const Hierarchy *h, SolidWork *sum) { shape_tracer_work(h->set.shapes, sum); }
 bool hierarchy_is_clear(const Hierarchy *h) { return h->clear; }
+void *hierarchy_device(const Hierarchy *h) { return h->device; }
 
 /* ---- rays ---- */
 
@@ -404,10 +392,10 @@ static bool cluster_meet(Query *query) {
     if ((met && query->any) || !to_embree(query, &rayhit.ray)) return met;
     rtcInitIntersectContext(&query->context);
     if (query->any) {
-        query->cluster->embree->Occluded1(query->cluster->scene, &query->context, &rayhit.ray);
+        rtcOccluded1(query->cluster->scene, &query->context, &rayhit.ray);
         return rayhit.ray.tfar < 0;
     }
-    query->cluster->embree->Intersect1(query->cluster->scene, &query->context, &rayhit);
+    rtcIntersect1(query->cluster->scene, &query->context, &rayhit);
     if (rayhit.hit.geomID == TRIANGLES) keep_triangle(query, &rayhit);
     return met || rayhit.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }

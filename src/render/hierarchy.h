@@ -3,7 +3,6 @@
 #define VTS_RENDER_HIERARCHY_H
 
 #include "base/diag.h"
-#include "render/embree_shim.h"
 #include "render/look.h"
 #include "render/vista.h"
 #include "scene/scene.h"
@@ -67,8 +66,7 @@ bool hierarchy_is_plain(const Hierarchy *hierarchy);
 void hierarchy_work(const Hierarchy *hierarchy, SolidWork *sum);
 /* What the eye can see, for vista_of(); `object` as SurfaceHit has it, plus 1. */
 const VistaPieces *hierarchy_pieces(const Hierarchy *hierarchy);
-/* Embree, which is started when it is first asked for: by one thread at a time. NULL when it cannot be. */
-const EmbreeDevice *hierarchy_device(Hierarchy *hierarchy);
+void *hierarchy_device(const Hierarchy *hierarchy);
 
 /* A box around everything that is drawn, empty if nothing is; false when there is something endless. */
 bool hierarchy_bounds(const Hierarchy *hierarchy, Box3 *box);

@@ -145,11 +145,10 @@ int skin_cross_edge(const CompiledSkin *skin, int edge, SkinPoint *point);
 /* The first t in [t_min, t_max] at which the ray is within the layer; unit direction. False when nowhere. */
 bool skin_enter(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, SkinPoint *point, double *t);
 
-struct EmbreeDevice;
 /* Embree's bounds of the cell args->primID of the CompiledSkin args->geometryUserPtr. */
 struct RTCBoundsFunctionArguments;
 void skin_bound_cell(const struct RTCBoundsFunctionArguments *args);
-CellTree *cell_tree_build(CompiledSkin *skin, const struct EmbreeDevice *device);
+CellTree *cell_tree_build(CompiledSkin *skin, void *embree_device);
 void cell_tree_destroy(CellTree *tree);
 
 /* ---- texture space: skin_place.c ---- */

@@ -528,7 +528,7 @@ void skin_ask_voxels(CompiledSkin *skin, const CompileOptions *options, const Co
 }
 
 bool skin_finish(CompiledSkin *skin, const CompileOptions *options, CompiledScene *compiled) {
-    const EmbreeDevice *device = hierarchy_device(compiled->hierarchy);
+    void *device = hierarchy_device(compiled->hierarchy);
     for (size_t i = 0; i < skin->texel_count; i++) {
         PlacedTexel *placed = &skin->texels[i];
         for (size_t k = 0; k < placed->family_size; k++) {
@@ -539,5 +539,5 @@ bool skin_finish(CompiledSkin *skin, const CompileOptions *options, CompiledScen
             placed->finest_extent = texel->extent;
         }
     }
-    return options->exact || (device && (skin->tree = cell_tree_build(skin, device)) != NULL);
+    return options->exact || (skin->tree = cell_tree_build(skin, device)) != NULL;
 }

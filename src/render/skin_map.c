@@ -2,9 +2,9 @@
 #include "render/skin.h"
 
 #include "render/embree_ray.h"
-#include "render/embree_shim.h"
 #include "render/skin_fold.h"
 
+#include <embree3/rtcore.h>
 #include <stdlib.h>
 
 enum { NEWTON_STEPS = 12, MOST_HOPS = 64 };
@@ -199,7 +199,6 @@ bool skin_cell_holds(const SkinCell *cell, Vec3 world, double tolerance, SkinPoi
 
 /* Embree's hierarchy over the cells, each a user primitive. */
 struct CellTree {
-    const EmbreeShim *embree;
     RTCScene scene;
 };
 
@@ -250,27 +249,26 @@ static void intersect_cell(const struct RTCIntersectFunctionNArguments *args) {
     rayhit->hit.primID = args->primID;
 }
 
-CellTree *cell_tree_build(CompiledSkin *skin, const EmbreeDevice *device) {
-    const EmbreeShim *embree = device->shim;
+CellTree *cell_tree_build(CompiledSkin *skin, void *embree_device) {
     CellTree *tree = calloc(1, sizeof *tree);
     if (!tree) return NULL;
-    tree->embree = embree;
-    RTCGeometry geometry = embree->NewGeometry(device->handle, RTC_GEOMETRY_TYPE_USER);
-    embree->SetGeometryUserPrimitiveCount(geometry, (unsigned)skin->cell_count);
-    embree->SetGeometryUserData(geometry, skin);
-    embree->SetGeometryBoundsFunction(geometry, skin_bound_cell, NULL);
-    embree->SetGeometryIntersectFunction(geometry, intersect_cell);
-    embree->CommitGeometry(geometry);
-    tree->scene = embree->NewScene(device->handle);
-    embree->AttachGeometry(tree->scene, geometry);
-    embree->ReleaseGeometry(geometry);
-    embree->CommitScene(tree->scene);
+    RTCDevice device = embree_device;
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)skin->cell_count);
+    rtcSetGeometryUserData(geometry, skin);
+    rtcSetGeometryBoundsFunction(geometry, skin_bound_cell, NULL);
+    rtcSetGeometryIntersectFunction(geometry, intersect_cell);
+    rtcCommitGeometry(geometry);
+    tree->scene = rtcNewScene(device);
+    rtcAttachGeometry(tree->scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(tree->scene);
     return tree;
 }
 
 void cell_tree_destroy(CellTree *tree) {
     if (!tree) return;
-    tree->embree->ReleaseScene(tree->scene);
+    rtcReleaseScene(tree->scene);
     free(tree);
 }
 
@@ -282,7 +280,7 @@ int skin_first_pieces(const CompiledSkin *skin, const Ray *ray, double t_min, do
                 .dir_x = (float)ray->direction.x, .dir_y = (float)ray->direction.y, .dir_z = (float)ray->direction.z,
                 .tnear = float_below(double_max(t_min, 0)), .tfar = float_above(t_max), .mask = 0xFFFFFFFFu},
         .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
-    if (embree_takes(&rayhit.ray)) skin->tree->embree->Intersect1(skin->tree->scene, &query.context, &rayhit);
+    if (embree_takes(&rayhit.ray)) rtcIntersect1(skin->tree->scene, &query.context, &rayhit);
     return query.count;
 }
 

@@ -91,6 +91,8 @@ typedef struct BuildContext {
     bool old_gamma;      /* #version is below 3.7: colours are what screens are sent unless assumed_gamma is given */
     GeoOrigin geo_origin; /* of global_settings, or of the first terrain */
     bool has_terrain;     /* a terrain was made: it decided whether the scene's earth is round */
+    Span geo_asked;       /* where the first place of the scene was asked for, which a flat earth would move */
+    bool is_geo_asked;
     int wave_count;      /* number_of_waves of global_settings; 0: not given */
     bool names_missing;  /* an include was not found: what it declares is missing, without a word */
     double time, cycle;  /* of the frame in seconds, and after how many a film begins again; 0: it does not */

@@ -184,7 +184,10 @@ static void check_place(Reader *reader, const ImageDraft *draft, const Word *wor
     if (!draft->image.georeferenced || reader->failed) return;
     if (draft->image.map_type != 0) reader_error(reader, word->span, "'georeferenced' and 'map_type' both say how the picture lies");
     if (draft->made) reader_error(reader, word->span, "'georeferenced' is for pictures from files, which say where they lie");
-    if (reader->context->geo_origin.set) return;
+    if (reader->context->geo_origin.set) {
+        geo_note_asked(reader->context, word->span);
+        return;
+    }
     Diagnostic *d = diag_error(reader->context->diags, word->span, "'georeferenced' needs the scene's place on the globe, which is not known yet");
     diag_hint(reader->context->diags, d, "write before it: global_settings { geo_origin <latitude, longitude, height> }, or a terrain");
     reader->failed = true;

@@ -151,6 +151,8 @@ void settings_read_origin(Reader *reader, const Word *word, void *target);
 /* Gives the scene its origin on the globe. False after a report, where it has another already; what a terrain without an `origin` of its
  * own does is to ask context->geo_origin.set first. */
 bool geo_origin_set(BuildContext *context, const GeoOrigin *origin);
+/* Somebody was told where a place of the globe is in the scene: whether the earth is round is settled. */
+void geo_note_asked(BuildContext *context, Span span);
 bool settings_read(BuildContext *context, const EvalBlock *block,
                    GlobalSettings *settings); /* build_settings.c */
 BlockBuilder build_texel;                     /* build_texel.c */

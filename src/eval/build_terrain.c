@@ -13,7 +13,7 @@ typedef struct TerrainDraft {
     Span *path_spans;
     size_t count;
     Span maps_span;
-    bool curvature;
+    bool curvature, curvature_given;
 } TerrainDraft;
 
 /* ---- words ---- */
@@ -125,6 +125,7 @@ static void read_geoid(Reader *reader, const Word *word, void *target) {
 }
 
 #define FIELD(name) offsetof(TerrainDraft, name)
+enum { CURVATURE = 4 }; /* of the rules */
 static const WordRule rules[] = {
     {"heightmap", WORD_CUSTOM, 0, read_heightmap, true},
     {"georeference", WORD_CUSTOM, 0, read_georeference, true},
@@ -138,10 +139,24 @@ static const WordRule rules[] = {
 
 /* ---- building ---- */
 
-/* The scene's origin stands, where it has one; else the terrain's own. The scene is round or flat as its first terrain is. */
+/* The scene is round or flat as its first terrain is, or what was asked before it; later ones cannot change that. */
+static void choose_curvature(BuildContext *context, TerrainDraft *draft) {
+    GeoOrigin *origin = &context->geo_origin;
+    const bool flat = draft->curvature_given ? !draft->curvature : context->has_terrain && origin->flat;
+    if (origin->set && flat != origin->flat && (context->has_terrain || context->is_geo_asked)) {
+        Diagnostic *d = diag_error(context->diags, draft->common.object.span, "this terrain is %s, but the scene's earth is %s already", flat ? "flat" : "round", flat ? "round" : "flat");
+        if (context->is_geo_asked) diag_note(context->diags, d, context->geo_asked, "it was asked for here");
+        diag_hint(context->diags, d, "'curvature' of the scene's first terrain tells; write that terrain before what asks for places");
+    } else if (origin->set) {
+        origin->flat = flat;
+    }
+    draft->curvature = !flat;
+}
+
+/* The scene's origin stands, where it has one; else the terrain's own. */
 static void choose_origin(BuildContext *context, TerrainDraft *draft) {
     GeoOrigin *origin = &draft->request.origin;
-    if (context->geo_origin.set && !context->has_terrain) context->geo_origin.flat = !draft->curvature;
+    choose_curvature(context, draft);
     if (context->geo_origin.set) *origin = context->geo_origin;
     origin->flat = !draft->curvature;
     if (!origin->set) origin->span = draft->common.object.span;
@@ -183,5 +198,6 @@ bool build_terrain(BuildContext *context, const EvalBlock *block, Value *out) {
         reader_error(&reader, block->word_span, "'terrain' needs a heightmap");
         return false;
     }
+    draft.curvature_given = reader.met >> CURVATURE & 1;
     return load(&reader, &draft) && object_make(&reader, &draft.common, out);
 }

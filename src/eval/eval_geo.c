@@ -36,6 +36,12 @@ bool geo_origin_set(BuildContext *context, const GeoOrigin *origin) {
     return true;
 }
 
+void geo_note_asked(BuildContext *context, Span span) {
+    if (context->is_geo_asked) return;
+    context->is_geo_asked = true;
+    context->geo_asked = span;
+}
+
 void settings_read_origin(Reader *reader, const Word *word, void *target) {
     GeoOrigin origin = {.set = true, .span = word->whole};
     BuildContext *context = reader->context;
@@ -74,6 +80,7 @@ static Value ask(Eval *ev, const Node *call, const EvalGeoRequest *request) {
     const EvalGeometry *g = ev->options->geometry;
     Vec3 answer = {0};
     StrBuf error = {0};
+    if (request->question != EVAL_GEODESIC && request->question != EVAL_UTM) geo_note_asked(&ev->build, call->span);
     bool ok = g && g->geo && g->geo(g->context, &ev->build.geo_origin, request, &answer, &error);
     if (!ok) diag_error(ev->diags, call->span, "%s(): %s", call->as.apply.base->as.name->text, error.size ? error.data : "not available here");
     strbuf_free(&error);

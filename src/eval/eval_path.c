@@ -199,10 +199,21 @@ bool picture_file_load(const BuildContext *context, ImageMap *image, Span span) 
     return false;
 }
 
+/* Beside the scene and where includes are, with or without its ending; names of PROJ's grids are left as they are. */
+static bool find_geoid(const BuildContext *context, const char **name, Span span) {
+    if (!context->eval) return true;
+    const char *path = path_find(context->eval, *name, span, NULL, NULL);
+    if (!path) path = path_find(context->eval, arena_printf(context->arena, "%s.gtx", *name), span, NULL, NULL);
+    if (path) *name = arena_printf(context->arena, "%s%s", strchr(path, '/') ? "" : "./", path);
+    else if (strchr(*name, '/')) return data_file_find(context, "geoid", *name, span) != NULL;
+    return true;
+}
+
 bool terrain_load(const BuildContext *context, EvalTerrainRequest *request, const Span *spans, Span span, Terrain *out) {
     const EvalGeometry *geometry = geometry_of(context);
     for (size_t i = 0; i < request->count; i++)
         if (!(request->paths[i] = data_file_find(context, "heightmap", request->paths[i], spans[i]))) return false;
+    if (request->geoid && !find_geoid(context, &request->geoid, span)) return false;
     if (geometry && geometry->terrain) return geometry->terrain(geometry->context, context->arena, request, context->diags, span, out);
     diag_error(context->diags, span, "maps are not read here");
     return false;

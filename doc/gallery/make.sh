@@ -27,6 +27,7 @@ size_of() {
     species) echo 512x296 ;;
     tree) echo 400x320 ;;
     still_life) echo 400x300 ;;
+    kinds_values) echo 560x490 ;;
     contents | deformed | forest | kinds | jitter | larches | superimposed) echo 640x360 ;;
     pinwheels) echo 560x350 ;;
     cloud | glade | orchard | planet) echo 480x300 ;;
@@ -47,9 +48,10 @@ clock_of() {
   esac
 }
 
-# Of some, six moments on a sheet.
+# Of some, six moments on a sheet; or its cells.
 frames_of() {
   case $1 in
+    trees_rows) seq -s ' ' 48 ;;
     flag) echo '16 32 48 64 80 96' ;;
     reeds) echo '14 22 28 34 42 56' ;;
     aspens) echo '1 3 5 7 9 11' ;;
@@ -59,7 +61,15 @@ frames_of() {
 sheet_size_of() {
   case $1 in
     flag) echo 256x192 ;;
+    trees_rows) echo 96x96 ;;
     *) echo 256x160 ;;
+  esac
+}
+
+arrangement_of() {
+  case $1 in
+    trees_rows) echo '-tile 6x -geometry 84x84+1+1 -quality 68' ;;
+    *) echo '-tile 3x -geometry +2+2 -quality 80' ;;
   esac
 }
 
@@ -68,7 +78,7 @@ draw_sheet() { # SCENE PICTURE FRAMES…
   shift 2
   folder=$(mktemp -d)
   for frame; do "$program" render "$scene" --size "$(sheet_size_of "$(basename "$scene" .vts)")" -f "$frame" --output "$folder/$(printf %03d "$frame")#.png" --progress none; done
-  montage "$folder"/*.png -tile 3x -geometry +2+2 -quality 80 "$picture"
+  montage "$folder"/*.png $(arrangement_of "$(basename "$scene" .vts)") "$picture"
   rm -r "$folder"
 }
 

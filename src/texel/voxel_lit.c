@@ -99,7 +99,7 @@ typedef struct PowerWork {
     VoxelLayer *layer;
     const LitTruth *truth;
     Vec3f extent, d[PAIR_NODES];
-    float beside[TRIM_LEVELS][PAIR_NODES]; /* the share that is lit, the light beside the eye, by its direction */
+    float matter_beside[TRIM_LEVELS][PAIR_NODES], ground_beside[TRIM_LEVELS][PAIR_NODES]; /* the share that is lit, the light beside the eye, by its direction */
 } PowerWork;
 
 static uint8_t power_code(float truth, float share) {
@@ -108,10 +108,9 @@ static uint8_t power_code(float truth, float share) {
 }
 
 /* Gaps between few pieces coincide, or exclude each other, in some directions and not in those between. */
-static uint8_t less_certain(uint8_t code, size_t triangles) {
-    float certain = (float)triangles / ((float)triangles + SOME_TRIANGLES);
-    return (uint8_t)lrintf(POWER_ONE + certain * ((float)code - POWER_ONE));
-}
+static float certainty(size_t triangles) { return (float)triangles / ((float)triangles + SOME_TRIANGLES); }
+
+static uint8_t less_certain(uint8_t code, float certain) { return (uint8_t)lrintf(POWER_ONE + certain * ((float)code - POWER_ONE)); }
 
 /* On a lattice, each moved by lot. */
 static Vec3f place_of(const PowerWork *work, int i, int side, uint64_t lot) {
@@ -120,10 +119,12 @@ static Vec3f place_of(const PowerWork *work, int i, int side, uint64_t lot) {
                  work->extent.z * ((float)(i / side) + random_unitf(random_mix(bits))) / (float)side);
 }
 
+static Vec3f direction_beside(Vec3f d) { return vec3f_normalize(vec3f(d.x / d.y + SPOT_OFFSET, 1, d.z / d.y)); }
+
 static void find_matter_powers(PowerWork *work, int from_top, int eye) {
     VoxelLayer *layer = work->layer;
     float lod = (float)(layer->levels - 1 - from_top), sum[PAIR_NODES + 1] = {0}, seen = 0;
-    Vec3f d = work->d[eye], beside = vec3f_normalize(vec3f(d.x / d.y + SPOT_OFFSET, 1, d.z / d.y));
+    Vec3f d = work->d[eye], beside = direction_beside(d);
     LitWay to_eye = way_along(layer, work->extent, float_max(0, lod - FINER_TO_EYE), work->d[eye]);
     for (int ray = 0; ray < EYE_RAYS; ray++) {
         Vec3f at = {0, 0, 0};
@@ -137,15 +138,21 @@ static void find_matter_powers(PowerWork *work, int from_top, int eye) {
     }
     for (int light = 0; light < PAIR_NODES && seen > 0; light++)
         layer->pairs.matter[from_top][eye * PAIR_NODES + light] = power_code(layer->pairs.lit[eye * PAIR_NODES + light], sum[light] / seen);
-    work->beside[from_top][eye] = seen > 0 ? sum[PAIR_NODES] / seen : 1;
+    work->matter_beside[from_top][eye] = seen > 0 ? sum[PAIR_NODES] / seen : 1;
 }
 
-static void find_ground_powers(const PowerWork *work, int from_top) {
+static void find_ground_powers(PowerWork *work, int from_top) {
     VoxelLayer *layer = work->layer;
     float lod = (float)(layer->levels - 1 - from_top), through[PAIR_NODES][GROUND_PLACES];
     for (int node = 0; node < PAIR_NODES; node++) {
-        LitWay way = way_along(layer, work->extent, lod, work->d[node]);
-        for (int i = 0; i < GROUND_PLACES; i++) through[node][i] = through_from_ground(&way, place_of(work, i, 8, (uint64_t)from_top));
+        LitWay way = way_along(layer, work->extent, lod, work->d[node]), near = way_along(layer, work->extent, lod, direction_beside(work->d[node]));
+        float both = 0, seen = 0;
+        for (int i = 0; i < GROUND_PLACES; i++) {
+            Vec3f foot = place_of(work, i, 8, (uint64_t)from_top);
+            seen += through[node][i] = through_from_ground(&way, foot);
+            both += through[node][i] * through_from_ground(&near, foot);
+        }
+        work->ground_beside[from_top][node] = seen > 0 ? both / seen : 1;
     }
     for (int eye = 0; eye < PAIR_NODES; eye++)
         for (int light = 0; light < PAIR_NODES; light++) {
@@ -153,7 +160,7 @@ static void find_ground_powers(const PowerWork *work, int from_top) {
             for (int i = 0; i < GROUND_PLACES; i++) both += through[eye][i] * through[light][i], seen += through[eye][i];
             float spot = float_min(0.9f, voxel_layer_spot(layer, work->d[eye], work->d[light])); /* is added when the power is used */
             if (truth >= 0) truth = float_max(0, (truth - spot) / (1 - spot));
-            if (seen > 0 && truth >= 0) layer->pairs.ground[from_top][eye * PAIR_NODES + light] = less_certain(power_code(truth, both / seen), work->truth->triangles);
+            if (seen > 0 && truth >= 0) layer->pairs.ground[from_top][eye * PAIR_NODES + light] = less_certain(power_code(truth, both / seen), certainty(work->truth->triangles));
         }
 }
 
@@ -165,10 +172,13 @@ static void find_powers(void *context, size_t number, int worker) {
 }
 
 /* Where eye and light are nearly one, what holds a little beside that is taken for all directions. */
-static void lay_peak(uint8_t *codes, float lit, const float beside[PAIR_NODES]) {
+static void lay_peak(uint8_t *codes, float lit, const float beside[PAIR_NODES], float certain) {
     float mean = 0;
     for (int node = 0; node < PAIR_NODES; node++) mean += beside[node] / PAIR_NODES;
-    for (int node = 0; node < PAIR_NODES; node++) codes[node * PAIR_NODES + node] = power_code(lit, mean);
+    for (int node = 0; node < PAIR_NODES; node++) {
+        uint8_t *code = &codes[node * PAIR_NODES + node];
+        *code = (uint8_t)lrintf(certain * (float)power_code(lit, mean) + (1 - certain) * (float)*code);
+    }
 }
 
 /* Where eye and light look along one line the share that is lit has a peak far narrower than the way to the next node, which the spot tells of: the
@@ -196,7 +206,11 @@ bool voxel_layer_find_powers(VoxelLayer *layer, const LitTruth *truth, Vec3f ext
     voxel_layer_forget_powers(layer);
     for (int i = 0; i < PAIR_NODES; i++) work.d[i] = vec3f_normalize(vec3f(truth->views[i].slope_x, 1, truth->views[i].slope_z));
     bool done = pool_run(pool, (size_t)(levels * (PAIR_NODES + 1)), find_powers, &work);
-    for (int i = 0; i < levels; i++) lay_peak(layer->pairs.matter[i], truth->lit_beside, work.beside[i]), flatten_peak(layer->pairs.ground[i]);
+    for (int i = 0; i < levels; i++) {
+        lay_peak(layer->pairs.matter[i], truth->lit_beside, work.matter_beside[i], 1);
+        flatten_peak(layer->pairs.ground[i]);
+        if (truth->open_beside >= 0) lay_peak(layer->pairs.ground[i], truth->open_beside, work.ground_beside[i], certainty(truth->triangles));
+    }
     return done;
 }
 

@@ -13,6 +13,7 @@ typedef struct LitTruth {
     const PairView *views; /* PAIR_NODES, of which voxel_layer_pair() has made pairs.lit */
     int grid;
     float lit_beside;      /* pair_lit_beside() */
+    float open_beside;     /* pair_open_beside() */
     size_t triangles;
 } LitTruth;
 

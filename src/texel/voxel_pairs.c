@@ -108,6 +108,16 @@ float pair_lit_beside(const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid, 
     return sum / (2 * SPOT_GROUPS * (SPOT_VIEWS - 1));
 }
 
+float pair_open_beside(const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid) {
+    float sum = 0;
+    int count = 0;
+    for (int i = 0; i < SPOT_GROUPS * SPOT_VIEWS; i++) {
+        float open = i % SPOT_VIEWS ? pair_open(&views[i - i % SPOT_VIEWS], &views[i], grid) : -1;
+        if (open >= 0) sum += open, count++;
+    }
+    return count ? sum / (float)count : -1;
+}
+
 void voxel_layer_pair(VoxelLayer *layer, const PairView views[PAIR_NODES], int grid, const float size[2]) {
     for (int a = 0; a < PAIR_NODES; a++)
         for (int b = 0; b < PAIR_NODES; b++) layer->pairs.lit[a * PAIR_NODES + b] = lit_share(&views[a], &views[b], grid, size);

@@ -25,6 +25,8 @@ enum { SPOT_VIEWS = 3, SPOT_GROUPS = 4 };
 #define SPOT_OFFSET 0.15f
 /* The share that is lit of the matter seen in these, where the light is one of the others of the group; the mean. `size` as above. */
 float pair_lit_beside(const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid, const float size[2]);
+/* The same of the ground; below 0 where none is seen. */
+float pair_open_beside(const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid);
 void voxel_layer_find_spot(VoxelLayer *layer, const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid);
 /* As if nothing was known. */
 void voxel_layer_forget_pairs(VoxelLayer *layer);

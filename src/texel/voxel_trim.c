@@ -299,7 +299,7 @@ static void compare_views(const TrimWork *work, Pool *pool) {
     if (!seen) return;
     const float size[2] = {work->extent.x, work->extent.z};
     voxel_layer_pair(work->layer, work->pairs, VIEW_GRID, size);
-    const LitTruth truth = {work->pairs, VIEW_GRID, pair_lit_beside(work->spots, VIEW_GRID, size), work->mesh->triangle_count};
+    const LitTruth truth = {work->pairs, VIEW_GRID, pair_lit_beside(work->spots, VIEW_GRID, size), pair_open_beside(work->spots, VIEW_GRID), work->mesh->triangle_count};
     voxel_layer_find_powers(work->layer, &truth, work->extent, work->levels, pool);
 }
 

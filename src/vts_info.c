@@ -1,8 +1,9 @@
-/* vts_info(): what is in a file of heights, voxels, densities or pixels. Each fact is told twice: as a line of text, or under its key as
+/* vts_info(): what is in a file of heights, voxels, densities, triangles or pixels. Each fact is told twice: as a line of text, or under its key as
  * JSON. */
 #include "vts_session.h"
 
 #include "image/oiio_module.h"
+#include "shape/mesh_file.h"
 #include "terrain/geoid.h"
 #include "terrain/map_survey.h"
 #include "texel/texel_file.h"
@@ -369,6 +370,65 @@ static VtsStatus info_raw(Info *info, const char *path, const Bytes *bytes) {
     return VTS_OK;
 }
 
+/* ---- meshes ---- */
+
+typedef struct MeshFacts {
+    Box3 bounds;
+    double area;
+    size_t vertices, triangles, normals, uvs, colors; /* the last three: parts that have them */
+} MeshFacts;
+
+static void add_part(MeshFacts *facts, const MeshFilePart *part) {
+    const MeshData *mesh = part->mesh;
+    facts->vertices += mesh->vertex_count;
+    facts->triangles += mesh->triangle_count;
+    facts->normals += mesh->normals != NULL;
+    facts->uvs += mesh->uvs != NULL;
+    facts->colors += part->colored;
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        const Vec3 *a = &mesh->vertices[mesh->triangles[i][0]], *b = &mesh->vertices[mesh->triangles[i][1]], *c = &mesh->vertices[mesh->triangles[i][2]];
+        facts->area += vec3_length(vec3_cross(vec3_sub(*b, *a), vec3_sub(*c, *a))) / 2;
+        facts->bounds.min = vec3_min(facts->bounds.min, vec3_min(*a, vec3_min(*b, *c)));
+        facts->bounds.max = vec3_max(facts->bounds.max, vec3_max(*a, vec3_max(*b, *c)));
+    }
+}
+
+static const char *which_parts(const Info *info, size_t some, size_t all) {
+    if (some == 0 || some == all) return some ? "yes" : "none";
+    return arena_printf(info->arena, "of %zu of %zu parts", some, all);
+}
+
+static void tell_mesh(Info *info, const char *path, const MeshFile *file) {
+    MeshFacts f = {.bounds = box3_empty()};
+    const char *dot = strrchr(path, '.');
+    for (size_t i = 0; i < file->part_count; i++) add_part(&f, &file->parts[i]);
+    Vec3 a = f.bounds.min, b = f.bounds.max;
+    begin(info, path, "mesh", dot ? dot + 1 : "");
+    say(info, "triangles", "%zu, of %zu vertices", f.triangles, f.vertices);
+    if (f.triangles) say(info, "bounds", "<%.6g, %.6g, %.6g>, <%.6g, %.6g, %.6g>", a.x, a.y, a.z, b.x, b.y, b.z);
+    say(info, "area", "%.6g", f.area);
+    say(info, "normals", "%s", which_parts(info, f.normals, file->part_count));
+    say(info, "uv", "%s", which_parts(info, f.uvs, file->part_count));
+    if (f.colors) say(info, "colors", "%zu", f.colors);
+    give_number(info, "triangles", (double)f.triangles);
+    give_number(info, "vertices", (double)f.vertices);
+    if (f.triangles) give_numbers(info, "bounds", (double[]){a.x, a.y, a.z, b.x, b.y, b.z}, 6);
+    give_number(info, "area", f.area);
+    give_number(info, "parts", (double)file->part_count);
+    give_number(info, "parts_with_normals", (double)f.normals);
+    give_number(info, "parts_with_uv", (double)f.uvs);
+    give_number(info, "colors", (double)f.colors);
+    end(info);
+}
+
+static VtsStatus info_mesh(Info *info, const char *path, StrBuf *error) {
+    MeshFile file;
+    const MeshFileOptions options = {.by_color = true};
+    if (!mesh_file_read(path, &options, info->arena, &file, error)) return VTS_ERROR_FILE;
+    tell_mesh(info, path, &file);
+    return VTS_OK;
+}
+
 /* ---- which ---- */
 
 static bool has_suffix(const char *path, const char *suffix) {
@@ -402,6 +462,9 @@ static VtsStatus info_of(Info *info, const char *path, const Bytes *bytes, Memor
         strbuf_adds(error, "it is a scene: 'vts check' and 'vts run --dump' tell of scenes");
         return VTS_ERROR_FILE;
     }
+    static const char *const meshes[] = {".obj", ".ply", ".gltf", ".glb", ".stl", ".off"};
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(meshes); i++)
+        if (has_suffix(path, meshes[i])) return info_mesh(info, path, error);
     if (has_suffix(path, ".hgt") || has_suffix(path, ".dem") || has_suffix(path, ".asc")) return info_map(info, path, error);
     return info_map_or_picture(info, path, error);
 }

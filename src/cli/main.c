@@ -30,7 +30,7 @@ static const Command COMMANDS[] = {
      "renders with nothing prefiltered, slowly: what renderings are compared with", COMMAND_REFERENCE, command_reference},
     {"chart", "vts chart", "SCENE --sweep KNOB=V,V,... [options]",
      "charts speed against accuracy: renders with several settings and measures each against the reference", COMMAND_CHART, command_chart},
-    {"info", "vts info", "FILE… [options]", "tells what is in maps, texels, volumes and pictures", COMMAND_INFO, command_info},
+    {"info", "vts info", "FILE… [options]", "tells what is in maps, texels, meshes, volumes and pictures", COMMAND_INFO, command_info},
     {"farm", "vts farm", "list|slurm SCENE [options]", "makes jobs for many machines of a film's frames or a picture's regions", COMMAND_FARM | COMMAND_RENDER,
      command_farm},
     {"stitch", "vts stitch", "PART… -o WHOLE [options]", "joins the parts of a picture that were drawn with --region", COMMAND_STITCH, command_stitch},

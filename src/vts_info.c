@@ -404,7 +404,7 @@ static void tell_mesh(Info *info, const char *path, const MeshFile *file) {
     for (size_t i = 0; i < file->part_count; i++) add_part(&f, &file->parts[i]);
     Vec3 a = f.bounds.min, b = f.bounds.max;
     begin(info, path, "mesh", dot ? dot + 1 : "");
-    say(info, "triangles", "%zu, of %zu vertices", f.triangles, f.vertices);
+    say(info, "triangles", "%zu; %zu vertices", f.triangles, f.vertices);
     if (f.triangles) say(info, "bounds", "<%.6g, %.6g, %.6g>, <%.6g, %.6g, %.6g>", a.x, a.y, a.z, b.x, b.y, b.z);
     say(info, "area", "%.6g", f.area);
     say(info, "normals", "%s", which_parts(info, f.normals, file->part_count));

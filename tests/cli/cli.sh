@@ -243,7 +243,7 @@ case_info() {
   printf 'v 0 0 0\nv 3 0 0\nv 0 4 -1\nv 6 0 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 2/2 4/2\n' >tri.obj
   run info tri.obj; want_status 0; want_in out 'tri.obj: mesh, obj'; want_in out '<0, 0, -1>, <3, 4, 0>'; want_in out 'uv          yes'
   run info --json tri.obj; want_status 0; "$json_check" <out || fail "no JSON: $(cat out)"
-  want_in out '"triangles":1,"vertices":3,'; want_in out '"area":6.18465843'; want_in out '"parts_with_normals":0'
+  want_in out '"triangles":1,"vertices":4,'; want_in out '"area":6.18465843'; want_in out '"parts_with_normals":0'
   echo 'ply no more' >cut.ply
   run info cut.ply; want_status 3; want_in err cut.ply
   # SRTM: big-endian, its place is its name; the same bytes under another name lie nowhere.

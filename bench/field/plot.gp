@@ -12,6 +12,7 @@ pick(scene, program) = sprintf("< awk -F, '$1 == \"%s\" && $2 == \"%s\"' %s", sc
 do for [scene in scenes] {
     set title scene
     plot pick(scene, "embree") using 4:5 with linespoints title "Embree", \
+         pick(scene, "povray") using 4:5 with linespoints title "POV-Ray", \
          for [p in "auto exact voxels"] pick(scene, "vts ".p) using 4:6 with linespoints title "vts, detail ".p
 }
 unset multiplot

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# A field of 22,400 blades of grass: speed and error of vts beside plain ray casting of triangles through Embree.
+# A field of 22,400 blades of grass: speed and error of vts beside plain ray casting of triangles through Embree, and beside POV-Ray where it is installed.
 #
 #   bench/field/run.sh [--quick] [--size WxH] [--scenes "lawn orchard"] [--runs N] [--vts PATH] [PEERS_DIR [OUT]]
 #
 # PEERS_DIR (or the variable VTS_PEERS) holds the peer: ref_field.c, which makes the scenes and renders them through Embree, and
-# to_vts.py, which writes them for vts. Scenes: lawn, 1400 rigid copies; near, mid and far, the same blades bent over a skin and seen
+# to_vts.py and to_pov.py, which write them for vts and POV-Ray. Scenes: lawn, 1400 rigid copies; near, mid and far, the same blades bent over a skin and seen
 # from three distances; orchard, 512 rigid trees; forest, more and larger ones (only if it is named). OUT (default: field-out) keeps what was built and the references, which are rendered once for each size;
 # remove it to begin anew. --quick: 384 × 288 and coarser references; otherwise 768 × 576, half an hour.
 #
@@ -96,6 +96,18 @@ point() {
   echo "$1,$2,$3,$5,$(error "$4" "$t-peer"),$(error "$4" "$t-vts")" | tee -a "$csv"
 }
 
+# Its usual settings of anti-aliasing; bent blades it has none of.
+pov_points() { # SCENE
+  local p=$out/pictures/$1-pov.exr used settings
+  command -v povray >/dev/null && [ -f "$peers/to_pov.py" ] && [ "${kind[$1]}" != lawn_skin ] || return 0
+  [ -f "$out/scenes/$1.pov" ] || python3 "$peers/to_pov.py" "$out/scenes/$1/${kind[$1]}" "$out/scenes/$1.pov"
+  for settings in "-A" "+A0.3 +R3" "+A0.05 +R3" "+AM2 +A0.05 +R3" "+A0.0 +R4"; do
+    # shellcheck disable=SC2086
+    used=$(seconds povray "+I$out/scenes/$1.pov" "+O$p" +FE "+W${size%x*}" "+H${size#*x}" "+WT$threads" -D $settings)
+    point "$1" povray "$settings" "$p" "$used"
+  done
+}
+
 echo "scene,program,setting,cpu_s,rmse_to_straight,rmse_to_bent" >"$csv"
 for scene in $scenes; do make_scene "$scene"; done
 for scene in $scenes; do
@@ -107,6 +119,7 @@ for scene in $scenes; do
     used=$(seconds peer $scene $n 1 "$out/pictures/$scene-peer-$n.pfm")
     point $scene embree "$n samples" "$out/pictures/$scene-peer-$n.pfm" "$used"
   done
+  pov_points $scene
   for detail in auto exact voxels; do
     for e in 0.03 0.01 0.0039 0.001; do
       p=$out/pictures/$scene-$detail-$e.pfm

@@ -6,8 +6,8 @@
 static const double BEAM_TOLERANCE_VOXELS = 0.2;
 /* As many triangles in a pixel's footprint cost as much as its voxels do. */
 static const double MOST_TRIANGLES_A_PIXEL = 128;
-/* The same where rays meet what is rigid, at the logarithm of that cost. */
-static const double MOST_MET_A_PIXEL = 4096;
+/* The same where rays meet what is rigid, at the logarithm of that cost: measured on a forest, whose voxels are wrong by more at any price. */
+static const double MOST_MET_A_PIXEL = 65536;
 /* The share of a skin's cells that may be left away because their texture coordinates lie on a line: beams go from them back to places. */
 static const double MOST_SINGULAR = 0.01;
 /* Geometry is drawn up to so many times the distance at which voxels are planned to begin: beam_pilot.c may put them off. */

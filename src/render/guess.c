@@ -2,8 +2,8 @@
 
 #include "base/random.h"
 
-/* Squares of this size are tried first. */
-enum { WIDEST = 8 };
+/* Squares of this size are tried first; of patterns, mirrors and glass, whose details may be fine, none but the narrowest. */
+enum { WIDEST = 4, NARROW = 2 };
 /* What is seen between corners is as smooth a part of the same surface. */
 static const float SAME_NORMAL = 0.98f;
 /* One guess of so many is tried. */
@@ -173,6 +173,14 @@ static void find_all(Tile *t, const Square *s) {
         for (int x = s->x0; x <= s->x1; x++) find(t, x, y);
 }
 
+static bool is_calm(const Tile *t, const Square *s) {
+    const Middle *corners[4];
+    corners_of(t, s, corners);
+    for (int k = 0; k < 4; k++)
+        if (!corners[k]->calm) return false;
+    return true;
+}
+
 /* The square's corners are found. */
 static void divide(Tile *t, const Square *s) {
     int width = s->x1 - s->x0, height = s->y1 - s->y0, mx = s->x0 + width / 2, my = s->y0 + height / 2;
@@ -180,7 +188,7 @@ static void divide(Tile *t, const Square *s) {
         find_all(t, s);
         return;
     }
-    if (agree(t, s, mx, my)) {
+    if (agree(t, s, mx, my) && (int_max(width, height) <= NARROW || is_calm(t, s))) {
         fill(t, s);
         return;
     }

@@ -1,5 +1,6 @@
 /* Middles of a tile's pixels where light is not found in each: between middles that agree it is interpolated. What is met there is found
- * wherever it can be anything else, so that no edge is lost; and the light of a share of those pixels, which tells how wrong the others are. (Adaptive
+ * wherever it can be anything else, so that no edge is lost; where the light may have details that a square's corners do not show, squares are as small
+ * as can be; and the light of a share of those pixels, which tells how wrong the others are. (Adaptive
  * undersampling: Akimoto, Mase & Suenaga, Pixel-selected ray tracing, 1991; there edges are guessed, too.) */
 #ifndef VTS_RENDER_GUESS_H
 #define VTS_RENDER_GUESS_H

@@ -10,6 +10,7 @@ typedef struct Middle {
     Radiance seen;
     Vec3f normal;    /* of the surface, */
     uint32_t object; /* and its number, from 1; 0: none */
+    bool calm;       /* it is even, mirrors nothing and lets nothing through */
     bool refinable;  /* the pixel's error can be that of edges */
     float doubt;     /* of light that was guessed: squared error to be expected */
 } Middle;

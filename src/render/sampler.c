@@ -3,6 +3,7 @@
 #include "render/candidates.h"
 #include "render/cell.h"
 #include "render/guess.h"
+#include "render/tile_sight.h"
 
 #include <string.h>
 
@@ -231,6 +232,7 @@ static bool see_first(Sampler *sp, const Aim *aim, const Guess *guess, Middle *o
     out->refinable = view_has_lens(&sp->compiled->view) || s.reaching >= ALL_EXPLICIT ||
                      (s.reaching >= EDGE_WORTH &&
                       surfaces_vary(sp->compiled, aim->px + aim->x, aim->py + aim->y, s.found, &s.hit));
+    out->calm = s.found ? s.hit.look->even && s.hit.look->plain && s.hit.share_count == 0 : sp->compiled->scene->sky_layer_count == 0;
     return s.known;
 }
 
@@ -467,54 +469,31 @@ static double refine_all(Sampler *sp) {
 /* A tile whose middles are wanted. */
 typedef struct SharedSight {
     Sampler *sampler;
-    int x0, y0;
-    Vista vista;
+    TileSight tile;
 } SharedSight;
 
-/* Lines of sight through the middles of four pixels of the tile. */
-static void sight_corners(const SharedSight *sight, int x0, int y0, int x1, int y1, Ray out[4]) {
-    for (int k = 0; k < 4; k++) {
-        double x = sight->x0 + (k & 1 ? x1 : x0) + 0.5, y = sight->y0 + (k & 2 ? y1 : y0) + 0.5;
-        Cone cone = view_cone(&sight->sampler->compiled->view, x, y, 1);
-        out[k] = (Ray){cone.origin, cone.direction};
-    }
-}
-
 static VistaView view_in_tile(void *context, int x0, int y0, int x1, int y1, uint32_t object) {
-    const SharedSight *sight = context;
-    Ray corners[4];
-    sight_corners(sight, x0, y0, x1, y1, corners);
-    return vista_view(&sight->vista, corners, object);
-}
-
-/* Lines of sight between others are between them in space, too; and whoever wants more than light looks at everything. */
-static bool has_vistas(const Sampler *sp) {
-    return sp->shares && !sp->aovs && view_is_flat(&sp->compiled->view);
+    return tile_sight_view(&((const SharedSight *)context)->tile, x0, y0, x1, y1, object);
 }
 
 static bool see_of_tile(void *context, int x, int y, const Guess *guess, Middle *out) {
     const SharedSight *sight = context;
-    if (!stopped(sight->sampler)) return see_middle(sight->sampler, sight->x0 + x, sight->y0 + y, guess, out);
+    if (!stopped(sight->sampler)) return see_middle(sight->sampler, sight->tile.x0 + x, sight->tile.y0 + y, guess, out);
     *out = (Middle){.object = 0};
     return false;
 }
 
-/* All of a tile, for whoever needs them. */
+/* All of a tile, for whoever needs them. Whoever wants more than light looks at everything. */
 static void see_shared(void *context, int tile_x, int tile_y, Middle *rows) {
     Sampler *sp = context;
     const View *view = &sp->compiled->view;
-    SharedSight shared = {.sampler = sp, .x0 = tile_x * FILM_TILE, .y0 = tile_y * FILM_TILE};
-    const int columns = int_min(FILM_TILE, view->width - shared.x0),
-              row_count = int_min(FILM_TILE, view->height - shared.y0);
+    const int x0 = tile_x * FILM_TILE, y0 = tile_y * FILM_TILE;
+    const int columns = int_min(FILM_TILE, view->width - x0), row_count = int_min(FILM_TILE, view->height - y0);
     const double error = sp->shares ? sp->plan.max_error : 0;
-    bool vistas = has_vistas(sp);
-    if (vistas) {
-        Ray corners[4];
-        sight_corners(&shared, 0, 0, columns - 1, row_count - 1, corners);
-        shared.vista = vista_of(hierarchy_pieces(sp->compiled->hierarchy), corners);
-    }
-    const GuessSight sight = {see_of_tile, vistas ? view_in_tile : NULL, &shared, ALIKE * error,
-                              GUESSES_MAY * error * error};
+    SharedSight shared = {.sampler = sp};
+    if (sp->shares) shared.tile = tile_sight(sp->compiled, x0, y0, columns, row_count);
+    else shared.tile = (TileSight){.x0 = x0, .y0 = y0};
+    const GuessSight sight = {.see = see_of_tile, .view = sp->shares && !sp->aovs ? view_in_tile : NULL, .context = &shared, .tolerance = ALIKE * error, .accepted = GUESSES_MAY * error * error};
     guess_tile(&sight, columns, row_count, rows);
 }
 

@@ -33,6 +33,7 @@ static Middle grey(float light, uint32_t object) {
     return (Middle){.seen = {{light, light, light}, 1},
                     .normal = {0, 0, object ? 1 : 0},
                     .object = object,
+                    .calm = true,
                     .refinable = true};
 }
 

@@ -1,0 +1,27 @@
+#include "render/tile_sight.h"
+
+/* Through the middles of four pixels. */
+static void lines_of(const TileSight *sight, int x0, int y0, int x1, int y1, Ray out[4]) {
+    for (int k = 0; k < 4; k++) {
+        double x = sight->x0 + (k & 1 ? x1 : x0) + 0.5, y = sight->y0 + (k & 2 ? y1 : y0) + 0.5;
+        Cone cone = view_cone(&sight->compiled->view, x, y, 1);
+        out[k] = (Ray){cone.origin, cone.direction};
+    }
+}
+
+/* Only in flat pictures lines between others are between them in space, too. */
+TileSight tile_sight(const CompiledScene *compiled, int x0, int y0, int columns, int rows) {
+    TileSight sight = {.compiled = compiled, .x0 = x0, .y0 = y0, .vista = {.count = VISTA_MOST + 1}};
+    Ray corners[4];
+    if (!view_is_flat(&compiled->view)) return sight;
+    lines_of(&sight, 0, 0, columns - 1, rows - 1, corners);
+    sight.vista = vista_of(hierarchy_pieces(compiled->hierarchy), corners);
+    return sight;
+}
+
+VistaView tile_sight_view(const TileSight *sight, int x0, int y0, int x1, int y1, uint32_t object) {
+    Ray corners[4];
+    if (sight->vista.count > VISTA_MOST) return VISTA_OPEN;
+    lines_of(sight, x0, y0, x1, y1, corners);
+    return vista_view(&sight->vista, corners, object);
+}

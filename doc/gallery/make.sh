@@ -27,7 +27,7 @@ size_of() {
     species) echo 512x296 ;;
     tree) echo 400x320 ;;
     still_life) echo 400x300 ;;
-    kinds_values) echo 560x490 ;;
+    kinds_values) echo 560x370 ;;
     contents | deformed | forest | kinds | jitter | larches | superimposed) echo 640x360 ;;
     pinwheels) echo 560x350 ;;
     cloud | glade | orchard | planet) echo 480x300 ;;

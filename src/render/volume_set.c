@@ -269,6 +269,18 @@ static int orders_of(const VolumeSet *set) {
     return most;
 }
 
+/* What harmonics of low degrees cannot have, and delta-M passes over only forwards, and only where turns are not counted: paths can. */
+static const double MOST_COUNTED_PEAK = 0.2, MOST_BACKWARD_PEAK = 0.3;
+
+static bool needs_paths(const VolumeSet *set) {
+    if (set->orders == 1 && !set->sky) return false;
+    for (size_t i = 0; i < set->count; i++) {
+        const CompiledVolume *v = &set->items[i];
+        if (v->moments[3] < -MOST_BACKWARD_PEAK || (set->orders && v->moments[3] > MOST_COUNTED_PEAK)) return true;
+    }
+    return false;
+}
+
 /* What is left of a volume without the peak. Where orders are counted, none is passed over. */
 static CompiledVolume without_peak(const CompiledVolume *v, bool counted) {
     CompiledVolume out = *v;
@@ -310,6 +322,8 @@ bool volumes_compile(CompiledScene *compiled, DiagList *diags) {
     for (size_t i = 0; i < set->count; i++) set->bounds = box3_union(set->bounds, set->items[i].bounds);
     set->method = compiled->options->exact ? VOLUME_PATH : method_of(set);
     set->orders = orders_of(set);
+    set->rays_are_paths = set->method == VOLUME_PATH;
+    if (set->method == VOLUME_TWO_PASS && needs_paths(set)) set->method = VOLUME_PATH;
     if (set->method == VOLUME_PUBLISHED) volumes_publish(set);
     else
         for (size_t i = 0; i < set->count; i++) see_peak(&set->items[i], set->orders != 0, compiled->arena);
@@ -319,7 +333,8 @@ bool volumes_compile(CompiledScene *compiled, DiagList *diags) {
 
 /* ---- as air ---- */
 
-enum { PATHS_AUTO = 8, MOST_PATHS = 4096 };
+/* In the place of two passes there are more: what is dim must not look even because no path met anything. */
+enum { PATHS_AUTO = 8, PATHS_INSTEAD = 32, MOST_PATHS = 4096 };
 
 static double rays_of(const VolumeSet *set) {
     double rays = 0;
@@ -331,7 +346,7 @@ static Air path_air(SurfaceTracer *tracer, const Cone *cone, double t_max, doubl
     const CompiledScene *compiled = tracer->compiled;
     const VolumeSet *set = compiled->volumes;
     const Ray ray = {cone->origin, cone->direction};
-    double wanted = rays_of(set), near = 0, far = t_max;
+    double wanted = set->rays_are_paths ? rays_of(set) : PATHS_INSTEAD, near = 0, far = t_max;
     int paths = compiled->exact_paths ? 1 : wanted > 0 ? (int)double_clamp(wanted, 1, MOST_PATHS) : PATHS_AUTO;
     Air air = {volumes_passing(set, &ray, 0, t_max, RAY_SEES), {0, 0, 0}, 0};
     box3_clip_ray(set->bounds, &ray, &near, &far);

@@ -35,6 +35,7 @@ typedef struct VolumeSet {
     size_t count;
     Box3 bounds;
     VolumeMethod method;
+    bool rays_are_paths;      /* of a line of sight; else those of a light pass, which paths may do without */
     int orders;               /* 0: all */
     bool sky;                 /* light comes from the sky too */
 } VolumeSet;

@@ -93,6 +93,8 @@ static const Trial AGREE[] = {
     {"murky cloud before the sun", "camera { location -5*z look_at 0 angle 40 }\nlight_source { <4, 6, 30>, rgb 1 parallel point_at 0 }\n"
                                    "volume { sphere { 0, 1 } scattering rgb 4 phase { murky } rays 20000 }", 0.06, 0.01, 0.02},
     {"coloured, overlapping", CAMERA "volume { sphere { -0.4*x, 0.8 } scattering rgb <3, 2, 1> rays 20000 } volume { sphere { 0.4*x, 0.8 } scattering rgb <1, 2, 3> absorption rgb 0.2 }", 0.03, 0.004, 0.02},
+    {"peaked backwards", CAMERA "volume { sphere { 0, 1 } scattering rgb 4 phase { henyey_greenstein -0.9 } rays 20000 }", 0.03, 0.003, 0.01},
+    {"peaked, turns counted", CAMERA "volume { sphere { 0, 1 } scattering rgb 4 phase { murky } orders 3 rays 20000 }", 0.03, 0.003, 0.01},
     {"around something solid", CAMERA "sphere { 0, 0.6 pigment { rgb 0.4 } } volume { box { -1, 1 } scattering rgb 1.2 rays 20000 }", 0.04, 0.006, 0.02},
 };
 
@@ -115,11 +117,38 @@ static void two_passes_agree_with_paths(void **state) {
     }
 }
 
+/* The sun moves by half a degree from frame to frame, or the camera: what is left of second differences is what would be seen to flicker. */
+static void nothing_flickers(void **state) {
+    enum { FRAMES = 5, VALUES = 3 * 24 * 18 };
+    static const char *const turns[] = {"#declare Sun = %d*0.5*y; #declare Eye = 0*y;", "#declare Sun = 0*y; #declare Eye = %d*0.5*y;"};
+    for (int k = 0; k < 2; k++) {
+        float frames[FRAMES][VALUES];
+        double sum = 0;
+        for (int i = 0; i < FRAMES; i++) {
+            char begin[128], text[2048];
+            VtsOptions o = options_of_size(24, 18);
+            snprintf(begin, sizeof begin, turns[k], i);
+            snprintf(text, sizeof text,
+                     "%s\nglobal_settings { assumed_gamma 1 sky_light on }\ncamera { location vrotate(<0, 0.3, -5>, Eye) look_at 0 right x*image_width/image_height angle 40 }\n"
+                     "light_source { vrotate(1e4*<-0.8, 0.5, -0.3>, Sun) rgb 0.8 parallel point_at 0 }\nbackground { rgb <0.15, 0.25, 0.4> }\n"
+                     "volume { density { fractal { size <16, 10, 16> dimension 2.4 threshold 0.4 seed 3 } } box { <-1.5, -0.8, -1.5>, <1.5, 0.8, 1.5> } scattering rgb 5 phase { henyey_greenstein 0.5 } }", begin);
+            Picture p = bench_render(*state, &o, text);
+            memcpy(frames[i], p.pixels, sizeof frames[i]);
+            picture_free(&p);
+        }
+        for (int i = 1; i + 1 < FRAMES; i++)
+            for (int v = 0; v < VALUES; v++) sum += pow((double)frames[i - 1][v] - 2 * (double)frames[i][v] + (double)frames[i + 1][v], 2);
+        double flicker = sqrt(sum / (FRAMES - 2) / VALUES / 6); /* of what is drawn anew in each frame, second differences have six times the variance */
+        printf("%s moves: %.5f\n", k ? "the camera" : "the sun", flicker);
+        assert_true(flicker < 0.2 / 255 && flicker > 0);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sharp_phases_stay_finite),       cmocka_unit_test(depths_from_none_to_all),  cmocka_unit_test(grids_of_one_cell_and_of_none),
         cmocka_unit_test(rays_along_walls_are_as_others), cmocka_unit_test(lamps_within_stay_finite), cmocka_unit_test(two_passes_agree_with_paths),
-        cmocka_unit_test(pieces_of_grids_cost_what_they_hold),
+        cmocka_unit_test(pieces_of_grids_cost_what_they_hold), cmocka_unit_test(nothing_flickers),
     };
     return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
 }

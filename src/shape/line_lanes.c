@@ -134,7 +134,7 @@ static void push_rest(Lanes *lanes, const Batch *batch) {
             Interval range = affine_range(f);
             if (range.low > 0 || (range.high <= 0 && !f.nan)) continue;
         }
-        if (!f.nan) line_cut(f, &piece.a, &piece.b);
+        if (!f.nan) line_cut(&f, &piece.a, &piece.b);
         if (!(piece.b >= piece.a) || lanes->count >= LINE_MOST_PIECES) continue;
         LanePiece *rest = &lanes->stack[lanes->count++];
         rest->a = piece.a, rest->b = piece.b, rest->settled.terms = 0;
@@ -143,18 +143,19 @@ static void push_rest(Lanes *lanes, const Batch *batch) {
     }
 }
 
-/* The first pieces of the stack, taken together: each is divided into as many parts as there are lanes for it. */
-static void divide(Lanes *lanes, const LanePiece *wholes, int count) {
+/* The pieces that were the first of the stack, and stay where they were until others are pushed: each is divided into as many parts as there are
+ * lanes for it. */
+static void divide(Lanes *lanes, const LanePiece *const *wholes, int count) {
     Batch batch;
     AffineLanes width;
     const Line *line = lanes->search->line;
     int shares = AFFINE_LANES / count;
-    batch.used = 0, batch.settled.terms = wholes[0].settled.terms;
+    batch.used = 0, batch.settled.terms = wholes[0]->settled.terms;
     for (int k = 0; k < count; k++) {
-        double a = wholes[k].a, b = wholes[k].b, step = (b - a) / shares;
+        double a = wholes[k]->a, b = wholes[k]->b, step = (b - a) / shares;
         for (int l = 0; l < shares; l++) {
             LinePiece part = {l ? a + step * l : a, l < shares - 1 ? a + step * (l + 1) : b};
-            if (batch.settled.terms) take_settled(&wholes[k].settled, part, &batch.settled, batch.used);
+            if (batch.settled.terms) take_settled(&wholes[k]->settled, part, &batch.settled, batch.used);
             batch.pieces[batch.used++] = part;
         }
     }
@@ -167,18 +168,19 @@ static void divide(Lanes *lanes, const LanePiece *wholes, int count) {
 static bool search(Lanes *lanes, double *t, bool *falling) {
     LineSearch *s = lanes->search;
     while (lanes->count > 0) {
-        LanePiece wholes[AHEAD];
+        const LanePiece *wholes[AHEAD];
         int count = 0;
         while (count < AHEAD && lanes->count > 0) {
-            const LanePiece piece = lanes->stack[lanes->count - 1];
+            const LanePiece *piece = &lanes->stack[lanes->count - 1];
+            double a = piece->a, b = piece->b;
             bool full = lanes->count + AFFINE_LANES > LINE_MOST_PIECES || s->work.bounds > LINE_MOST_BOUNDS;
-            bool other = count > 0 && piece.settled.terms != wholes[0].settled.terms;
-            if (count > 0 && (full || other || piece.b - piece.a < 0x1p-20 * (fabs(piece.a) + fabs(piece.b)))) break;
+            bool other = count > 0 && piece->settled.terms != wholes[0]->settled.terms;
+            if (count > 0 && (full || other || b - a < 0x1p-20 * (fabs(a) + fabs(b)))) break;
             lanes->count--;
             if (full) {
-                if (line_give_up(s, (LinePiece){piece.a, piece.b}, t, falling)) return true;
-            } else if (piece.b - piece.a <= ALONE * line_shortest(s->line, piece.b)) {
-                if (line_search_halves(s, piece.a, piece.b, t, falling)) return true;
+                if (line_give_up(s, (LinePiece){a, b}, t, falling)) return true;
+            } else if (b - a <= ALONE * line_shortest(s->line, b)) {
+                if (line_search_halves(s, a, b, t, falling)) return true;
             } else {
                 wholes[count++] = piece;
             }

@@ -30,7 +30,7 @@ static inline bool line_is_wide(const Line *line) { return line->sum && (line->w
 /* The place at middle + s·half along one axis, with the rounding of vec3_madd() and of the middle. */
 AffineForm line_place(double origin, double direction, double middle, double half);
 /* Cuts [a, b], where the form holds, to where centre + slope·s may be within the error of 0: equation 16. */
-void line_cut(AffineForm f, double *a, double *b);
+void line_cut(const AffineForm *f, double *a, double *b);
 /* Below this a piece that ends at t is a place, and has at most one change of sign: 2⁻⁴⁰ of the way or of the coordinates there. */
 double line_shortest(const Line *line, double t);
 /* Where the sign changes between a and b; false: it is the same at both. */

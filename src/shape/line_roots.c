@@ -61,10 +61,10 @@ static double size_at(const Line *line, double t) {
     return fmax(fabs(t), most / vec3_length(line->direction));
 }
 
-void line_cut(AffineForm f, double *a, double *b) {
-    if (f.slope == 0 || !(f.error < HUGE_VAL)) return;
+void line_cut(const AffineForm *f, double *a, double *b) {
+    if (f->slope == 0 || !(f->error < HUGE_VAL)) return;
     double middle = *a / 2 + *b / 2, half = *b - middle;
-    double one = (-f.centre - f.error) / f.slope, other = (-f.centre + f.error) / f.slope;
+    double one = (-f->centre - f->error) / f->slope, other = (-f->centre + f->error) / f->slope;
     double low = round_down(fmin(one, other)), high = round_up(fmax(one, other));
     /* Half of an ulp of the ends on either side. */
     double slack = 0x1p-52 * (fabs(middle) + half);
@@ -117,7 +117,7 @@ bool line_search_halves(LineSearch *s, double from, double to, double *t, bool *
         Interval range = affine_range(f);
         if (range.low > 0 || (range.high <= 0 && !f.nan)) continue;
         double a = piece.a, b = piece.b, width = b - a;
-        if (s->line->method == LINE_AFFINE_OPTIMISED && !f.nan) line_cut(f, &a, &b);
+        if (s->line->method == LINE_AFFINE_OPTIMISED && !f.nan) line_cut(&f, &a, &b);
         if (!(b > a)) continue;
         double least = line_shortest(s->line, b);
         if (b - a <= least || (b - a <= ROUNDING_MATTERS * least && all_is_rounding(s, &f, a, b))) {

@@ -155,23 +155,25 @@ static inline void affine_noise_lanes(AffineLanes *restrict out, const AffineLan
         return;
     }
     noise(&way, &terms);
+    /* Numbers that stores cannot change, and nothing that branches: else there are no vectors. */
+    const double low = known->low, high = known->high, steepest = known->steepest, curved = known->curved / 2, third = known->third / 6,
+                 jump = known->jump / 2, cut = known->cut ? 0.5 : 0;
     AFFINE_EACH_LANE {
-        double square = length[l] * length[l], bend = known->curved / 2 * square;
-        double rest = known->third / 6 * square * length[l] + known->jump / 2 * terms.outside[l], third = fabs(terms.second[l]) / 2 + rest;
-        double shift = third < bend ? terms.second[l] / 2 : 0, least = third < bend ? third : bend;
+        double square = length[l] * length[l], bend = curved * square, second = terms.second[l] / 2;
+        double rest = fabs(second) + (third * square * length[l] + jump * terms.outside[l]);
+        double shift = rest < bend ? second : 0, least = rest < bend ? rest : bend;
         double first = terms.first[l], value = terms.value[l] + shift;
-        double error = affine_lane_error(least + off[l] * known->steepest, 256);
+        double error = affine_lane_error(least + off[l] * steepest, 256);
         /* A noise that is cut to its range may be below the form by what that gets above it, and above by what it gets below. */
-        double reach = fabs(first) + error, above = (value + reach) - known->high, below = known->low - (value - reach);
-        above = known->cut && above > 0 ? above / 2 : 0, below = known->cut && below > 0 ? below / 2 : 0;
+        double reach = fabs(first) + error, above = (value + reach) - high, below = low - (value - reach);
+        above = (above > 0 ? above : 0) * cut, below = (below > 0 ? below : 0) * cut;
         double centre = (value - above) + below, total = error + above + below;
-        /* Places too far away for cells have no value. */
+        /* Places too far away for cells have no value; places that are no numbers have no noise: `off` says so. */
+        double unknown = 0 * (off[l] + length[l] + (way.at[0][l] + way.at[1][l] + way.at[2][l]));
         error = value == value ? error : HUGE_VAL;
         out->centre[l] = error < half ? centre : middle;
         out->slope[l] = error < half ? first : 0;
-        /* Places that are no numbers have no noise: `off` says so. */
-        out->error[l] = (error < half ? total : half) +
-                        0 * (off[l] + length[l] + (way.at[0][l] + way.at[1][l] + way.at[2][l]));
+        out->error[l] = (error < half ? total : half) + unknown;
     }
 }
 

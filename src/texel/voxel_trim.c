@@ -11,6 +11,8 @@
 enum { TRIM_MOST_TRIANGLES = 12000000, TRIM_DIRECTIONS = TRIM_NODES * TRIM_NODES };
 /* Of many triangles every other direction is enough: it is much matter. */
 enum { TRIM_MANY_TRIANGLES = 10000 };
+/* And for finer voxels than those of so many levels, whose factors change less. */
+enum { OFTEN_TRIMMED = 4 };
 /* Rays through a level of so many voxels, per side and voxel, and at most, of a period half as many; their steps, in voxels, are as the
  * renderer's. */
 enum { TRIM_RAYS_A_VOXEL = 3, TRIM_LEAST_RAYS = 16, TRIM_MOST_RAYS = 32 };
@@ -212,7 +214,8 @@ static void look_at_node(TrimWork *work, int node) {
     work->known[node] = hidden >= 0;
     if (kept >= 0) keep_view(work, kept, &view, top);
     if (!is_kept_as_seen(work, kept)) free(top);
-    for (int i = 0; work->known[node] && i < work->levels; i++)
+    int levels = is_even(node) ? work->levels : int_min(work->levels, OFTEN_TRIMMED);
+    for (int i = 0; work->known[node] && i < levels; i++)
         layer->trim[i][node] = trim_level(work, layer->levels - 1 - i, &view, hidden);
 }
 
@@ -244,8 +247,8 @@ static void fill_row(float *f, int stride) {
 }
 
 /* Directions between those that were looked along. */
-static void fill_between(VoxelLayer *layer) {
-    for (int i = 0; i < TRIM_LEVELS; i++) {
+static void fill_between(VoxelLayer *layer, int first) {
+    for (int i = first; i < TRIM_LEVELS; i++) {
         for (int row = 0; row < TRIM_NODES; row += 2) fill_row(layer->trim[i] + row * TRIM_NODES, 1);
         for (int column = 0; column < TRIM_NODES; column++) fill_row(layer->trim[i] + column, TRIM_NODES);
     }
@@ -320,7 +323,7 @@ void voxel_layer_trim(VoxelLayer *layer, const TexelMesh *mesh, Vec3f extent, Po
     keep_views(&work);
     bool known = find_bounds(&work) && pool_run(pool, TRIM_DIRECTIONS + SPOT_GROUPS * SPOT_VIEWS, look_through, &work);
     for (int node = 0; node < TRIM_DIRECTIONS; node++) known &= work.known[node];
-    if (known && work.coarse) fill_between(layer);
+    if (known) fill_between(layer, work.coarse ? 0 : OFTEN_TRIMMED);
     if (known) join_horizon(layer);
     else voxel_layer_forget_trim(layer);
     if (known) compare_views(&work, pool);

@@ -11,7 +11,7 @@ typedef struct VolumeDraft {
 } VolumeDraft;
 
 /* Numbers past this make no sense and would leave the range of floats. */
-static const double MOST_COEFFICIENT = 1e9, MOST_RAYS = 1e9;
+static const double MOST_COEFFICIENT = 1e9, MOST_RAYS = 1e7;
 
 static bool is_in_range(double x, double low, double high) { return x >= low && x <= high; }
 

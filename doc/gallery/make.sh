@@ -58,9 +58,25 @@ frames_of() {
   esac
 }
 
+# Of some, which are shown as one picture too, the same as NAME_frames.jpg.
+more_frames_of() {
+  case $1 in
+    forest) echo '1 48 96 144 192 240' ;;
+    wind) echo '1 12 22 33 44 54' ;;
+  esac
+}
+
+# Options of films whose scenes do not say how many frames there are.
+film_of() {
+  case $1 in
+    forest) echo +KFF240 ;;
+  esac
+}
+
 sheet_size_of() {
   case $1 in
-    flag) echo 256x192 ;;
+    flag | wind) echo 256x192 ;;
+    forest) echo 256x144 ;;
     trees_rows) echo 96x96 ;;
     *) echo 256x160 ;;
   esac
@@ -77,7 +93,7 @@ draw_sheet() { # SCENE PICTURE FRAMES…
   local scene=$1 picture=$2 folder frame
   shift 2
   folder=$(mktemp -d)
-  for frame; do "$program" render "$scene" --size "$(sheet_size_of "$(basename "$scene" .vts)")" -f "$frame" --output "$folder/$(printf %03d "$frame")#.png" --progress none; done
+  for frame; do "$program" render "$scene" --size "$(sheet_size_of "$(basename "$scene" .vts)")" $(film_of "$(basename "$scene" .vts)") -f "$frame" --output "$folder/$(printf %03d "$frame")#.png" --progress none; done
   montage "$folder"/*.png $(arrangement_of "$(basename "$scene" .vts)") "$picture"
   rm -r "$folder"
 }
@@ -91,6 +107,7 @@ for scene in "$root"/examples/*.vts "$gallery"/*.vts; do
   if [ -n "$(frames_of "$name")" ]; then draw_sheet "$scene" "$picture" $(frames_of "$name")
   else "$program" render "$scene" --size "$(size_of "$name")" --output "$picture" --progress none $(clock_of "$name")
   fi
+  [ -z "$(more_frames_of "$name")" ] || draw_sheet "$scene" "$gallery/${name}_frames.jpg" $(more_frames_of "$name")
   bytes=$(wc -c <"$picture")
   [ "$bytes" -lt 200000 ] || { echo "make.sh: $name.jpg has $bytes bytes; a picture of the gallery has less than 200000" >&2; exit 1; }
   echo "$name.jpg $bytes bytes"

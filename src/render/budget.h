@@ -24,7 +24,7 @@ BudgetLaw budget_law(const double errors[2], const double seconds[2], double oth
 #define BUDGET_LEAST_NOISE 0.5
 
 /* What makes a picture's error, and is told how much of it. */
-typedef enum BudgetStage { BUDGET_NOISE, BUDGET_VOXELS, BUDGET_SKY, BUDGET_MEDIA, BUDGET_STAGES } BudgetStage;
+typedef enum BudgetStage { BUDGET_NOISE, BUDGET_SKY, BUDGET_MEDIA, BUDGET_STAGES } BudgetStage;
 
 /* How it was shared out. A slack of 1 is what the stage does by itself; that of noise is the part of the accepted error it gets. */
 typedef struct Budget {

@@ -36,7 +36,7 @@ static void add_terrains(StrBuf *out, const BuiltTerrains *terrains) {
 /* Of each stage that trials were made of: the part of max_error that it is expected to make, the seconds of a pixel that it is thought to take (of an imagined
  * machine: only their ratios count), and how far it was let out or drawn in. */
 static void add_budget(StrBuf *out, const CompiledScene *compiled) {
-    static const char *const names[BUDGET_STAGES] = {"samples", "voxels", "sky", "media"};
+    static const char *const names[BUDGET_STAGES] = {"samples", "sky", "media"};
     const Budget *b = &compiled->budget;
     const char *comma = "";
     strbuf_adds(out, ",\"budget\":[");

@@ -30,6 +30,13 @@ void moment_mean_lay(MomentMean *m, int width, int height, Arena *arena) {
 
 /* ---- sums ---- */
 
+/* Not as a mix with 0 times itself: light may be infinite. */
+static void scale(const MomentMean *m, Image *image, float part) {
+    size_t pixels = (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < pixels; i++)
+        for (int c = 0; c < m->channels; c++) image->pixels[i * (size_t)image->channels + (size_t)c] *= part;
+}
+
 /* into = a·into + b·other, in the channels of light. */
 static void mix(const MomentMean *m, Image *into, float a, const Image *other, float b) {
     size_t pixels = (size_t)into->width * (size_t)into->height;
@@ -63,7 +70,7 @@ void moment_mean_add(MomentMean *m, MomentPlace place, Image *picture, const flo
         drop(into);
         *into = *picture;
         *picture = (Image){0};
-        mix(m, into, 0, into, part);
+        scale(m, into, part);
         return;
     }
     mix(m, into, 1, picture, part);

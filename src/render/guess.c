@@ -37,13 +37,20 @@ static bool same_surface(const Middle *m, uint32_t object, Vec3f normal) {
     return m->object == object && (object == 0 || vec3f_dot(m->normal, normal) > SAME_NORMAL);
 }
 
+/* By what the others differ from the first: where all are the same nothing is lost to rounding. */
 static Radiance mean_light(const Guess *guess) {
-    Radiance out = {{0, 0, 0}, 0};
-    for (int k = 0; k < 4; k++) {
-        out.color = vec3f_madd(out.color, guess->corners[k]->seen.color, guess->weights[k]);
-        out.alpha += guess->corners[k]->seen.alpha * guess->weights[k];
+    const Radiance first = guess->corners[0]->seen;
+    Radiance out = first;
+    for (int k = 1; k < 4; k++) {
+        const Radiance *other = &guess->corners[k]->seen;
+        out.color = vec3f_madd(out.color, vec3f_sub(other->color, first.color), guess->weights[k]);
+        out.alpha += (other->alpha - first.alpha) * guess->weights[k];
     }
     return out;
+}
+
+static bool has_finite_light(const Middle *m) {
+    return isfinite(m->seen.color.x) && isfinite(m->seen.color.y) && isfinite(m->seen.color.z);
 }
 
 bool guess_light(const Guess *guess, uint32_t object, Vec3f normal, Radiance *out) {
@@ -86,8 +93,8 @@ static bool agree(Tile *t, const Square *s, int mx, int my) {
     const Middle *corners[4], *middle = &t->middles[place(mx, my)];
     Radiance guessed;
     corners_of(t, s, corners);
-    for (int k = 1; k < 4; k++)
-        if (!same_surface(corners[k], corners[0]->object, corners[0]->normal)) return false;
+    for (int k = 0; k < 4; k++)
+        if (!has_finite_light(corners[k]) || !same_surface(corners[k], corners[0]->object, corners[0]->normal)) return false;
     find(t, mx, my);
     const Guess guess = guess_at(t, s, mx, my);
     if (!guess_light(&guess, middle->object, middle->normal, &guessed)) return false;

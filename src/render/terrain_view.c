@@ -48,15 +48,29 @@ typedef struct Lowering {
 
 /* ---- how fine ---- */
 
+/* How much a pixel widens with the distance: of one that is narrow, as at the poles of a panorama, where one place is as wide as the picture, the
+ * longer side. */
+static double pixel_spread(const View *view, double x, double y, const Cone *cone) {
+    if (view_is_flat(view) || cone->width > 0) return cone->spread;
+    double most = cone->spread;
+    const double beside[2][2] = {{x > view->width / 2.0 ? x - 1 : x + 1, y}, {x, y > view->height / 2.0 ? y - 1 : y + 1}};
+    for (int k = 0; k < 2; k++) {
+        Cone other = view_cone(view, beside[k][0], beside[k][1], 1);
+        if (vec3_length_squared(other.direction) > 0) most = fmax(most, vec3_length(vec3_sub(other.direction, cone->direction)));
+    }
+    return most;
+}
+
 /* The least of the pixels' widths: those of a flat picture's corners are smaller than those of its middle. */
 static void measure_pixels(Lowering *l) {
     enum { STEPS = 4 };
     l->spread = l->width = HUGE_VAL;
     for (int j = 0; j <= STEPS; j++)
         for (int i = 0; i <= STEPS; i++) {
-            Cone cone = view_cone(l->view, (double)i / STEPS * l->view->width, (double)j / STEPS * l->view->height, 1);
+            const double x = (double)i / STEPS * l->view->width, y = (double)j / STEPS * l->view->height;
+            Cone cone = view_cone(l->view, x, y, 1);
             if (vec3_length_squared(cone.direction) == 0) continue;
-            l->spread = fmin(l->spread, cone.spread);
+            l->spread = fmin(l->spread, pixel_spread(l->view, x, y, &cone));
             l->width = fmin(l->width, cone.width);
         }
     if (!isfinite(l->spread)) l->spread = l->width = 0;

@@ -52,6 +52,14 @@ static void turning_half_plane(void **state) {
     picture_free(&p);
 }
 
+/* Light beyond all numbers is that, and not none. */
+static void endless_light(void **state) {
+    VtsOptions o = exposed(1);
+    Picture p = bench_render(*state, &o, LOOK_DOWN(5, 4) "box { <-1, 0, -1>, <1, 0.1, 1> pigment { rgb 1e30 } finish { ambient 1e30 diffuse 0 } } sphere { <3*clock, 0, 3>, 0.1 pigment { rgb 0.5 } }");
+    assert_true(isinf(pixel_at(&p, 24, 24)[0]));
+    picture_free(&p);
+}
+
 /* What grows evenly has its mean. */
 static void growing_light(void **state) {
     VtsOptions o = exposed(0.5);
@@ -168,7 +176,7 @@ static void wrong_later(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(moving_square), cmocka_unit_test(turning_half_plane), cmocka_unit_test(growing_light), cmocka_unit_test(still_scenes),
+        cmocka_unit_test(moving_square), cmocka_unit_test(turning_half_plane), cmocka_unit_test(growing_light), cmocka_unit_test(endless_light), cmocka_unit_test(still_scenes),
         cmocka_unit_test(as_the_reference_has_it), cmocka_unit_test(threads_do_not_matter), cmocka_unit_test(wrong_later),
         cmocka_unit_test(as_many_moments_as_tell_something),
     };

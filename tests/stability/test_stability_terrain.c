@@ -280,9 +280,36 @@ static void flights_do_not_flicker(void **state) {
     assert_true(sqrt(flicker) < 2.0 / 255);
 }
 
+/* ---- pictures of all around ---- */
+
+static double triangles_for(const Bench *b, const char *camera) {
+    char text[600];
+    VtsOptions o = options_of_size(96, 48);
+    snprintf(text, sizeof text, "%scamera { %s }\nobject { terrain { heightmap \"" MAP "\" curvature off } " GLOWING("x") " }\n", BACK, camera);
+    bench_write(b, text);
+    VtsSession *session = vts_session_create(&o, NULL);
+    assert_non_null(session);
+    assert_int_equal(vts_render(session, b->scene, b->output), VTS_OK);
+    const char *found = strstr(vts_report(session), "\"terrains\":[");
+    assert_non_null(found);
+    assert_non_null(found = strstr(found, "\"needed\":"));
+    double needed = strtod(found + strlen("\"needed\":"), NULL);
+    vts_session_destroy(session);
+    return needed;
+}
+
+/* At the poles of a panorama a place is as wide as the picture: pixels there are narrow, and ask for nothing finer than others do. */
+static void panoramas_need_no_more(void **state) {
+    const Bench *b = *state;
+    asc(b, rough);
+    double around = triangles_for(b, "spherical location <0, 600, 0> look_at x angle 360 180"), ahead = triangles_for(b, "location <0, 600, 0> look_at 600*y + x angle 90");
+    printf("triangles: panorama %g, ahead %g\n", around, ahead);
+    assert_true(around > 0 && around < 4 * ahead);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, bench_set_up, tear_down)
 
 int main(void) {
-    const struct CMUnitTest tests[] = {TEST(silhouettes), TEST(drop_at_100_km), TEST(antimeridian), TEST(pole), TEST(single_rows), TEST(voids), TEST(feet_stand_on_the_ground), TEST(flights_do_not_flicker)};
+    const struct CMUnitTest tests[] = {TEST(silhouettes), TEST(drop_at_100_km), TEST(antimeridian), TEST(pole), TEST(single_rows), TEST(voids), TEST(feet_stand_on_the_ground), TEST(flights_do_not_flicker), TEST(panoramas_need_no_more)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -77,6 +77,23 @@ static void test_even_light_is_guessed_from_few(void **state) {
     assert_int_equal(w.found + w.guessed, FILM_TILE * FILM_TILE);
 }
 
+static Middle third(int x, int y) { return grey(1 / 3.0f, 1 + 0 * (uint32_t)(x + y)); }
+static Middle endless(int x, int y) { return grey(HUGE_VALF, 1 + 0 * (uint32_t)(x + y)); }
+
+/* In tiles whose last squares are narrower, too, whose weights are no binary fractions. Of endless light nothing is a mean. */
+static void test_equal_light_stays_what_it_is(void **state) {
+    (void)state;
+    Middle out[FILM_TILE * FILM_TILE];
+    for (int columns = 5; columns <= FILM_TILE; columns++) {
+        Watch w = look(third, 0.01, columns, FILM_TILE, out);
+        assert_true(worst(&w, out, columns, FILM_TILE) == 0 && w.guessed > 0);
+        w = look(endless, 0.01, columns, FILM_TILE, out);
+        assert_int_equal(w.guessed, 0);
+        for (int y = 0; y < FILM_TILE; y++)
+            for (int x = 0; x < columns; x++) assert_true(isinf(out[y * FILM_TILE + x].seen.color.x));
+    }
+}
+
 static void test_curved_light_is_as_exact_as_asked(void **state) {
     (void)state;
     Middle out[FILM_TILE * FILM_TILE];
@@ -137,6 +154,7 @@ static void test_tiles_of_any_size(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_even_light_is_guessed_from_few),
+                                       cmocka_unit_test(test_equal_light_stays_what_it_is),
                                        cmocka_unit_test(test_curved_light_is_as_exact_as_asked),
                                        cmocka_unit_test(test_edges_of_light_are_found),
                                        cmocka_unit_test(test_nothing_is_guessed_over_what_else_is_met),

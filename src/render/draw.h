@@ -14,7 +14,7 @@ typedef struct Draw {
 } Draw;
 
 /* Numbers of uses; those of rays further on add DRAW_STEP for each. */
-enum { DRAW_PIXEL, DRAW_LENS, DRAW_TIME, DRAW_LIGHT = 8, DRAW_STEP = 64 };
+enum { DRAW_PIXEL, DRAW_LENS, DRAW_TIME, DRAW_SKY, DRAW_LIGHT = 8, DRAW_STEP = 64 };
 
 static inline uint32_t draw_reverse(uint32_t x) {
     x = x >> 16 | x << 16;

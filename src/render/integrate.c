@@ -358,7 +358,7 @@ static float passing_matter(void *tracer, const Cone *cone, double t_max, Vec3 t
 }
 
 SurfaceTracer tracer_of_surfaces(Tracer *tr) {
-    SurfaceTracer surfaces = {.compiled = tr->compiled, .counters = &tr->counters, .seed = tr->seed, .part = tr->part, .skins = tr};
+    SurfaceTracer surfaces = {.compiled = tr->compiled, .counters = &tr->counters, .seed = tr->seed, .draw = &tr->draw, .part = tr->part, .skins = tr};
     if (tr->compiled->skin_count) surfaces.matter = matter_before, surfaces.passing = passing_matter;
     return surfaces;
 }

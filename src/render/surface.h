@@ -4,6 +4,7 @@
 #define VTS_RENDER_SURFACE_H
 
 #include "render/compile.h"
+#include "render/draw.h"
 #include "render/lighting.h"
 
 /* An object that a ray is inside of. */
@@ -33,6 +34,7 @@ typedef struct SurfaceTracer {
     const CompiledScene *compiled;
     TraceCounters *counters;
     uint64_t seed;      /* of what is sampled: for each line of sight anew */
+    const Draw *draw;   /* of the line of sight, by which those of one pixel share what is sampled; NULL: each by its seed */
     double part;        /* of its pixel's lines of sight, what one of these is; 0: all */
     /* Matter of skins: what a cone gathers of it before t_max, the air before it included, and what shows of the rest; NULL: none. */
     Vec3f (*matter)(void *skins, const Cone *cone, double t_max, float *transmittance);

@@ -8,9 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Rays along each direction to the eye, places on the ground; steps along them in voxels, and at most. */
-enum { EYE_RAYS = 16, GROUND_PLACES = 64, MOST_LIT_STEPS = 512 };
-static const float LIT_STEP = 1;
+/* Rays along each direction to the eye, places on the ground, on lattices; steps along them in voxels, and at most. */
+enum { EYE_SIDE = 3, EYE_RAYS = EYE_SIDE * EYE_SIDE, GROUND_SIDE = 8, GROUND_PLACES = GROUND_SIDE * GROUND_SIDE, MOST_LIT_STEPS = 512 };
+static const float LIT_STEP = 1.5f;
 /* Where the renderer's shadows take voxels of some level, the eye's are finer by so many. */
 static const float FINER_TO_EYE = 1.5f;
 /* Light that is less than this makes no difference. */
@@ -99,6 +99,7 @@ typedef struct PowerWork {
     VoxelLayer *layer;
     const LitTruth *truth;
     Vec3f extent, d[PAIR_NODES];
+    float open[PAIR_NODES * PAIR_NODES]; /* pair_open(), the eye first */
     float matter_beside[TRIM_LEVELS][PAIR_NODES], ground_beside[TRIM_LEVELS][PAIR_NODES]; /* the share that is lit, the light beside the eye, by its direction */
 } PowerWork;
 
@@ -129,7 +130,7 @@ static void find_matter_powers(PowerWork *work, int from_top, int eye) {
     for (int ray = 0; ray < EYE_RAYS; ray++) {
         Vec3f at = {0, 0, 0};
         uint64_t lot = (uint64_t)(ray + EYE_RAYS * (from_top + TRIM_LEVELS * eye));
-        float weight = look_down(&to_eye, place_of(work, ray, 4, lot), lot, &at);
+        float weight = look_down(&to_eye, place_of(work, ray, EYE_SIDE, lot), lot, &at);
         seen += weight;
         for (int light = 0; light <= PAIR_NODES && weight > 0; light++) {
             LitWay way = way_along(layer, work->extent, lod, light < PAIR_NODES ? work->d[light] : beside);
@@ -148,7 +149,7 @@ static void find_ground_powers(PowerWork *work, int from_top) {
         LitWay way = way_along(layer, work->extent, lod, work->d[node]), near = way_along(layer, work->extent, lod, direction_beside(work->d[node]));
         float both = 0, seen = 0;
         for (int i = 0; i < GROUND_PLACES; i++) {
-            Vec3f foot = place_of(work, i, 8, (uint64_t)from_top);
+            Vec3f foot = place_of(work, i, GROUND_SIDE, (uint64_t)from_top);
             seen += through[node][i] = through_from_ground(&way, foot);
             both += through[node][i] * through_from_ground(&near, foot);
         }
@@ -156,7 +157,7 @@ static void find_ground_powers(PowerWork *work, int from_top) {
     }
     for (int eye = 0; eye < PAIR_NODES; eye++)
         for (int light = 0; light < PAIR_NODES; light++) {
-            float both = 0, seen = 0, truth = pair_open(&work->truth->views[eye], &work->truth->views[light], work->truth->grid);
+            float both = 0, seen = 0, truth = work->open[eye * PAIR_NODES + light];
             for (int i = 0; i < GROUND_PLACES; i++) both += through[eye][i] * through[light][i], seen += through[eye][i];
             float spot = float_min(0.9f, voxel_layer_spot(layer, work->d[eye], work->d[light])); /* is added when the power is used */
             if (truth >= 0) truth = float_max(0, (truth - spot) / (1 - spot));
@@ -205,6 +206,7 @@ bool voxel_layer_find_powers(VoxelLayer *layer, const LitTruth *truth, Vec3f ext
     PowerWork work = {.layer = layer, .truth = truth, .extent = extent};
     voxel_layer_forget_powers(layer);
     for (int i = 0; i < PAIR_NODES; i++) work.d[i] = vec3f_normalize(vec3f(truth->views[i].slope_x, 1, truth->views[i].slope_z));
+    for (int i = 0; i < PAIR_NODES * PAIR_NODES; i++) work.open[i] = pair_open(&truth->views[i / PAIR_NODES], &truth->views[i % PAIR_NODES], truth->grid);
     bool done = pool_run(pool, (size_t)(levels * (PAIR_NODES + 1)), find_powers, &work);
     for (int i = 0; i < levels; i++) {
         lay_peak(layer->pairs.matter[i], truth->lit_beside, work.matter_beside[i], 1);

@@ -31,11 +31,11 @@ static Vec3 net_direction(const SkyNet *net, int i) {
 }
 
 /* One line of sight alone in its pixel has the same net as its neighbours, and no noise; of several each has another, and all of them
- * together lie well. */
-static SkyNet net_of(const SurfaceTracer *tracer, const SkyPlace *place, double part, double count, uint64_t seed) {
+ * together lie well if there is a `draw`. */
+static SkyNet net_of(const Draw *draw, const SkyPlace *place, double part, double count, uint64_t seed) {
     SkyNet net = {.up = place->normal, .even = place->even, .count = int_max(1, double_to_int(ceil(count * part), 1, MOST_OF_MANY)), .shift = 0.5};
     vec3_frame(net.up, &net.across, &net.along);
-    if (part < 1 && tracer->draw) draw_pair(tracer->draw, DRAW_SKY + (uint32_t)place->leg->level * DRAW_STEP, &net.turn, &net.shift);
+    if (part < 1 && draw) draw_pair(draw, DRAW_SKY + (uint32_t)place->leg->level * DRAW_STEP, &net.turn, &net.shift);
     else if (part < 1) net.turn = random_unit(random_mix(seed)), net.shift = random_unit(random_mix(seed + 1));
     return net;
 }
@@ -92,11 +92,11 @@ static bool nothing_above(const SurfaceTracer *tracer, const SkyPlace *place) {
 static Vec3f past_objects(SurfaceTracer *tracer, const SkyPlace *place, double part, double few, double many, uint64_t seed) {
     SkySum sum = {{0, 0, 0}, 0, false};
     bool twice = few * part >= LEAST_TWICE;
-    SkyNet net = net_of(tracer, place, part, twice ? fmax(few, FEWEST / part) : many, seed);
+    SkyNet net = net_of(tracer->draw, place, part, twice ? fmax(few, FEWEST / part) : many, seed);
     if (!tracer->exact && nothing_above(tracer, place)) return vec3f(1, 1, 1);
     ask_net(tracer, place, &net, &sum);
     if (twice && sum.mixed && many * part > net.count) {
-        net = net_of(tracer, place, part, many, seed + 2);
+        net = net_of(tracer->draw, place, part, many, seed + 2);
         ask_net(tracer, place, &net, &sum);
     }
     return sum.asked ? vec3f_scale(sum.open, 1 / (float)sum.asked) : vec3f(1, 1, 1);
@@ -109,6 +109,6 @@ Vec3f surface_sky(SurfaceTracer *tracer, const SkyPlace *place, float worth, uin
     double few = double_clamp(contrast / MISSED, FEWEST, MOST_OF_FEW), many = double_clamp(pow(SCATTER * contrast / WRONG, 4.0 / 3), few, MOST_OF_MANY);
     Vec3f open = past_objects(tracer, place, part, few, many, seed);
     if (!tracer->passing || tracer->exact || !(open.x > 0 || open.y > 0 || open.z > 0)) return open;
-    SkyNet net = net_of(tracer, place, part, double_clamp(few / 4, FEWEST_CONES, MOST_CONES), seed + 4);
+    SkyNet net = net_of(NULL, place, part, double_clamp(few / 4, FEWEST_CONES, MOST_CONES), seed + 4);
     return vec3f_scale(open, through_skins(tracer, place, &net));
 }

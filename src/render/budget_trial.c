@@ -151,7 +151,7 @@ static void try_stages(Trial *t, const bool *wanted) {
     for (int i = 0; i < BUDGET_STAGES; i++) {
         found.known[i] = wanted[i];
         if (!wanted[i] || i == BUDGET_NOISE) continue;
-        found.laws[i] = law_of(t, i, samples, colors);
+        found.laws[i] = law_of(t, (BudgetStage)i, samples, colors);
         if (i == BUDGET_MEDIA) each = fmin(each, found.laws[i].seconds);
     }
     *b = found;

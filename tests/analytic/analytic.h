@@ -98,6 +98,17 @@ static inline Picture bench_render(const Bench *b, const VtsOptions *options, co
     return picture_read(b->output);
 }
 
+/* As it is drawn, or by the reference. */
+static inline Picture bench_see(const Bench *b, const VtsOptions *options, const char *text, bool exact) {
+    if (!exact) return bench_render(b, options, text);
+    bench_write(b, text);
+    VtsSession *session = vts_session_create(options, NULL);
+    assert_non_null(session);
+    assert_int_equal(vts_reference(session, b->scene, b->output), VTS_OK);
+    vts_session_destroy(session);
+    return picture_read(b->output);
+}
+
 static inline VtsOptions options_of_size(int width, int height) {
     VtsOptions o = vts_options_default();
     o.width = width, o.height = height, o.threads = 2;
@@ -127,6 +138,21 @@ static inline double picture_mean(const Picture *p) {
     size_t n = 3 * (size_t)p->width * (size_t)p->height;
     for (size_t i = 0; i < n; i++) sum += (double)p->pixels[i];
     return sum / (double)n;
+}
+
+/* Mean light of what bench_see() sees. */
+static inline double bench_mean(const Bench *b, const VtsOptions *options, const char *text, bool exact) {
+    Picture p = bench_see(b, options, text, exact);
+    double mean = picture_mean(&p);
+    picture_free(&p);
+    return mean;
+}
+
+/* Of a report: the number behind the key, which is there. */
+static inline double number_after(const char *text, const char *key) {
+    const char *at = strstr(text, key);
+    assert_non_null(at);
+    return strtod(at + strlen(key), NULL);
 }
 
 /* The camera of these scenes looks down along -y from height `h`: orthographic, `side` wide and high; the upper edge lies

@@ -17,12 +17,6 @@ typedef struct Work {
     double triangles, steps, error;
 } Work;
 
-static double number_after(const char *text, const char *key) {
-    const char *at = strstr(text, key);
-    assert_non_null(at);
-    return strtod(at + strlen(key), NULL);
-}
-
 static Work work_of(const Bench *b, const char *knobs, double max_error) {
     static char scene[4096];
     VtsOptions o = options_of_size(128, 96);

@@ -31,15 +31,7 @@ typedef struct LightCase {
 static double mean_of(const Bench *b, const char *text, bool exact) {
     VtsOptions o = options_of_size(32, 24);
     o.reference_samples = 24;
-    bench_write(b, text);
-    VtsSession *session = vts_session_create(&o, NULL);
-    assert_non_null(session);
-    assert_int_equal(exact ? vts_reference(session, b->scene, b->output) : vts_render(session, b->scene, b->output), VTS_OK);
-    vts_session_destroy(session);
-    Picture p = picture_read(b->output);
-    double mean = picture_mean(&p);
-    picture_free(&p);
-    return mean;
+    return bench_mean(b, &o, text, exact);
 }
 
 static void mean_light_is_that_of_the_geometry(void **state) {

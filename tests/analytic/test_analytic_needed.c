@@ -17,12 +17,6 @@ typedef struct Built {
     double needed, built, voxels;
 } Built;
 
-static double number_after(const char *text, const char *key) {
-    const char *at = strstr(text, key);
-    assert_non_null(at);
-    return strtod(at + strlen(key), NULL);
-}
-
 static Built seen_from(const Bench *b, const char *camera, const char *knobs) {
     static char scene[4096];
     VtsOptions o = options_of_size(64, 48);

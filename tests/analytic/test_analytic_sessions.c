@@ -55,12 +55,10 @@ static void threads_do_not_change_pixels(void **state) {
 
 /* ---- the report ---- */
 
-static double number_after(const char *text, const char *key) {
+static double number_of(const char *text, const char *key) {
     char quoted[64];
     snprintf(quoted, sizeof quoted, "\"%s\":", key);
-    const char *at = strstr(text, quoted);
-    assert_non_null(at);
-    return strtod(at + strlen(quoted), NULL);
+    return number_after(text, quoted);
 }
 
 /* Within a session, texels are built once. */
@@ -88,18 +86,18 @@ static void the_report_counts_what_was_done(void **state) {
     assert_string_equal(vts_report(session), "");
     assert_int_equal(vts_render(session, b->scene, b->output), VTS_OK);
     const char *r = vts_report(session);
-    assert_true(number_after(r, "camera") >= 3500 && number_after(r, "camera") <= 3500 * 17);
-    assert_true(number_after(r, "shadow") > 100 && number_after(r, "shadow") < 1e7);
-    assert_true(number_after(r, "voxels_visited") > 1000);
-    assert_true(number_after(r, "march_steps") > 1000);
-    assert_true(number_after(r, "split_pixels") > 0 && number_after(r, "split_pixels") < 3500);
-    double wall = number_after(r, "wall_s"), parts = number_after(r, "parse_s") + number_after(r, "build_s") + number_after(r, "render_s");
+    assert_true(number_of(r, "camera") >= 3500 && number_of(r, "camera") <= 3500 * 17);
+    assert_true(number_of(r, "shadow") > 100 && number_of(r, "shadow") < 1e7);
+    assert_true(number_of(r, "voxels_visited") > 1000);
+    assert_true(number_of(r, "march_steps") > 1000);
+    assert_true(number_of(r, "split_pixels") > 0 && number_of(r, "split_pixels") < 3500);
+    double wall = number_of(r, "wall_s"), parts = number_of(r, "parse_s") + number_of(r, "build_s") + number_of(r, "render_s");
     assert_true(parts > 0 && parts <= wall * 1.001 + .001);
-    assert_true(number_after(r, "peak_rss_bytes") > 1e6 && number_after(r, "peak_rss_bytes") < 1e11);
+    assert_true(number_of(r, "peak_rss_bytes") > 1e6 && number_of(r, "peak_rss_bytes") < 1e11);
     assert_non_null(strstr(r, "\"name\":\"Tuft\""));
     assert_non_null(strstr(r, "\"name\":\"Ball\""));
-    assert_true(number_after(r, "built") == 32 || number_after(r, "built") == 16 || number_after(r, "built") == 8);
-    assert_true(number_after(r, "bytes") > 0);
+    assert_true(number_of(r, "built") == 32 || number_of(r, "built") == 16 || number_of(r, "built") == 8);
+    assert_true(number_of(r, "bytes") > 0);
     vts_session_destroy(session);
 }
 
@@ -130,7 +128,7 @@ static void the_error_is_as_expected(void **state) {
             bench_write(b, scenes[k]);
             VtsSession *session = vts_session_create(&o, NULL);
             assert_int_equal(vts_render(session, b->scene, b->output), VTS_OK);
-            double expected = number_after(vts_report(session), "error_estimate");
+            double expected = number_of(vts_report(session), "error_estimate");
             vts_session_destroy(session);
             Picture p = picture_read(b->output);
             double rms = picture_difference(&truth, &p).rms;

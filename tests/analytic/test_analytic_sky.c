@@ -14,12 +14,7 @@ static Picture picture_of(const Bench *b, const char *setting, const char *objec
     o.reference_samples = 32;
     int n = snprintf(text, sizeof text, ABOVE, setting);
     snprintf(text + n, sizeof text - (size_t)n, "%s", objects);
-    bench_write(b, text);
-    VtsSession *session = vts_session_create(&o, NULL);
-    assert_non_null(session);
-    assert_int_equal(exact ? vts_reference(session, b->scene, b->output) : vts_render(session, b->scene, b->output), VTS_OK);
-    vts_session_destroy(session);
-    return picture_read(b->output);
+    return bench_see(b, &o, text, exact);
 }
 
 static double x_of(int px) { return (px + 0.5) / 4 - 4; }

@@ -51,15 +51,7 @@ static double light_of_wood(Bench *bench, bool exact, bool wang, const char *dis
     o.include_dirs = folders, o.include_dir_count = 1;
     if (exact) o.reference_samples = 24;
     else o.settings = &voxels, o.setting_count = 1;
-    bench_write(bench, scene);
-    VtsSession *session = vts_session_create(&o, NULL);
-    assert_non_null(session);
-    assert_int_equal(exact ? vts_reference(session, bench->scene, bench->output) : vts_render(session, bench->scene, bench->output), VTS_OK);
-    vts_session_destroy(session);
-    Picture p = picture_read(bench->output);
-    double mean = picture_mean(&p);
-    picture_free(&p);
-    return mean;
+    return bench_mean(bench, &o, scene, exact);
 }
 
 /* A tile in 10, 5 and 1 pixels. It was a quarter to a half of the light where eye and sun are nearly one, by voxels that take what is seen for any of their matter. */

@@ -119,12 +119,13 @@ VTS_API VtsStatus vts_render(VtsSession *session, const char *scene_path, const 
 /* What the scene's `animation` says. */
 typedef struct VtsFilm {
     bool exists; /* the scene has one */
+    bool wrong;  /* the scene fails before it can be told; vts_check() tells why */
     int frames;  /* counted from 1 */
     double fps, first_clock, last_clock;
     bool cyclic; /* last_clock is that of the frame after the last */
     double shutter;
 } VtsFilm;
-/* Reads the scene, silently, as far as its `animation`. A scene that is wrong has none: the next call tells why. */
+/* Reads the scene, silently, as far as its `animation`. A scene that is wrong has none. */
 VTS_API VtsStatus vts_film(VtsSession *session, const char *scene_path, VtsFilm *out);
 /* The calls after this one are about another frame: takes over `frame` to `cycle` from the options, and forgets texts and names. What
  * has been built is kept, and used again where it comes out the same; warnings are told once; vts_report() has all frames so far. */

@@ -51,6 +51,7 @@ VtsStatus session_film(VtsSession *session, const char *scene_path, VtsFilm *out
         session_evaluate(session, scene_path, (EvalMode){.writes_in_memory = true, .ends_at_film = true});
     session->probing = false;
     if (status == VTS_INTERRUPTED) return status;
+    out->wrong = status != VTS_OK;
     const Film *film = status == VTS_OK ? session->scene->film : NULL;
     if (film)
         *out = (VtsFilm){.exists = true,

@@ -1,6 +1,7 @@
 #include "cli/frames.h"
 
 #include "cli/complaint.h"
+#include "cli/movie.h"
 #include "cli/option_value.h"
 
 #include <limits.h>
@@ -129,6 +130,10 @@ VtsStatus film_join(VtsSession *session, Settings *settings, const char *scene, 
     if (picture && a->asked.count)
         return (VtsStatus)complain_usage(settings, "--clock and --frames: a frame has its own clock");
     if (film.exists) take_over(a, &film);
+    /* Not that it has no animation is what its user wants to know. */
+    if (film.wrong && !a->on && (a->asked.count || (settings->output && movie_is(settings->output))) &&
+        (status = vts_check(session, scene)) != VTS_OK)
+        return status;
     if (!a->on && a->asked.count)
         return (VtsStatus)complain_usage(settings, "--frames: '%s' has no animation { … } that says how many there are", scene);
     a->first_only = use == FILM_FIRST && !a->frames_given && !a->asked.count && a->subset_first <= 0 && a->subset_last <= 0;

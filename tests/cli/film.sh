@@ -51,6 +51,11 @@ case_bad_frames() {
   refused render film.vts --fps 0; refused render film.vts --fps=-2; refused render film.vts --fps nan
   refused render film.vts +SF5
   sed -i 1d film.vts; refused render film.vts -f 1; want_in err 'no animation'
+  # What is wrong with a scene comes before that its film is not known.
+  printf 'sphere { 0, Radius }\nanimation { frames 4 }\n' >wrong.vts
+  run wrong.vts -f 1; want_status 1; want_in err "'Radius'"
+  run wrong.vts -o wrong.mp4; want_status 1; want_in err "'Radius'"
+  rm wrong.vts
   local wrong
   for wrong in 'frames 0' 'frames -3' 'frames 1.5' 'frames 1e10' 'fps 0' 'fps -1' 'clock 0' 'clock 1/0, 1' 'shutter 2' 'frames 2 frames 3' 'frame 3' \
     '} animation { frames 2'; do

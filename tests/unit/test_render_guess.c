@@ -106,22 +106,23 @@ static void test_curved_light_is_as_exact_as_asked(void **state) {
     }
 }
 
+/* Returns how many were guessed. */
+static int guessed_rightly(World *world) {
+    Middle out[FILM_TILE * FILM_TILE];
+    Watch w = look(world, 0.01, FILM_TILE, FILM_TILE, out);
+    assert_true(worst(&w, out, FILM_TILE, FILM_TILE) < 1e-5);
+    return w.guessed;
+}
+
 static void test_edges_of_light_are_found(void **state) {
     (void)state;
-    Middle out[FILM_TILE * FILM_TILE];
-    Watch w = look(edge, 0.01, FILM_TILE, FILM_TILE, out);
-    assert_true(worst(&w, out, FILM_TILE, FILM_TILE) < 1e-5);
-    assert_true(w.guessed > 0);
+    assert_true(guessed_rightly(edge) > 0);
 }
 
 static void test_nothing_is_guessed_over_what_else_is_met(void **state) {
     (void)state;
-    Middle out[FILM_TILE * FILM_TILE];
-    Watch w = look(two, 0.01, FILM_TILE, FILM_TILE, out);
-    assert_true(worst(&w, out, FILM_TILE, FILM_TILE) < 1e-5);
-    w = look(thin, 0.01, FILM_TILE, FILM_TILE, out);
-    assert_true(worst(&w, out, FILM_TILE, FILM_TILE) < 1e-5);
-    assert_true(w.guessed > 0);
+    guessed_rightly(two);
+    assert_true(guessed_rightly(thin) > 0);
 }
 
 /* Specks lie between the corners; the guesses that are tried tell. */

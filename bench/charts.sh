@@ -9,25 +9,17 @@
 # --peers: the folder of the programs that bench/field/run.sh compares with (or the variable VTS_PEERS); without it that comparison is left out.
 set -eu -o pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
-vts=$here/build/vts out=charts-out size=320x240 rays=256 repeat=3 quick='' only='' peers=${VTS_PEERS:-}
-while [ $# -gt 0 ]; do
-  case $1 in
-  --quick) quick=1 size=96x72 rays=64 repeat=1 ;;
-  --only) only=" $2 " && shift ;;
-  --vts) vts=$(readlink -f "$2") && shift ;;
-  --peers) peers=$(readlink -f "$2") && shift ;;
-  -*) echo "usage: $0 [--quick] [--only \"NAME …\"] [--vts PATH] [--peers FOLDER] [OUT]" >&2 && exit 2 ;;
-  *) out=$1 ;;
-  esac
-  shift
-done
+. "$here/bench/options.sh"
+vts=$here/build/vts quick='' only='' peers=${VTS_PEERS:-}
+read_options "quick! only vts peers" "[OUT]" "$@"
+out=${operands[0]:-charts-out} size=320x240 rays=256 repeat=3 small=400x300
+[ -z "$quick" ] || size=96x72 rays=64 repeat=1 small=200x150
+vts=$(readlink -f "$vts") peers=${peers:+$(readlink -f "$peers")}
 [ -x "$vts" ] || { echo "$0: no program $vts" >&2; exit 2; }
 mkdir -p "$out/references"
 out=$(readlink -f "$out")
 cd "$here"
 failed=''
-small=400x300
-[ -z "$quick" ] || small=200x150
 
 # reference SCENE-FILE NAME: two pictures of different seeds, whose difference is their noise.
 reference() {
@@ -42,7 +34,7 @@ reference() {
 chart() {
   local name=$1 scene=$2
   shift 2
-  [ -z "$only" ] || [[ $only == *" $name "* ]] || return 0
+  is_wanted "$name" || return 0
   local stem=${scene##*/} given=() frames=''
   for word in "$@"; do [ "$word" = --frames ] && frames=1; done
   if [ -z "$frames" ]; then
@@ -84,7 +76,7 @@ rm -f "$out/said"
 peer() { # NAME COMMAND…
   local name=$1
   shift
-  [ -z "$only" ] || [[ $only == *" $name "* ]] || return 0
+  is_wanted "$name" || return 0
   echo "== $name"
   "$@" >"$out/$name.txt" 2>&1 || { echo "$name: $(tail -n 1 "$out/$name.txt")" >&2; failed+=" $name"; }
 }

@@ -8,19 +8,10 @@
 # then. Writes NAME.csv and NAME.svg into OUT (default: flicker-out), where references are kept: what was stopped goes on when it is called again.
 set -eu -o pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
-vts=$here/build/vts out=flicker-out size=64x40 rays=64 frames=24 only=''
-while [ $# -gt 0 ]; do
-  case $1 in
-  --size) size=$2 && shift ;;
-  --rays) rays=$2 && shift ;;
-  --frames) frames=$2 && shift ;;
-  --only) only=" $2 " && shift ;;
-  --vts) vts=$(readlink -f "$2") && shift ;;
-  -*) echo "usage: $0 [--size WxH] [--rays N] [--frames N] [--only \"NAME …\"] [--vts PATH] [OUT]" >&2 && exit 2 ;;
-  *) out=$1 ;;
-  esac
-  shift
-done
+. "$here/bench/options.sh"
+vts=$here/build/vts size=64x40 rays=64 frames=24 only=''
+read_options "size rays frames only vts" "[OUT]" "$@"
+out=${operands[0]:-flicker-out}
 [ -x "$vts" ] || { echo "$0: no program $vts" >&2; exit 2; }
 mkdir -p "$out"
 error=1/255
@@ -30,7 +21,7 @@ failed=0
 film() {
   local name=$1 scene=$2
   shift 2
-  [ -z "$only" ] || [[ $only == *" $name "* ]] || return 0
+  is_wanted "$name" || return 0
   if ! nice "$vts" chart "$scene" -s "$size" -f "1-$frames" --samples "$rays" --sweep max_error=$error --allow-read "$here/examples" \
     --keep "$out/$name" --resume --progress none "$@" -o "$out/$name.svg" >"$out/said" 2>&1; then
     echo "$name: $(grep error "$out/said" | head -n 1)" >&2

@@ -5,9 +5,11 @@
 #include "eval/eval.h"
 #include "hooks.h"
 #include "render/audit.h"
+#include "render/exact_memo.h"
 #include "render/preview.h"
 #include "render/reference.h"
 #include "render/report.h"
+#include "render/verdict.h"
 #include "render/volume_memo.h"
 #include "scene/knobs.h"
 
@@ -135,6 +137,7 @@ void vts_session_destroy(VtsSession *session) {
     end_call(session);
     session_trim_nets(session, true);
     volume_memo_destroy(session->volume_memo);
+    exact_memo_destroy(session->exact_memo);
     free(session->last_error);
     texel_cache_destroy(session->texels);
     pool_destroy(session->pool);
@@ -420,7 +423,7 @@ VtsStatus session_draw(VtsSession *session, bool exact, const MomentPlan *plan, 
     if (session->interrupted) return VTS_INTERRUPTED;
     if (!done) memory_budget_fail(&session->memory);
     if (session->audits && !plan->unseen) {
-        const CompileOptions how = {.pool = session->pool, .memory = &session->memory, .interrupted = &session->interrupted};
+        const CompileOptions how = {.pool = session->pool, .memory = &session->memory, .interrupted = &session->interrupted, .exact_memo = session->exact_memo};
         audit_picture(&session->compiled, &how, &options, &session->picture, stats);
     }
     return VTS_OK;
@@ -470,6 +473,7 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
     session->audits = !exact && !o->unreported;
     if ((status = session_expose(session, scene_path, exact, &stats)) != VTS_OK) return status;
     stats.kept_tiles = session->tiles_taken + tile_file_taken(session->kept);
+    if (!exact) verdict_tell(&session->compiled, &stats, &session->diags);
     double rendered = stopwatch_wall();
     session_mark_part(session);
     if ((status = session_save_picture(session, scene_path, output_path)) != VTS_OK) return status;
@@ -574,6 +578,7 @@ static VtsStatus guarded(VtsSession *session, const Call *call) {
         status = VTS_ERROR_MEMORY;
         report_memory(session);
         texel_cache_clear(session->texels);
+        exact_memo_clear(session->exact_memo);
     }
     end_call(session);
     session_trim_nets(session, false);

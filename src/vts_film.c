@@ -2,6 +2,7 @@
 #include "vts_session.h"
 
 #include "image/film_file.h"
+#include "render/exact_memo.h"
 #include "render/volume_memo.h"
 
 #include <stdio.h>
@@ -128,4 +129,5 @@ void vts_set_frame(VtsSession *session, const VtsOptions *frame) {
     o->shutter_clock = frame->shutter_clock, o->shutter_time = frame->shutter_time;
     session->in_film = session->renew = true;
     if (!session->volume_memo) session->volume_memo = volume_memo_create();
+    if (!session->exact_memo) session->exact_memo = exact_memo_create(&session->memory);
 }

@@ -44,7 +44,8 @@ struct VtsSession {
     CompiledScene compiled;
     Image picture;
     MomentMean blurred, scout; /* vts_shutter.c */
-    struct VolumeMemo *volume_memo; /* of films */
+    struct VolumeMemo *volume_memo; /* of films, */
+    struct ExactMemo *exact_memo;   /* likewise */
     PilotResult pilot;
     struct FilmPilot {
         bool told;            /* by this frame */

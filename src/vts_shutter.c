@@ -13,9 +13,9 @@
 enum { MOST_INTERVALS = 128, MOST_REFERENCE_INTERVALS = 64, BLOCK = 8 };
 /* So many moments are drawn with the same random numbers, so that what rests is told from what moves. */
 enum { MOMENTS_ALIKE = 3 };
-/* A pixel of the scout's is so many of the picture's each way, and has so many samples; where skins are, which cost little more for that. Between the
- * moments of more intervals than these little passes through a tile unseen. */
-enum { SCOUT = 4, SCOUT_SAMPLES = 1, SCOUT_SKIN_SAMPLES = 16, SCOUT_INTERVALS = 16 };
+/* A pixel of the scout's is at least so many of the picture's each way, as many more, up to a tile, as leave the scout no larger than that, and has so many samples; where
+ * skins are, which cost little more for that. Between the moments of more intervals than these little passes through a tile unseen. */
+enum { LEAST_SCOUT = 4, MOST_SCOUT_PIXELS = 512, SCOUT_SAMPLES = 1, SCOUT_SKIN_SAMPLES = 16, SCOUT_INTERVALS = 16 };
 /* The mean so far may have all the noise that is accepted, and the mean between so many times its square: that of both is then no more. */
 static const double NOISE_BETWEEN = 3;
 
@@ -27,6 +27,7 @@ typedef struct Exposure {
     int region[4]; /* whole tiles */
     MomentMean *mean, *scout;
     int scout_size[2];
+    int scout_pixel; /* of the picture's each way */
     bool scouting; /* the scout's tiles are not all finished */
     int moments;   /* drawn so far */
 } Exposure;
@@ -112,8 +113,8 @@ static VtsStatus draw_scout(Exposure *e, MomentPlace place) {
     plan.samples = compiled->skin_count ? SCOUT_SKIN_SAMPLES : SCOUT_SAMPLES;
     RenderStats stats;
     compiled->view.width = region[2], compiled->view.height = region[3];
-    view_prepare(&compiled->view);
-    ExactReach reach = beam_reach_set(compiled, 1.0 / SCOUT);
+    view_prepare(&compiled->view, compiled->arena);
+    ExactReach reach = beam_reach_set(compiled, 1.0 / e->scout_pixel);
     VtsStatus status = session_draw(session, false, &plan, &stats);
     beam_reach_reset(compiled, reach);
     compiled->view = view;
@@ -185,6 +186,13 @@ static void crop(const Exposure *e) {
     moment_mean_free(&session->scout);
 }
 
+/* Whole ones lie in a tile. */
+static int scout_pixel(int width, int height) {
+    int pixel = LEAST_SCOUT;
+    while (pixel < FILM_TILE && int_max(width, height) > MOST_SCOUT_PIXELS * pixel) pixel *= 2;
+    return pixel;
+}
+
 static void lay_tiles(Exposure *e) {
     const VtsOptions *o = &e->session->options;
     Arena *arena = &e->session->arena;
@@ -196,8 +204,9 @@ static void lay_tiles(Exposure *e) {
     int channels = o->alpha ? 4 : 3;
     *e->mean = (MomentMean){.x0 = r[0], .y0 = r[1], .tile = FILM_TILE, .block = BLOCK, .channels = channels};
     moment_mean_lay(e->mean, r[2] - r[0], r[3] - r[1], arena);
-    e->scout_size[0] = (o->width + SCOUT - 1) / SCOUT, e->scout_size[1] = (o->height + SCOUT - 1) / SCOUT;
-    *e->scout = (MomentMean){.tile = FILM_TILE / SCOUT, .block = BLOCK / SCOUT, .channels = channels};
+    const int pixel = e->scout_pixel = scout_pixel(o->width, o->height);
+    e->scout_size[0] = (o->width + pixel - 1) / pixel, e->scout_size[1] = (o->height + pixel - 1) / pixel;
+    *e->scout = (MomentMean){.tile = FILM_TILE / pixel, .block = int_max(1, BLOCK / pixel), .channels = channels};
     moment_mean_lay(e->scout, e->scout_size[0], e->scout_size[1], arena);
 }
 

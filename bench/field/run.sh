@@ -15,21 +15,14 @@
 # table tells how far the two are apart. Prints tables, writes OUT/field-WxH.csv and, with gnuplot, OUT/field-WxH.svg.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
-scenes="lawn near mid far orchard" size=768x576 truth=256 peer_truth=1024 runs=3 vts=$here/../../build/vts threads=2
-while [ $# -gt 0 ]; do
-  case $1 in
-  --quick) size=384x288 truth=64 ;;
-  --size) size=$2 && shift ;;
-  --scenes) scenes=$2 && shift ;;
-  --runs) runs=$2 && shift ;;
-  --vts) vts=$2 && shift ;;
-  -*) echo "usage: $0 [--quick] [--size WxH] [--scenes \"NAME …\"] [--runs N] [--vts PATH] [PEERS_DIR [OUT]]" >&2 && exit 2 ;;
-  *) break ;;
-  esac
-  shift
-done
-peers=${1:-${VTS_PEERS:-}}
-out=${2:-field-out}
+. "$here/../options.sh"
+scenes="lawn near mid far orchard" size='' quick='' truth=256 peer_truth=1024 runs=3 vts=$here/../../build/vts threads=2
+read_options "quick! size scenes runs vts" "[PEERS_DIR [OUT]]" "$@"
+[ -z "$quick" ] || truth=64
+size=${size:-${quick:+384x288}}
+size=${size:-768x576}
+peers=${operands[0]:-${VTS_PEERS:-}}
+out=${operands[1]:-field-out}
 [ -f "$peers/ref_field.c" ] || { echo "$0: no ref_field.c in '$peers': name the peer's folder, or set VTS_PEERS" >&2 && exit 2; }
 vts=$(readlink -f "$vts")
 mkdir -p "$out/scenes" "$out/truth" "$out/pictures"

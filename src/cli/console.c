@@ -23,7 +23,7 @@ void console_init(Console *console, const Settings *settings) {
     ProgressStyle style = settings->progress;
     if (style == PROGRESS_AUTO) style = terminal ? PROGRESS_BAR : PROGRESS_NONE;
     *console = (Console){
-        .style = style, .terminal = terminal, .verbose = settings->verbose, .dumping = settings->dumps};
+        .style = style, .terminal = terminal, .verbose = settings->verbose, .unwarned = settings->quiet, .dumping = settings->dumps};
 }
 
 void console_clear(Console *console) {
@@ -53,8 +53,7 @@ static void show_text(void *context, VtsStream stream, const char *text) {
 static void show_diagnostic(void *context, const char *text, bool is_error) {
     Console *console = context;
     size_t size = strlen(text);
-    (void)is_error;
-    if (console->quiet) return; /* whoever fails tells what vts_diagnostics() has */
+    if (console->quiet || (console->unwarned && !is_error)) return; /* whoever fails tells what vts_diagnostics() has */
     console_clear(console);
     if (console->within_line) fputc('\n', stderr);
     console->within_line = false;

@@ -13,6 +13,7 @@ typedef struct Console {
     bool bar_shown;   /* the last line holds a bar */
     bool within_line; /* the last text did not end its line: no bar now */
     bool diagnostics_shown;
+    bool unwarned;      /* warnings are dropped */
     bool quiet;         /* the scene has spoken before: its texts and diagnostics are dropped */
     char part[48];      /* of a larger work, before each stage: "3/12 " */
     long long works, works_done; /* pictures of a film that are wanted, and drawn or found so far; 0: no film */

@@ -154,6 +154,11 @@ static const char *apply_verbose(Settings *s, const char *value) {
     s->verbose = true;
     return NULL;
 }
+static const char *apply_quiet(Settings *s, const char *value) {
+    (void)value;
+    s->quiet = true;
+    return NULL;
+}
 static const char *apply_metric(Settings *s, const char *value) {
     s->metrics = value;
     return compare_metrics_valid(value) ? NULL : "some of rmse,psnr,flip,max";
@@ -271,6 +276,7 @@ static const Option OPTIONS[] = {
     {"dump", 0, "tokens|ast|scene|tape|compiled", COMMAND_RUN, apply_dump,
      "prints one stage of the program instead"},
     {"verbose", 'v', NULL, COMMAND_ALL, apply_verbose, "says more about what is done"},
+    {"quiet", 0, NULL, COMMAND_ALL, apply_quiet, "says nothing of warnings"},
     {"regions", 0, "NxM", COMMAND_FARM, apply_regions, "cuts each picture into N columns and M rows, which another job joins"},
     {"chunk", 0, "N", COMMAND_FARM, apply_chunk, "frames of one job; default: 1, or what makes at most 1000 tasks of an array"},
     {"at-once", 0, "N", COMMAND_FARM, apply_at_once, "slurm: at most so many tasks run together"},

@@ -60,7 +60,7 @@ typedef struct Settings {
     const char *keep;           /* of chart: a folder for its pictures, or NULL */
     int repeats;                /* of chart: renderings of each point; 0: 1 */
     ProgressStyle progress;
-    bool verbose;
+    bool verbose, quiet;        /* quiet: no warnings */
     bool help;
     int regions[2];             /* of farm: columns and rows that a picture is cut into; 0: it is not */
     int chunk, at_once;         /* of farm: frames of a job, tasks of an array that run together; 0: not said */

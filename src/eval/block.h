@@ -133,6 +133,10 @@ bool eval_is_keyword(const BuildContext *context, Name word);
 /* The nearest of `words` and of the declared names, or NULL: for a hint. */
 const char *eval_suggest_name(const BuildContext *context, const char *text, const char *const *words,
                               size_t word_count);
+/* Tells in the hint of `d` (NULL: nothing) what likely helps where `text` is not declared: which file of the library declares it, the
+ * nearest of `words` and of the declared names, or names that begin with it. */
+void eval_hint_name(const BuildContext *context, Diagnostic *d, const char *text, const char *const *words,
+                    size_t word_count);
 
 /* The builders' other entry: a value that stands at top level of the file goes into the scene. False after a diagnostic
  * ("a float has no meaning here"). `declared texels` and the like that stand alone are errors too. */

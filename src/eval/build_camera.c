@@ -32,7 +32,7 @@ static const struct {
     {"panoramic", CAMERA_PANORAMIC},
     {"spherical", CAMERA_SPHERICAL},
     {"cylinder", CAMERA_CYLINDER_1},
-    {"mesh_camera", CAMERA_PERSPECTIVE},
+    {"mesh_camera", CAMERA_MESH},
 };
 
 /* As in POV-Ray, since the kind decides what the words after it mean. */
@@ -86,6 +86,62 @@ static void read_cylinder(Reader *reader, const Word *word, CameraDraft *draft) 
         draft->camera.kind = (CameraKind)(CAMERA_CYLINDER_1 + (int)type - 1);
 }
 
+/* The numbers before a mesh_camera's meshes, and these. */
+typedef struct MeshDraft {
+    struct {
+        CameraMesh *items;
+        size_t count, capacity;
+    } meshes;
+    double numbers[2];
+    size_t number_count;
+    bool smooth;
+} MeshDraft;
+
+static bool on_mesh(Reader *reader, const Argument *value, void *target) {
+    MeshDraft *draft = target;
+    if (value->value.kind == VALUE_FLOAT && draft->number_count < 2 && !draft->meshes.count) {
+        draft->numbers[draft->number_count++] = value->value.as.number;
+        return true;
+    }
+    const Object *object = value->value.kind == VALUE_OBJECT ? value->value.as.object : NULL;
+    if (!object || object->kind != OBJECT_TRIANGLES) return false;
+    *list_push(reader->context->arena, &draft->meshes) = (CameraMesh){object->as.mesh, object_transform(object)};
+    return true;
+}
+
+static void read_meshes(Reader *reader, const Word *word, CameraDraft *draft) {
+    static const WordRule mesh_rules[] = {{"smooth", WORD_MARK, offsetof(MeshDraft, smooth), NULL, false}};
+    MeshDraft meshes = {.number_count = 0};
+    if (!word->body) return; /* grammar_word() has told */
+    Reader body = reader_nested(reader, word->body);
+    reader_add_table(&body, mesh_rules, VTS_ARRAY_COUNT(mesh_rules), &meshes);
+    body.on_value = on_mesh;
+    body.value_target = &meshes;
+    reader_run(&body);
+    reader_end_nested(reader, &body);
+    double rays = meshes.numbers[0], spread = meshes.numbers[1];
+    if (!(rays >= 1 && rays <= MOST_BLUR_SAMPLES && spread >= 0 && spread <= 3) || meshes.number_count < 2)
+        reader_error(reader, word->span, "'mesh_camera' takes the rays of a pixel, at least 1, and their distribution, 0 to 3");
+    else if (!meshes.meshes.count || ((int)spread == MESH_SPREAD_RAYS && (double)meshes.meshes.count < floor(rays)))
+        reader_error(reader, word->span, "'mesh_camera' has fewer meshes than it needs");
+    else {
+        MeshCamera *made = arena_new(reader->context->arena, MeshCamera);
+        *made = (MeshCamera){.rays = spread < MESH_SPREAD_ASIDE ? (int)rays : 1, .spread = (MeshSpread)(int)spread, .smooth = meshes.smooth,
+                             .meshes = meshes.meshes.items, .mesh_count = meshes.meshes.count};
+        draft->camera.mesh = made;
+    }
+}
+
+/* Of the camera's own vectors these alone count, as they are written. */
+static void aim_meshes(Reader *reader, Camera *camera) {
+    if (camera->kind != CAMERA_MESH || !camera->mesh) return;
+    MeshCamera *made = arena_new(reader->context->arena, MeshCamera);
+    *made = *camera->mesh;
+    made->ahead = camera->location.z;
+    made->backwards = camera->direction.z < 0;
+    camera->mesh = made;
+}
+
 static void read_kind(Reader *reader, const Word *word, void *target) {
     CameraDraft *draft = target;
     expect_first(reader, word);
@@ -93,8 +149,7 @@ static void read_kind(Reader *reader, const Word *word, void *target) {
     for (size_t k = 0; k < VTS_ARRAY_COUNT(kinds); k++)
         if (strcmp(kinds[k].word, word->text) == 0) draft->camera.kind = kinds[k].kind;
     if (strcmp(word->text, "cylinder") == 0) read_cylinder(reader, word, draft);
-    if (strcmp(word->text, "mesh_camera") == 0)
-        inert_add(reader->context, &draft->camera.inert, word->text, word->span);
+    if (strcmp(word->text, "mesh_camera") == 0) read_meshes(reader, word, draft);
 }
 
 /* One number is the most; of two the first is the least. */
@@ -148,7 +203,6 @@ static const WordRule rules[] = {
     {"blur_samples", WORD_CUSTOM, 0, read_blur_samples, false},
     {"confidence", WORD_FLOAT, FIELD(camera.confidence), NULL, false},
     {"variance", WORD_FLOAT, FIELD(camera.variance), NULL, false},
-    IGNORED("smooth"),
 };
 
 static void apply_angle(CameraDraft *draft) {
@@ -265,6 +319,7 @@ bool build_camera(BuildContext *context, const EvalBlock *block, Value *out) {
     reader.value_target = &draft;
     if (!reader_run(&reader) || !check_angle(&reader, &draft)) return false;
     if (!copy) apply_wide_angle(&draft);
+    if (!copy) aim_meshes(&reader, &draft.camera);
     if (draft.angle > 0 && is_flat(&draft.camera)) apply_angle(&draft);
     if (draft.has_look_at && !apply_look_at(&reader, &draft)) return false;
     if (!copy) apply_orthographic(&draft);

@@ -96,7 +96,6 @@ static const char *what_happens(const BuildContext *context, const char *word) {
         const char *word, *text;
     } effects[] = {
         {"area_light", "is drawn as a point light"},
-        {"mesh_camera", "is drawn as a perspective camera"},
     };
     for (size_t i = 0; i < VTS_ARRAY_COUNT(effects); i++)
         if (strcmp(effects[i].word, word) == 0) return effects[i].text;
@@ -424,5 +423,6 @@ const Scene *scene_draft_finish(SceneDraft *draft, BuildContext *context) {
                      .film = draft->film};
     scene->settings.assumed_gamma = build_assumed_gamma(context);
     scene->settings.geo_origin = context->geo_origin;
+    if (scene->skin_count) scene->settings.sky_light |= scene->settings.radiosity.on; /* what is drawn of it beside skins */
     return scene;
 }

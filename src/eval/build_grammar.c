@@ -204,8 +204,7 @@ static void unknown_word(Reader *reader, const Grammar *grammar, const Word *wor
     }
     Diagnostic *d = reader_error(reader, word->span, "'%s' is neither declared nor a word of '%s'",
                                  word->text, reader->block->word->text);
-    const char *closest = eval_suggest_name(reader->context, word->text, words, count);
-    if (closest) diag_hint(reader->context->diags, d, "did you mean '%s'?", closest);
+    eval_hint_name(reader->context, d, word->text, words, count);
 }
 
 /* ---- blocks ---- */

@@ -1,4 +1,5 @@
 #include "eval/build_parts.h"
+#include "tape/tape.h"
 
 #include <string.h>
 
@@ -79,6 +80,25 @@ static void read_projected(Reader *reader, const Word *word, void *target) {
     inert_add(reader->context, &light->inert, word->text, word->span);
 }
 
+static void read_point_at(Reader *reader, const Word *word, void *target) {
+    Light *light = &((LightDraft *)target)->light;
+    if (word_arguments(reader, word, 1, 1) && word_vector(reader, word, 0, &light->point_at)) light->aimed = true;
+}
+
+static void read_goniometric(Reader *reader, const Word *word, void *target) {
+    Light *light = &((LightDraft *)target)->light;
+    Argument function;
+    if (word->count == 1) function = word->arguments[0];
+    else if (!reader_take_value(reader, VALUE_FUNCTION, &function)) {
+        reader_error(reader, word->span, "'goniometric' needs its function(theta) { … }");
+        return;
+    }
+    /* Of a spline, whose points are the table of a lamp, the first number counts. */
+    bool table = function.value.kind == VALUE_FUNCTION && tape_output_count(function.value.as.function->tape) <= LIGHT_GONIOMETRIC_OUTPUTS;
+    int outputs = table ? tape_output_count(function.value.as.function->tape) : 1;
+    argument_function(reader, &function, "'goniometric'", 1, outputs, &light->goniometric);
+}
+
 static void read_interaction(Reader *reader, const Word *word, void *target) {
     double on = 1;
     if (word_arguments(reader, word, 0, 1) && (word->count == 0 || word_float(reader, word, 0, &on))) ((LightDraft *)target)->light.unscattered = on == 0;
@@ -93,7 +113,7 @@ static const WordRule rules[] = {
     {"parallel", WORD_CUSTOM, 0, read_parallel, false},
     {"spotlight", WORD_CUSTOM, 0, read_kind, false},
     {"cylinder", WORD_CUSTOM, 0, read_kind, false},
-    {"point_at", WORD_VECTOR, FIELD(point_at), NULL, false},
+    {"point_at", WORD_CUSTOM, 0, read_point_at, false},
     {"radius", WORD_FLOAT, FIELD(radius), NULL, false},
     {"falloff", WORD_FLOAT, FIELD(falloff), NULL, false},
     {"tightness", WORD_FLOAT, FIELD(tightness), NULL, false},
@@ -107,7 +127,7 @@ static const WordRule rules[] = {
     {"area_illumination", WORD_FLAG, FIELD(area_illumination), NULL, false},
     {"looks_like", WORD_CUSTOM, 0, read_looks_like, false},
     {"projected_through", WORD_CUSTOM, 0, read_projected, false},
-    INERT("goniometric"),
+    {"goniometric", WORD_CUSTOM, 0, read_goniometric, false},
     INERT("ies"),
     IGNORED("adaptive"), /* shadows are sampled by the error that remains */
     {"media_interaction", WORD_CUSTOM, 0, read_interaction, false},
@@ -149,11 +169,22 @@ const Light *light_placed(const BuildContext *context, const Light *light, const
     return placed;
 }
 
+/* Where a distribution's axis goes when nothing was said: off the light's area, or down, as makers of lamps measure. */
+static void aim(Light *light) {
+    Vec3 off = vec3_cross(light->axis_u, light->axis_v);
+    Vec3 axis = vec3_length(off) > 0 ? vec3_normalize(off) : vec3(0, -1, 0);
+    light->point_at = vec3_add(light->location, axis);
+    light->aimed = true;
+}
+
 /* `copy`: of a declared light, whose looks_like stands where it belongs. */
 static bool finish(Reader *reader, LightDraft *draft, bool copy, Value *out) {
     Light *light = &draft->light;
     if (draft->parallel && light->kind == LIGHT_POINT) light->kind = LIGHT_PARALLEL;
     light->parallel = light->parallel || draft->parallel;
+    if (light->goniometric && light->kind == LIGHT_POINT && !light->aimed) aim(light);
+    if (light->goniometric && light_is_parallel(light))
+        diag_warning(reader->context->diags, reader->block->word_span, "all rays of a parallel light leave it at the same angle: 'goniometric' has no effect");
     if (light->kind != LIGHT_POINT && vec3_length_squared(vec3_sub(light->location, light->point_at)) == 0)
         diag_warning(reader->context->diags, reader->block->word_span,
                      "this light has no direction, for it stands where it points at: it lights nothing");

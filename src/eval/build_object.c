@@ -91,6 +91,7 @@ static const WordRule rules[] = {
     {"bounded_by", WORD_CUSTOM, 0, read_bounded_by, false},
     {"clipped_by", WORD_CUSTOM, 0, read_clipped_by, false},
     {"no_reflection", WORD_FLAG, FIELD(no_reflection), NULL, false},
+    {"no_radiosity", WORD_FLAG, FIELD(no_radiosity), NULL, false},
     {"double_illuminate", WORD_FLAG, FIELD(double_illuminate), NULL, false},
     IGNORED("hierarchy"),
     {"sturm", WORD_CUSTOM, 0, read_restricted, false},
@@ -99,7 +100,6 @@ static const WordRule rules[] = {
     {"inside_vector", WORD_CUSTOM, 0, read_restricted, false},
     IGNORED("photons"),
     IGNORED("radiosity"),
-    IGNORED("no_radiosity"),
     INERT("uv_mapping"),
     {"interior_texture", WORD_CUSTOM, 0, read_inside, false},
 };
@@ -151,6 +151,7 @@ bool object_make(Reader *reader, const ObjectDraft *draft, Value *out) {
     object.no_image = draft->no_image;
     object.inverse = draft->inverse;
     object.no_reflection = draft->no_reflection;
+    object.no_radiosity = draft->no_radiosity;
     object.double_illuminate = draft->double_illuminate;
     object.cutaway = draft->cutaway;
     object.rest = rest->inert || rest->hollow || rest->interior || rest->interior_texture || rest->clipped_by.count || rest->bounded_by.count
@@ -244,6 +245,7 @@ bool build_object(BuildContext *context, const EvalBlock *block, Value *out) {
     draft.no_image = source->no_image;
     draft.inverse = source->inverse;
     draft.no_reflection = source->no_reflection;
+    draft.no_radiosity = source->no_radiosity;
     draft.double_illuminate = source->double_illuminate;
     draft.cutaway = source->cutaway;
     if (source->rest) draft.rest = *source->rest;

@@ -103,7 +103,7 @@ typedef struct ObjectDraft {
     Object object;
     Transform transform; /* becomes the object's place */
     ObjectRest rest;
-    bool no_shadow, no_image, inverse, no_reflection, double_illuminate, cutaway;
+    bool no_shadow, no_image, inverse, no_reflection, no_radiosity, double_illuminate, cutaway;
     const char *word; /* the block's */
 } ObjectDraft;
 ObjectDraft object_begin(const EvalBlock *block, ObjectKind kind);

@@ -300,7 +300,7 @@ static void read_pattern(Reader *reader, const Word *word, void *target) {
     }
 }
 
-/* The first three are drawn. */
+/* Those of one lattice are drawn. */
 static void read_tiling(Reader *reader, const Word *word, void *target) {
     PigmentDraft *draft = target;
     read_pattern(reader, word, target);

@@ -420,14 +420,13 @@ void reader_unknown_word(Reader *reader, const Word *word) {
     if (!closest && silently_undeclared(reader)) return;
     Diagnostic *d = reader_error(reader, word->span, "'%s' is neither declared nor a word of '%s'",
                                  word->text, reader->block->word->text);
-    if (closest) diag_hint(reader->context->diags, d, "did you mean '%s'?", closest);
+    eval_hint_name(reader->context, d, word->text, words, count);
 }
 
 void reader_undeclared(Reader *reader, const char *name, Span span) {
     if (silently_undeclared(reader)) return;
     Diagnostic *d = reader_error(reader, span, "'%s' is not declared", name);
-    const char *closest = eval_suggest_name(reader->context, name, NULL, 0);
-    if (closest) diag_hint(reader->context->diags, d, "did you mean '%s'?", closest);
+    eval_hint_name(reader->context, d, name, NULL, 0);
 }
 
 void reader_word(Reader *reader, const Word *word) {

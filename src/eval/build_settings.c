@@ -96,6 +96,42 @@ static void read_irid_wavelength(Reader *reader, const Word *word, void *target)
         ((SettingsDraft *)target)->settings.irid_wavelength = vec3(color.red, color.green, color.blue);
 }
 
+/* What only tunes POV-Ray's own search for light: checked, and without effect. */
+static void read_tuning(Reader *reader, const Word *word, void *target) {
+    (void)target;
+    grammar_word(reader, word);
+}
+
+static void read_radiosity(Reader *reader, const Word *word, void *target) {
+#define TUNING(word)                                                                                         \
+    { word, WORD_CUSTOM, 0, read_tuning, false }
+    static const WordRule rules[] = {
+        {"brightness", WORD_FLOAT, offsetof(Radiosity, brightness), NULL, false},
+        {"gray_threshold", WORD_FLOAT, offsetof(Radiosity, gray_threshold), NULL, false},
+        {"max_sample", WORD_FLOAT, offsetof(Radiosity, max_sample), NULL, false},
+        {"recursion_limit", WORD_INT, offsetof(Radiosity, bounces), NULL, false},
+        {"normal", WORD_FLAG, offsetof(Radiosity, bumps), NULL, false},
+        {"media", WORD_FLAG, offsetof(Radiosity, media), NULL, false},
+        TUNING("adc_bailout"), TUNING("always_sample"), TUNING("count"), TUNING("error_bound"), TUNING("low_error_factor"),
+        TUNING("maximum_reuse"), TUNING("minimum_reuse"), TUNING("nearest_count"), TUNING("pretrace_end"),
+        TUNING("pretrace_start"), TUNING("subsurface"), TUNING("load_file"), TUNING("save_file"),
+    };
+    Radiosity *radiosity = &((SettingsDraft *)target)->settings.radiosity;
+    if (!word->body) {
+        reader_error(reader, word->span, "'%s' needs its block { … }", word->text);
+        return;
+    }
+    Reader body = reader_nested(reader, word->body);
+    reader_add_table(&body, rules, VTS_ARRAY_COUNT(rules), radiosity);
+    reader_run(&body);
+    reader_end_nested(reader, &body);
+    radiosity->on = true;
+    radiosity->with_ambient = reader->context->old_gamma;
+    radiosity->gray_threshold = double_clamp(radiosity->gray_threshold, 0, 1);
+    radiosity->max_sample = fmax(radiosity->max_sample, 0);
+    radiosity->bounces = int_clamp(radiosity->bounces, 1, 20);
+}
+
 #define FIELD(name) offsetof(SettingsDraft, settings.name)
 #define KNOB(word)                                                                                           \
     { word, WORD_CUSTOM, 0, read_knob, true }
@@ -117,7 +153,7 @@ static const WordRule rules[] = {
     KNOB("detail"),
     {"sky_light", WORD_FLAG, FIELD(sky_light), NULL, false},
     {"geo_origin", WORD_CUSTOM, 0, settings_read_origin, true},
-    INERT("radiosity"),
+    {"radiosity", WORD_CUSTOM, 0, read_radiosity, false},
     INERT("photons"),
     INERT("subsurface"),
     INERT("mm_per_unit"),

@@ -143,6 +143,23 @@ static void read_density(Reader *reader, const Word *word, void *target) {
     draft->layer.density = field;
 }
 
+/* Of a layer that names none: that of its objects, which must be one. NULL: they have none. */
+static const Texture *texture_of_contents(Reader *reader, const LayerDraft *layer) {
+    const Object *textured = NULL;
+    for (size_t i = 0; i < layer->contents.count; i++) {
+        const Object *object = layer->contents.items[i];
+        if (!object->texture) continue;
+        if (!textured) textured = object;
+        if (hash_equal(object->texture->hash, textured->texture->hash)) continue;
+        Diagnostic *d = diag_warning(reader->context->diags, object->span, "a layer has one texture: this object gets that of the first");
+        diag_hint(reader->context->diags, d, "give it a layer of its own");
+        break;
+    }
+    if (!textured) return NULL;
+    Transform place = object_transform(textured);
+    return texture_placed(reader->context, textured->texture, &place);
+}
+
 /* A layer of nothing but what is not drawn is left out; one without anything is an error. */
 static void read_layer(Reader *reader, const Word *word, void *target) {
     static const WordRule layer_rules[] = {{"density", WORD_CUSTOM, 0, read_density, false}};
@@ -164,6 +181,7 @@ static void read_layer(Reader *reader, const Word *word, void *target) {
         if (!layer.unmodelled) reader_error(reader, word->span, "this layer holds no object");
         return;
     }
+    if (!layer.layer.texture) layer.layer.texture = texture_of_contents(reader, &layer);
     if (!layer.layer.texture) layer.layer.texture = texture_default(reader->context); /* of now, as for objects */
     layer.layer.contents = layer.contents.items;
     layer.layer.content_count = layer.contents.count;

@@ -7,31 +7,13 @@ bool eval_is_keyword(const BuildContext *context, Name word) {
     return ev && keyword_of(&ev->keywords, word) != KW_NONE;
 }
 
-const char *eval_suggest_name(const BuildContext *context, const char *text, const char *const *words,
-                              size_t word_count) {
-    const Eval *ev = context->eval;
-    size_t count = word_count;
-    const char **candidates = arena_new_array(context->diags->arena, const char *,
-                                              word_count + KW_COUNT + (ev ? ev->names->count : 0));
-    for (size_t i = 0; i < word_count; i++) candidates[i] = words[i];
-    for (uint32_t i = 0; ev && i < ev->names->slot_count; i++) {
-        Name other = ev->names->slots[i];
-        VarBinding *b = other ? scope_find(ev, other) : NULL;
-        if (b && b->slot->set && b->slot->value.kind != VALUE_ERROR) candidates[count++] = other->text;
-    }
-    for (int k = 1; ev && k < KW_COUNT; k++)
-        if (keyword_class((Keyword)k) == KEYWORD_FUNCTION) candidates[count++] = keyword_text((Keyword)k);
-    return closest_word(text, candidates, count);
-}
-
 void eval_undeclared(Eval *ev, Name name, Span span) {
     if (ev->build.names_missing) {
         ev->diags->failures++;
         return;
     }
     Diagnostic *d = diag_error(ev->diags, span, "'%s' is not declared", name->text);
-    const char *closest = d ? eval_suggest_name(&ev->build, name->text, NULL, 0) : NULL;
-    if (closest) diag_hint(ev->diags, d, "did you mean '%s'?", closest);
+    eval_hint_name(&ev->build, d, name->text, NULL, 0);
 }
 
 static Value eval_vector(Eval *ev, const Node *node) {

@@ -271,8 +271,7 @@ static TapeRef compile_call(Compiler *c, const Node *n, int output) {
             if (known && known->compile) return compile_known(c, n, known);
             Diagnostic *d =
                 diag_error(c->ev->diags, base->span, "function '%s' is not declared", base->as.name->text);
-            if (strncmp(base->as.name->text, "f_", 2) == 0)
-                diag_hint(c->ev->diags, d, "#include \"functions.inc\" declares the f_ functions");
+            eval_hint_name(&c->ev->build, d, base->as.name->text, NULL, 0);
             c->failed = true;
             return number(c, 0);
         }

@@ -53,8 +53,8 @@ typedef struct TexturePart {
 size_t texture_parts(const Texture *texture, const SurfacePlace *place, TexturePart *out, size_t most);
 /* The pigment's colour of one layer of the part. `normal`: the perturbed one of the scene, for slope and aoi. */
 Color texture_layer_color(const TexturePart *part, const Texture *layer, Vec3 normal);
-/* The unit normal of the scene as the layer perturbs it, `normal` as it is without that. Bumps finer than the footprint are smoothed. */
-Vec3 texture_layer_normal(const TexturePart *part, const Texture *layer, Vec3 normal);
+/* The unit normal of the scene as the layer perturbs it, `normal` as it is without that. Bumps finer than this part of the footprint's width are smoothed. */
+Vec3 texture_layer_normal(const TexturePart *part, const Texture *layer, Vec3 normal, double width);
 
 /* Whether it lets light through nowhere, as far as can be told without looking everywhere. */
 bool texture_is_opaque(const Texture *texture);

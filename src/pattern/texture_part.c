@@ -107,9 +107,16 @@ Color texture_layer_color(const TexturePart *part, const Texture *layer, Vec3 no
     return pigment_color_at(layer->pigment, &spot);
 }
 
-Vec3 texture_layer_normal(const TexturePart *part, const Texture *layer, Vec3 normal) {
+static Spot narrowed(Spot spot, double width) {
+    for (int k = 0; k < 3; k++) spot.axes[k] = vec3_scale(spot.axes[k], width);
+    spot.blur *= width;
+    return spot;
+}
+
+Vec3 texture_layer_normal(const TexturePart *part, const Texture *layer, Vec3 normal, double width) {
     if (!layer->normal) return normal;
-    BumpPlace place = {.spot = &part->spot, .outer = {part->space, &layer->transform}};
+    const Spot spot = narrowed(part->spot, width);
+    BumpPlace place = {.spot = &spot, .outer = {part->space, &layer->transform}};
     Vec3 n = vec3_normalize(mat3_apply_transposed(&part->linear, normal));
     Mat3 back;
     if (!mat3_invert(&part->linear, &back)) return normal;

@@ -91,3 +91,9 @@ Air air_between(const Scene *scene, const Ray *ray, double t) {
     for (size_t i = 0; i < scene->fog_count; i++) lay_fog(&fog, &scene->fogs[i], ray, t);
     return (Air){vec3f_mul(air.keep, fog.keep), vec3f_add(fog.add, vec3f_mul(air.add, fog.keep)), 0};
 }
+
+Vec3f air_fog_passing(const Scene *scene, const Ray *ray, double t) {
+    Air fog = {{1, 1, 1}, {0, 0, 0}, 0};
+    for (size_t i = 0; i < scene->fog_count; i++) lay_fog(&fog, &scene->fogs[i], ray, t);
+    return fog.keep;
+}

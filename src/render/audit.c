@@ -2,6 +2,7 @@
 
 #include "base/gamma.h"
 #include "base/random.h"
+#include "render/exact_memo.h"
 #include "render/exact_skin.h"
 #include "render/reference.h"
 #include "render/volume_set.h"
@@ -40,11 +41,13 @@ typedef struct Audit {
 
 static bool make_texels(CompiledScene *compiled, DiagList *unheard) {
     size_t triangles = 0;
+    struct ExactMemo *memo = compiled->options->exact_memo;
+    exact_memo_begin(memo);
     for (size_t i = 0; i < compiled->texel_count; i++) {
         BuiltTexel *texel = compiled->texels[i];
         if (texel->def->file || texel->triangles_known > MOST_TRIANGLES) return false;
         ExactMaking making = {.tolerance = TOLERANCE_VOXELS / int_max(texel->finest_seen, COARSEST), .flakes = FLAKES, .most = MOST_TRIANGLES - triangles};
-        if (!exact_build_texel(texel, &making, compiled, unheard)) return false;
+        if (!exact_memo_build(memo, texel, &making, compiled, unheard)) return false;
         triangles += exact_texel_triangles(texel->exact);
     }
     return true;
@@ -83,7 +86,7 @@ static bool meets_skins(const CompiledScene *compiled, int x, int y) {
         double near = 0, far = nearest, t;
         SkinPoint point;
         if (!box3_clip_ray(compiled->skins[i].bounds, &ray, &near, &far)) continue;
-        if (!compiled->skins[i].tree) nearest = fmin(nearest, fmax(near, 0));
+        if (!compiled->skins[i].tree && !compiled->skins[i].box) nearest = fmin(nearest, fmax(near, 0));
         else if (skin_enter(&compiled->skins[i], &ray, 0, nearest, &point, &t)) nearest = fmin(nearest, t);
     }
     return nearest < VTS_INFINITY && !hierarchy_occluded(compiled->hierarchy, &ray, 1e-9, 0.999 * nearest);
@@ -144,6 +147,17 @@ static double settle(const Place *places, int count, double before) {
     return count < ENOUGH ? settled : fmin(settled, fmax(mean + MOST_LUCK * sqrt(variance), LEAST_LEFT * before));
 }
 
+/* The same of pictures whose samples tell their noise: few places hit upon the edges that make most of it, so that they count only for what is wrong nearly everywhere. */
+static double settle_bias(const Place *places, int count, double before) {
+    double sum = 0, squares = 0;
+    for (int i = 0; i < count; i++) sum += places[i].squared, squares += places[i].squared * places[i].squared;
+    if (count < ENOUGH) return before;
+    double mean = sum / count, variance = fmax(squares / count - mean * mean, 0) / (count - 1);
+    return fmax(before, mean - DOUBTFUL * sqrt(variance));
+}
+
+static bool samples_tell(const CompiledScene *compiled) { return compiled->skin_count == 0 && !compiled->volumes && !compiled->scene->has_media; }
+
 static int rays_a_pixel(const TraceCounters *c, bool paths, int pixels) {
     double work = (double)c->camera_rays + (double)c->shadow_rays + (double)c->steps / STEPS_A_RAY + (double)c->triangles / TRIANGLES_A_RAY;
     return (int)double_clamp(SHARE * work / (4 * int_max(pixels, 1)), paths ? LEAST_PATHS : LEAST_RAYS, MOST_RAYS);
@@ -166,7 +180,7 @@ static void look(Audit *audit, const CompiledScene *compiled, Pool *pool, Render
         int of_kind = kind ? PLACES - inside : inside, count = choose(audit, all, within, !kind, of_kind, kind ? MOST_BESIDE : MOST_WITHIN);
         double before = kind ? noise : known < 0 ? -1 : known * known;
         if (!pool_run(pool, (size_t)count, see_place, audit)) return;
-        total += settle(audit->places, count, before) * of_kind / PLACES;
+        total += (samples_tell(compiled) ? settle_bias : settle)(audit->places, count, before) * of_kind / PLACES;
     }
     stats->error_estimate = sqrt(total);
 }
@@ -175,7 +189,6 @@ static bool is_interrupted(const RenderOptions *options) { return options->inter
 
 void audit_picture(CompiledScene *compiled, const CompileOptions *how, const RenderOptions *options, const Image *picture, RenderStats *stats) {
     const MemoryBudget *memory = how->memory;
-    if (compiled->skin_count == 0 && !compiled->volumes && !compiled->scene->has_media) return;
     if (memory && memory->limit && memory->used > memory->limit / 2) return;
     ArenaMark mark = arena_mark(compiled->arena);
     CompiledScene truth = {0};

@@ -74,7 +74,7 @@ static int choose_probes(const View *view, Probe probes[MOST_PROBES]) {
 
 /* What drawing the probes takes once, with few samples. */
 static BeamWork probe(CompiledScene *compiled, double factor, const Probe *probes, int count) {
-    const BeamPlan plan = {.first = compiled->samples, .most = compiled->samples, .interrupted = compiled->options->interrupted};
+    const BeamPlan plan = {.samples = {.first = compiled->samples, .most = compiled->samples}, .interrupted = compiled->options->interrupted};
     ArenaMark mark = arena_mark(&compiled->scratch);
     ExactReach before = beam_reach_set(compiled, factor);
     BeamTracer *tracer = beam_tracer_create(compiled, &plan, 31, &compiled->scratch);

@@ -56,10 +56,11 @@ void beam_lay_samples(BeamTracer *tr) {
     for (int row = 0; row < tr->rows; row++)
         for (int column = 0; column < tr->columns; column++) {
             uint64_t bits = random_hash((uint64_t)(tr->x0 + column), (uint64_t)(tr->y0 + row), 0, tr->seed);
-            double x = random_unit(bits) + tr->before * step_x, y = random_unit(random_mix(bits)) + tr->before * step_y;
-            double f = random_unit(random_mix(bits + 1)) + tr->before * 0.6180339887498949;
-            s->first[row * tr->columns + column] = i;
-            for (int k = 0; k < tr->samples; k++, i++) {
+            int pixel = row * tr->columns + column, before = tr->allotment.taken[pixel];
+            double x = random_unit(bits) + before * step_x, y = random_unit(random_mix(bits)) + before * step_y;
+            double f = random_unit(random_mix(bits + 1)) + before * 0.6180339887498949;
+            s->first[pixel] = i;
+            for (int k = 0; k < tr->allotment.asked[pixel]; k++, i++) {
                 x += step_x, y += step_y, f += 0.6180339887498949;
                 x -= floor(x), y -= floor(y), f -= floor(f);
                 s->x[i] = (float)(column + x);

@@ -23,7 +23,7 @@ static uint8_t turn_of(const BeamTracer *tr, const Sight *sight, int sample) {
     uint32_t first = tr->beam.samples.first[sight->pixel];
     uint64_t x = (uint64_t)(tr->x0 + sight->pixel % tr->columns), y = (uint64_t)(tr->y0 + sight->pixel / tr->columns);
     uint32_t turn = (uint32_t)random_hash(x, y, 2, tr->seed);
-    return (uint8_t)((turn + (uint32_t)tr->before + (uint32_t)sample - first) % SKY_PAIRS);
+    return (uint8_t)((turn + (uint32_t)tr->allotment.taken[sight->pixel] + (uint32_t)sample - first) % SKY_PAIRS);
 }
 
 static uint32_t add_points(BeamTracer *tr, const Sight *sight, uint32_t count) {
@@ -87,8 +87,8 @@ static Vec3f share_of_place(BeamTracer *tr, const Sight *sight, float known) {
     place.point = vec3_madd(sight->point, side, place.clear);
     if (!sight->surface) place.flat = place.normal = vec3_from_f(sight->up), place.even = true;
     else if (tr->compiled->voxels) surfaces = tracer_of_surfaces(&tr->volumes);
-    surfaces.part = (double)sight->count / (tr->before + tr->samples);
-    return surface_sky(&surfaces, &place, worth, random_hash(x, y, 5 + (uint64_t)tr->before, tr->seed));
+    surfaces.part = (double)sight->count / beam_samples_of(tr, sight->pixel);
+    return surface_sky(&surfaces, &place, worth, random_hash(x, y, 5 + (uint64_t)tr->allotment.taken[sight->pixel], tr->seed));
 }
 
 static SkyShares sky_seen(BeamTracer *tr, const Sight *sight) {

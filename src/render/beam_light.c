@@ -155,8 +155,8 @@ void beam_add_beyond(BeamTracer *tr) {
             SurfaceHit hit;
             if (!hierarchy_intersect(tr->compiled->hierarchy, &(Ray){cone.origin, cone.direction}, 1e-9, VTS_INFINITY, &hit)) continue;
             tr->volumes.seed = random_hash((uint64_t)(tr->x0 + sight->pixel % tr->columns), (uint64_t)(tr->y0 + sight->pixel / tr->columns),
-                                           3 + (uint64_t)(tr->before + i), tr->seed);
-            tr->volumes.part = 1.0 / (tr->before + tr->samples);
+                                           3 + (uint64_t)tr->allotment.taken[sight->pixel] + (uint32_t)i - first, tr->seed);
+            tr->volumes.part = 1.0 / beam_samples_of(tr, sight->pixel);
             SurfaceTracer surfaces = tracer_of_surfaces(&tr->volumes);
             Leg leg;
             surface_eye_leg(tr->compiled, &cone, &leg);

@@ -10,9 +10,6 @@ static const double NEAREST_BLOCK = 0.3, FARTHEST_BLOCK = 1.5;
 /* So far all of a block's samples are drawn as exact geometry, relative to where it first meets the layer, and on: what lies behind is mostly hidden, and far
  * fields would cost too much. */
 static const double EXACT_REACH = 1.2, EXACT_BEYOND = 0.4;
-/* Voxels may make this part of the error that is accepted: the rest is left to noise, and to what differs from frame to frame. Where exact geometry would be
- * noisier than that error with all the samples it may have, they may make all of it. */
-static const double VOXELS_SHARE = 0.6;
 /* How the noise of what is small beside a pixel falls with the samples. */
 static const double NOISE_POWER = 0.6;
 /* How far the plan may be put off, relative to it: farther costs too much. */
@@ -41,7 +38,7 @@ static int choose_blocks(const CompiledScene *compiled, Block *blocks) {
 
 /* Draws all blocks, as exact geometry or from voxels alone. */
 static void draw_blocks(CompiledScene *compiled, bool exact, int samples, int way, Block *blocks, int count) {
-    const BeamPlan plan = {.first = samples, .most = samples, .interrupted = compiled->options->interrupted};
+    const BeamPlan plan = {.samples = {.first = samples, .most = samples}, .interrupted = compiled->options->interrupted};
     BeamTracer *tracer = beam_tracer_create(compiled, &plan, (uint64_t)way + 17, &compiled->scratch);
     for (int i = 0; i < count; i++) {
         Block *b = &blocks[i];
@@ -145,8 +142,10 @@ void beam_pilot(CompiledScene *compiled) {
         return;
     }
     describe(compiled, &here);
-    PilotResult result = kept && kept->known && are_alike(&here, kept) ? *kept : tell(compiled);
+    if (kept && kept->known && are_alike(&here, kept)) compiled->told = kept;
+    PilotResult result = compiled->told ? *compiled->told : tell(compiled);
     if (kept && !kept->known) {
+        compiled->tells = kept;
         *kept = here;
         kept->known = true, kept->factor = result.factor, kept->voxel_error = result.voxel_error;
     }

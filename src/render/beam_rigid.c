@@ -1,12 +1,12 @@
 #include "render/beam_rigid.h"
 
 #include "render/beam_cell.h"
-#include "render/embree_ray.h"
+#include "render/ray_bundle.h"
 
 #include <string.h>
 
 /* Copies in all: each takes some hundred bytes. */
-enum { MOST_RIGID_COPIES = 1 << 18, WIDE = 8, KEPT_FACETS = 1024 };
+enum { MOST_RIGID_COPIES = 1 << 18, KEPT_FACETS = 1024 };
 /* What is affine but for rounding, in parts of the cell. */
 static const double ROUNDING = 1e-7;
 /* A tile that ends no farther than this before or behind the surface's border, in tiles, ends with it. */
@@ -33,6 +33,7 @@ typedef struct RigidCopy {
 typedef struct RigidTexel {
     const BeamTexel *beam;
     RTCScene scene;
+    bool cut; /* some copy of it is */
     const uint32_t *facets;
     const RigidCopies *copies;
     struct RigidTexel *next;
@@ -46,7 +47,7 @@ struct RigidCopies {
     size_t count;
     const CompiledSkin *skin; /* one of these: exact_to of all */
     RigidTexel *texels;
-    bool wide;           /* the machine takes rays by eights */
+    int lanes;           /* rays that the machine takes at once: 16, 8 or 1 */
 };
 
 /* ---- which skins ---- */
@@ -126,8 +127,8 @@ static bool copies_are_whole(const CompiledSkin *skin, const PlacedTexel *placed
 }
 
 /* Embree takes rays into a copy's own space in floats, and ends the program where they have no room there: copies must not be so thin
- * that lengths up to FARTHEST leave it, nor so large. */
-static const double THINNEST = 1e-7, LARGEST = 1e7, FARTHEST = 1e10;
+ * that lengths up to BUNDLE_FARTHEST leave it, nor so large. */
+static const double THINNEST = 1e-7, LARGEST = 1e7;
 
 static bool has_room(const SkinCell *cell) {
     const Vec3 *p = cell->foot.c, h = cell->height.c[0];
@@ -188,9 +189,6 @@ static bool is_on_surface(const RigidTexel *texel, const RigidCopy *copy, unsign
     return true;
 }
 
-/* The fields of RTCHitN: arrays of N, one after the other. Its accessors are C++. */
-enum { HIT_U = 3, HIT_V = 4, HIT_TRIANGLE = 5, HIT_COPY = 7 };
-
 /* Of Embree: takes back hits beyond the border. */
 static void leave_cut_off(const struct RTCFilterFunctionNArguments *args) {
     const RigidTexel *texel = args->geometryUserPtr;
@@ -211,21 +209,29 @@ static RigidTexel *texel_of(Building *b, const BeamTexel *beam) {
     uint32_t *facets = arena_new_array(b->compiled->arena, uint32_t, beam->triangle_count);
     size_t vertices = 0;
     for (size_t c = 0; c < beam->cluster_count; c++) vertices += (size_t)beam->clusters[c].vertex_count;
-    *texel = (RigidTexel){beam, rtcNewScene(b->device), facets, b->out, b->out->texels};
+    *texel = (RigidTexel){beam, rtcNewScene(b->device), false, facets, b->out, b->out->texels};
     b->out->texels = texel;
     RTCGeometry geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices);
     unsigned *t = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), beam->triangle_count);
     if (v && t) fill_texel(beam, v, t, facets);
     rtcSetGeometryUserData(geometry, texel);
-    rtcSetGeometryIntersectFilterFunction(geometry, leave_cut_off);
-    rtcSetGeometryOccludedFilterFunction(geometry, leave_cut_off);
     rtcSetSceneFlags(texel->scene, RTC_SCENE_FLAG_ROBUST);
     rtcCommitGeometry(geometry);
-    rtcAttachGeometry(texel->scene, geometry);
+    rtcAttachGeometryByID(texel->scene, geometry, 0);
     rtcReleaseGeometry(geometry);
     rtcCommitScene(texel->scene);
     return texel;
+}
+
+/* Hits of whole copies are not asked for: that takes time. */
+static void have_cut(RigidTexel *texel) {
+    RTCGeometry geometry = rtcGetGeometry(texel->scene, 0);
+    rtcSetGeometryIntersectFilterFunction(geometry, leave_cut_off);
+    rtcSetGeometryOccludedFilterFunction(geometry, leave_cut_off);
+    rtcCommitGeometry(geometry);
+    rtcCommitScene(texel->scene);
+    texel->cut = true;
 }
 
 /* The copy's place in its cell; false where it has none. */
@@ -259,8 +265,10 @@ static void add_copy(Building *b, const RigidCopy *r) {
     put_column(columns + 3, vec3_scale(high, r->w_y));
     put_column(columns + 6, vec3_madd(vec3_scale(foot[1], r->a_z), foot[2], r->b_z));
     put_column(columns + 9, vec3_sub(from, b->out->origin));
+    RigidTexel *texel = texel_of(b, r->copy.texel->beam);
+    if (r->cut && !texel->cut) have_cut(texel);
     RTCGeometry geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(geometry, texel_of(b, r->copy.texel->beam)->scene);
+    rtcSetGeometryInstancedScene(geometry, texel->scene);
     rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(b->out->scene, geometry, (unsigned)b->copies.count);
@@ -324,7 +332,7 @@ RigidCopies *rigid_copies_build(CompiledScene *compiled) {
     RTCDevice device = hierarchy_device(compiled->hierarchy);
     RigidCopies *out = arena_new(compiled->arena, RigidCopies);
     *out = (RigidCopies){.scene = rtcNewScene(device), .origin = compiled->view.camera.location, .bounds = box3_empty(),
-                         .wide = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0};
+                         .lanes = bundle_lanes(device)};
     Building b = {.compiled = compiled, .device = device, .out = out};
     rtcSetSceneFlags(out->scene, RTC_SCENE_FLAG_ROBUST);
     for (size_t i = 0; i < compiled->skin_count; i++)
@@ -342,75 +350,6 @@ void rigid_copies_destroy(RigidCopies *copies) {
 }
 
 bool rigid_meets(const RigidCopies *copies, const Beam *beam) { return beam_meets_box(beam, &copies->bounds); }
-
-/* ---- rays ---- */
-
-/* Rays from `origin` along `direction` up to `far`, by eights. */
-typedef struct Bundle {
-    _Alignas(32) int valid[WIDE];
-    _Alignas(32) struct RTCRayHit8 rays;
-    uint32_t sample[WIDE];
-    int count;
-} Bundle;
-
-static void bundle_clear(Bundle *bundle) {
-    bundle->count = 0;
-    memset(bundle->valid, 0, sizeof bundle->valid);
-}
-
-static void bundle_add(Bundle *bundle, Vec3f origin, Vec3f direction, float near, float far, uint32_t sample) {
-    struct RTCRay one = {.org_x = origin.x, .org_y = origin.y, .org_z = origin.z, .dir_x = direction.x, .dir_y = direction.y, .dir_z = direction.z,
-                         .tnear = near, .tfar = far};
-    bool near_enough = fabsf(origin.x) < (float)FARTHEST && fabsf(origin.y) < (float)FARTHEST && fabsf(origin.z) < (float)FARTHEST;
-    if (!near_enough || !embree_takes(&one)) return;
-    struct RTCRay8 *r = &bundle->rays.ray;
-    int i = bundle->count++;
-    r->org_x[i] = origin.x, r->org_y[i] = origin.y, r->org_z[i] = origin.z;
-    r->dir_x[i] = direction.x, r->dir_y[i] = direction.y, r->dir_z[i] = direction.z;
-    r->tnear[i] = near, r->tfar[i] = far, r->time[i] = 0;
-    r->mask[i] = UINT32_MAX, r->id[i] = 0, r->flags[i] = 0;
-    bundle->rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-    bundle->rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-    bundle->sample[i] = sample;
-    bundle->valid[i] = -1;
-}
-
-static struct RTCRay ray_of(const Bundle *bundle, int i) {
-    const struct RTCRay8 *r = &bundle->rays.ray;
-    return (struct RTCRay){.org_x = r->org_x[i], .org_y = r->org_y[i], .org_z = r->org_z[i], .dir_x = r->dir_x[i], .dir_y = r->dir_y[i], .dir_z = r->dir_z[i],
-                           .tnear = r->tnear[i], .tfar = r->tfar[i], .mask = UINT32_MAX};
-}
-
-static void intersect_bundle(const RigidCopies *copies, Bundle *bundle) {
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    if (copies->wide) {
-        rtcIntersect8(bundle->valid, copies->scene, &context, &bundle->rays);
-        return;
-    }
-    for (int i = 0; i < bundle->count; i++) {
-        struct RTCRayHit one = {.ray = ray_of(bundle, i), .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .instID = {RTC_INVALID_GEOMETRY_ID}}};
-        rtcIntersect1(copies->scene, &context, &one);
-        bundle->rays.ray.tfar[i] = one.ray.tfar;
-        bundle->rays.hit.geomID[i] = one.hit.geomID, bundle->rays.hit.primID[i] = one.hit.primID, bundle->rays.hit.instID[0][i] = one.hit.instID[0];
-    }
-}
-
-static void occlude_bundle(const RigidCopies *copies, Bundle *bundle) {
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    if (copies->wide) {
-        rtcOccluded8(bundle->valid, copies->scene, &context, &bundle->rays.ray);
-        return;
-    }
-    for (int i = 0; i < bundle->count; i++) {
-        struct RTCRay one = ray_of(bundle, i);
-        rtcOccluded1(copies->scene, &context, &one);
-        bundle->rays.ray.tfar[i] = one.tfar;
-    }
-}
 
 /* ---- what samples see ---- */
 
@@ -451,14 +390,14 @@ static uint32_t mark_of(Seeing *s, uint32_t copy, uint32_t triangle) {
     return s->kept[at].mark = new_facet(s, &s->copies->items[copy], triangle);
 }
 
-static void take_hits(Seeing *s, Bundle *bundle) {
+static void take_hits(Seeing *s, RayBundle *bundle) {
     BeamSamples *samples = &s->draft->beam->samples;
-    if (bundle->count) intersect_bundle(s->copies, bundle);
+    if (bundle->count) bundle_intersect(bundle, s->copies->scene);
     for (int i = 0; i < bundle->count; i++) {
-        uint32_t at = bundle->sample[i], copy = bundle->rays.hit.instID[0][i];
-        float t = bundle->rays.ray.tfar[i], key = s->draft->beam->perspective ? 1 / t : -t;
-        if (bundle->rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID || !(key > samples->key[at])) continue;
-        samples->mark[at] = mark_of(s, copy, bundle->rays.hit.primID[i]);
+        uint32_t at = bundle->sample[i], copy = bundle_hit(bundle, HIT_COPY, i)->number;
+        float t = bundle_cell(bundle, RAY_FAR, i)->real, key = s->draft->beam->perspective ? 1 / t : -t;
+        if (bundle_hit(bundle, HIT_GEOMETRY, i)->number == RTC_INVALID_GEOMETRY_ID || !(key > samples->key[at])) continue;
+        samples->mark[at] = mark_of(s, copy, bundle_hit(bundle, HIT_TRIANGLE, i)->number);
         samples->key[at] = key;
     }
     bundle_clear(bundle);
@@ -469,7 +408,7 @@ typedef struct SampleLines {
     Vec3 corner, right, down, direction, shift;
 } SampleLines;
 
-static void add_sample(const RigidCopies *copies, const Beam *beam, const SampleLines *lines, uint32_t i, Bundle *bundle) {
+static void add_sample(const RigidCopies *copies, const Beam *beam, const SampleLines *lines, uint32_t i, RayBundle *bundle) {
     const BeamSamples *s = &beam->samples;
     Vec3 to = vec3_madd(vec3_madd(lines->corner, lines->right, (double)s->x[i]), lines->down, (double)s->y[i]);
     if (!beam->perspective) {
@@ -486,9 +425,8 @@ uint64_t rigid_see(const RigidCopies *copies, BeamDraft *draft, Vec3 corner, Vec
     const BeamSamples *s = &beam->samples;
     Seeing seeing = {.copies = copies, .draft = draft};
     uint64_t rays = 0;
-    Bundle bundle;
     if (!rigid_meets(copies, beam)) return 0;
-    bundle_clear(&bundle);
+    RayBundle bundle = bundle_for(copies->lanes);
     const SampleLines lines = {corner, right, down, direction, beam->perspective ? vec3_sub(beam->origin, copies->origin) : vec3_negate(copies->origin)};
     for (int pixel = 0; pixel < s->columns * s->rows && !beam_is_interrupted(draft); pixel++) {
         float middle_x = (float)(pixel % s->columns) + 0.5f, middle_y = (float)(pixel / s->columns) + 0.5f;
@@ -496,21 +434,22 @@ uint64_t rigid_see(const RigidCopies *copies, BeamDraft *draft, Vec3 corner, Vec
             for (uint32_t i = s->first[pixel]; i < s->first[pixel + 1]; i++) {
                 if (2 * (s->y[i] >= middle_y) + (s->x[i] >= middle_x) != quarter) continue;
                 add_sample(copies, beam, &lines, i, &bundle);
-                if (bundle.count < WIDE) continue;
-                rays += WIDE;
+                if (bundle.count < bundle.lanes) continue;
+                rays += (uint64_t)bundle.lanes;
                 take_hits(&seeing, &bundle);
             }
     }
+    rays += (uint64_t)bundle.count;
     take_hits(&seeing, &bundle);
     return rays;
 }
 
 /* ---- shadows ---- */
 
-static void hide_hits(const RigidCopies *copies, Bundle *bundle, uint8_t *hidden) {
-    if (bundle->count) occlude_bundle(copies, bundle);
+static void hide_hits(const RigidCopies *copies, RayBundle *bundle, uint8_t *hidden) {
+    if (bundle->count) bundle_occlude(bundle, copies->scene);
     for (int i = 0; i < bundle->count; i++)
-        if (bundle->rays.ray.tfar[i] < 0) hidden[bundle->sample[i]] = 1;
+        if (bundle_cell(bundle, RAY_FAR, i)->real < 0) hidden[bundle->sample[i]] = 1;
     bundle_clear(bundle);
 }
 
@@ -518,17 +457,17 @@ uint64_t rigid_hide(const RigidCopies *copies, const Light *light, const ShadowP
     bool parallel = light_is_parallel(light);
     Vec3 shift = vec3_sub(points->origin, copies->origin);
     uint64_t rays = 0;
-    Bundle bundle;
-    bundle_clear(&bundle);
+    RayBundle bundle = bundle_for(copies->lanes);
     for (uint32_t i = 0; i < points->count; i++) {
         if (points->hidden[i] || !(copies->skin->exact_to >= (double)points->distance[i])) continue;
         Vec3 from = vec3_add(shift, vec3_from_f(points->points[i]));
         Vec3 to = parallel ? light->to_light : vec3_sub(vec3_sub(light->location, copies->origin), from);
         bundle_add(&bundle, vec3f_from(from), vec3f_from(to), 0, parallel ? INFINITY : 1, i);
-        if (bundle.count < WIDE) continue;
-        rays += WIDE;
+        if (bundle.count < bundle.lanes) continue;
+        rays += (uint64_t)bundle.lanes;
         hide_hits(copies, &bundle, points->hidden);
     }
+    rays += (uint64_t)bundle.count;
     hide_hits(copies, &bundle, points->hidden);
     return rays;
 }

@@ -111,12 +111,19 @@ static void see_facet(const BeamTracer *tr, Sight *sight) {
     sight->color = vec3f_mul(facet_color(tr, &plane, own, sight), copy->tint);
 }
 
-static void see_explicit(const SeenSurface *seen, Vec3 point, double width, double t, Sight *sight) {
+/* Of the width of a sample's share of the pixel: as in sampler.c. */
+static const double SAMPLE_WIDTH = 0.7;
+
+/* Whether what a surface looks like may change within a pixel. */
+static bool look_varies(const SurfaceHit *hit) { return hit->share_count || !hit->look->uniform || hit->look->texture->normal; }
+
+static void see_explicit(const SeenSurface *seen, Vec3 point, double width, int samples, double t, Sight *sight) {
     const SurfaceHit *hit = &seen->hit;
     Vec3 normal = hit->normal, direction = vec3_negate(vec3_from_f(sight->view));
-    const Cone cone = {vec3_madd(point, direction, -hit->t), direction, width, 0};
+    double part = look_varies(hit) && samples > 1 ? SAMPLE_WIDTH / sqrt(samples) : 1;
+    const Cone cone = {vec3_madd(point, direction, -hit->t), direction, part * width, 0};
     sight->color = hit->look->color;
-    if (hit->share_count || !hit->look->uniform || !hit->look->opaque || hit->look->texture->normal) surface_glance(&cone, hit, &sight->color, &normal);
+    if (look_varies(hit) || !hit->look->opaque) surface_glance(&cone, hit, &sight->color, &normal);
     sight->look = hit->look;
     sight->surface = hit;
     sight->normal = vec3f_from(normal);
@@ -155,13 +162,17 @@ Cone beam_sight_cone(const BeamTracer *tr, const Sight *sight, double *t) {
     return cone;
 }
 
+/* What changes within a pixel is looked at for each sample: what one look misses would stay with any number of samples, and their noise
+ * would know nothing of it. */
+static bool may_join(const Sight *sight) { return !sight->surface || !look_varies(sight->surface); }
+
 /* The sight of the pixel, whose sights begin at `begin`, that the sample belongs to; sight_count if none does yet. */
 static uint32_t sight_of(const BeamTracer *tr, int pixel, uint32_t begin, uint32_t sample, bool beyond) {
     const uint32_t *mark = tr->beam.samples.mark;
     uint32_t k = begin;
     for (; k < tr->sight_count; k++) {
         uint32_t other = (uint32_t)tr->sights[k].first;
-        if (mark[sample] != mark[other] || beyond != tr->sights[k].beyond) continue;
+        if (mark[sample] != mark[other] || beyond != tr->sights[k].beyond || !may_join(&tr->sights[k])) continue;
         if (mark[sample] || same_surface(beam_surface_of(tr, pixel, sample), beam_surface_of(tr, pixel, other))) break;
     }
     return k;
@@ -175,7 +186,7 @@ static Sight new_sight(const BeamTracer *tr, int pixel, uint32_t sample, bool be
     sight.point = beam_sample_point(tr, sample, &t);
     sight.t = (float)t;
     sight.view = vec3f_from(vec3_normalize(vec3_negate(beam_sample_line(tr, sample).direction)));
-    if (!mark) see_explicit(beam_surface_of(tr, pixel, sample), sight.point, cone_diameter(&tr->cones[pixel], t), t, &sight);
+    if (!mark) see_explicit(beam_surface_of(tr, pixel, sample), sight.point, cone_diameter(&tr->cones[pixel], t), tr->allotment.asked[pixel], t, &sight);
     return sight;
 }
 

@@ -41,8 +41,8 @@ typedef struct Sight {
 
 struct BeamTracer {
     const CompiledScene *compiled;
-    int samples;           /* a pixel, of the pass that is being made */
-    int before;            /* of the passes before */
+    Allotment allotment;   /* samples of the pixels, before this pass and in it */
+    bool first_pass;
     BeamPlan plan;
     double tile_noise; /* squared, of a pixel of the last tile */
     double squared_error, squared_noise; /* summed over the pixels of all tiles: what voxels are wrong by, and noise */
@@ -77,6 +77,9 @@ struct BeamTracer {
     TraceCounters counters;
     AovSum *aovs;          /* of the tile's pixels; NULL: not wanted */
 };
+
+/* Samples that a pixel will have after this pass. */
+static inline int beam_samples_of(const BeamTracer *tr, int pixel) { return tr->allotment.taken[pixel] + tr->allotment.asked[pixel]; }
 
 /* Of the line through (x, y) of the tile: from `origin` along `direction`, whose length is that of one unit of q.z. */
 typedef struct BeamLine {

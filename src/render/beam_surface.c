@@ -1,4 +1,5 @@
 #include "render/beam_sight.h"
+#include "render/tile_sight.h"
 
 static void see_surface(BeamTracer *tr, double x, double y, SeenSurface *out) {
     BeamLine line = beam_line_at(tr, x, y);
@@ -39,9 +40,19 @@ const SeenSurface *beam_surface_of(const BeamTracer *tr, int pixel, uint32_t sam
     return &tr->pixels[(row + 1) * BEAM_EDGE + column + 1];
 }
 
+/* Whether the pixel, whose middle is (x, y), and all around it show parts of one smooth surface. */
+static bool is_smooth(const SeenSurface *p, double x, double y) {
+    for (int down = -1; down <= 1; down++)
+        for (int right = -1; right <= 1; right++)
+            if ((down || right) && !alike(p, p + down * BEAM_EDGE + right, x + 0.5 * right, y + 0.5 * down)) return false;
+    return true;
+}
+
 void beam_see_surfaces(BeamTracer *tr) {
     BeamSamples *s = &tr->beam.samples;
-    for (int row = -1; row <= tr->rows && tr->before == 0; row++)
+    /* What is thinner than a pixel may lie between the middles of them all. */
+    const bool thin = tile_sight_thin(tr->compiled, tr->x0, tr->y0, tr->columns, tr->rows);
+    for (int row = -1; row <= tr->rows && tr->first_pass; row++)
         for (int column = -1; column <= tr->columns; column++)
             see_surface(tr, column + 0.5, row + 0.5, &tr->pixels[(row + 1) * BEAM_EDGE + column + 1]);
     tr->surface_count = 0;
@@ -49,7 +60,8 @@ void beam_see_surfaces(BeamTracer *tr) {
         for (int column = 0; column < tr->columns; column++) {
             const SeenSurface *p = &tr->pixels[(row + 1) * BEAM_EDGE + column + 1];
             double x = column + 0.5, y = row + 0.5;
-            bool smooth = alike(p, p - 1, x - 0.5, y) && alike(p, p + 1, x + 0.5, y) && alike(p, p - BEAM_EDGE, x, y - 0.5) && alike(p, p + BEAM_EDGE, x, y + 0.5);
+            if (!tr->allotment.asked[row * tr->columns + column]) continue;
+            bool smooth = !thin && is_smooth(p, x, y);
             int pixel = row * tr->columns + column;
             for (uint32_t i = s->first[pixel]; i < s->first[pixel + 1]; i++) {
                 double sx = (double)s->x[i], sy = (double)s->y[i];

@@ -6,8 +6,6 @@
 
 #include <string.h>
 
-/* The error of a mean from how far the means of its halves are apart: 1/2 if they were random. Measured: test_analytic_sessions. */
-static const double HALVES_TO_ERROR = 0.42;
 /* How far triangles may leave what the mapping makes of them, in pixels, with so many samples: as they are fewer, their noise hides more. */
 static double tolerance_for(int samples) { return double_clamp(2 / sqrt(samples), 0.125, 2); }
 
@@ -31,7 +29,7 @@ static void draft_init(BeamTracer *tr, size_t all, Arena *arena) {
     draft->eye = view->camera.location;
     draft->width = middle.width;
     draft->spread = middle.spread;
-    draft->tolerance = tolerance_for(tr->plan.first < tr->plan.most ? 4 * tr->plan.first : tr->plan.first);
+    draft->tolerance = tolerance_for(tr->plan.samples.first < tr->plan.samples.most ? 4 * tr->plan.samples.first : tr->plan.samples.first);
     draft->beam = &tr->beam;
     draft->interrupted = tr->plan.interrupted;
 }
@@ -45,7 +43,7 @@ static void sky_init(BeamTracer *tr, size_t all, Arena *arena) {
 
 BeamTracer *beam_tracer_create(const CompiledScene *compiled, const BeamPlan *plan, uint64_t seed, Arena *arena) {
     BeamTracer *tr = arena_new(arena, BeamTracer);
-    size_t all = (size_t)int_min(plan->most, BEAM_MOST_IN_PASS) * BEAM_TILE * BEAM_TILE;
+    size_t all = (size_t)int_min(plan->samples.most, BEAM_MOST_IN_PASS) * BEAM_TILE * BEAM_TILE;
     tr->compiled = compiled;
     tr->plan = *plan;
     tr->seed = seed;
@@ -158,13 +156,20 @@ static void see_aovs(BeamTracer *tr, const Sight *sight, const MatterAov *met, f
     sum->samples += sight->count;
 }
 
+/* A sight is a part of its pixel: at a horizon, the one above it. */
+static Vec3f sky_seen(const BeamTracer *tr, const Sight *sight) {
+    Cone cone = tr->cones[sight->pixel];
+    double part = sqrt((double)sight->count / tr->allotment.asked[sight->pixel]), t;
+    if (sight->count < tr->allotment.asked[sight->pixel]) cone = beam_sight_cone(tr, sight, &t);
+    return sky_radiance(tr->compiled->scene, cone.direction, part * cone.spread);
+}
+
 /* What a sight sends through fog and voxels, to all of its samples and to the odd ones. */
 static void see_sight(BeamTracer *tr, const Sight *sight, Radiance *all, Vec3f *odd) {
-    const Scene *scene = tr->compiled->scene;
     Cone cone = tr->cones[sight->pixel];
     double t = sight->look ? (double)sight->t : VTS_INFINITY;
     Vec3f sky = {0, 0, 0};
-    if (!sight->look) sky = sky_radiance(scene, cone.direction, cone.spread);
+    if (!sight->look) sky = sky_seen(tr, sight);
     SurfaceTracer surfaces = air_tracer(tr);
     Air air = air_from_eye(&surfaces, &cone, t);
     *all = (Radiance){air_over(&air, sight->look ? sight->light : sky, 1), sight->look ? 1 : air.cover};
@@ -203,7 +208,7 @@ static double voxels_error(const BeamTracer *tr, const Sight *sight) {
     const CompiledScene *compiled = tr->compiled;
     if (!sight->beyond || !(compiled->voxel_error > 0)) return 0;
     double nearer = compiled->all_exact_to / fmax((double)sight->t, compiled->all_exact_to);
-    return compiled->voxel_error * nearer * sight->count / tr->samples;
+    return compiled->voxel_error * nearer * sight->count / tr->allotment.asked[sight->pixel];
 }
 
 /* Sights come pixel by pixel; *k is the first of this one's, and becomes that of the next. */
@@ -220,37 +225,37 @@ static PixelSum see_pixel(BeamTracer *tr, int pixel, uint32_t *k) {
         sum.alpha += seen.alpha * (float)s->count;
         wrong += voxels_error(tr, s);
     }
-    if (tr->before == 0) tr->squared_error += wrong * wrong;
+    if (tr->first_pass) tr->squared_error += wrong * wrong;
     return sum;
 }
 
 /* The square of how far the means of a pixel's odd and even samples are apart. */
-static double halves_apart(const PixelSum *sum, int samples) {
+static float halves_apart(const PixelSum *sum, int samples) {
     float odds = (float)(samples / 2), evens = (float)samples - odds;
     if (!(odds > 0)) return 0;
-    return (double)clamped_difference(vec3f_scale(sum->odd, 1 / odds), vec3f_scale(vec3f_sub(sum->all, sum->odd), 1 / evens));
+    return clamped_difference(vec3f_scale(sum->odd, 1 / odds), vec3f_scale(vec3f_sub(sum->all, sum->odd), 1 / evens));
 }
 
-/* Adds what the pass has seen to the means so far. Returns the RMSE to be expected of this pass alone. */
-static double take_pixels(BeamTracer *tr, Radiance *out) {
+/* Adds what the pass has seen to the means so far; tells how far the halves of each pixel's samples are apart. */
+static void take_pixels(BeamTracer *tr, Radiance *out, float *apart) {
     int pixels = tr->columns * tr->rows;
-    float weight = (float)tr->samples / (float)(tr->before + tr->samples), share = weight / (float)tr->samples;
-    double squares = 0;
     uint32_t k = 0;
     for (int pixel = 0; pixel < pixels; pixel++) {
+        int asked = tr->allotment.asked[pixel];
+        apart[pixel] = 0;
+        if (!asked) continue;
         PixelSum sum = see_pixel(tr, pixel, &k);
         Radiance *mean = &out[pixel];
-        mean->color = vec3f_madd(vec3f_scale(mean->color, 1 - weight), sum.all, share);
-        mean->alpha = mean->alpha * (1 - weight) + sum.alpha * share;
-        squares += halves_apart(&sum, tr->samples);
+        float share = 1 / (float)beam_samples_of(tr, pixel), before = (float)tr->allotment.taken[pixel] * share;
+        mean->color = vec3f_madd(vec3f_scale(mean->color, before), sum.all, share);
+        mean->alpha = mean->alpha * before + sum.alpha * share;
+        apart[pixel] = halves_apart(&sum, asked);
+        tr->sample_count += (uint64_t)asked;
     }
-    return HALVES_TO_ERROR * sqrt(squares / pixels);
 }
 
-/* One pass of tr->samples a pixel. */
-static double see_pass(BeamTracer *tr, Radiance *out) {
+static void see_pass(BeamTracer *tr, Radiance *out, float *apart) {
     const Scene *scene = tr->compiled->scene;
-    tr->sample_count += (uint64_t)tr->samples * (uint64_t)(tr->columns * tr->rows);
     uint32_t cells = beam_gather(&tr->draft, tr->compiled);
     beam_lay_samples(tr);
     beam_see_surfaces(tr);
@@ -259,29 +264,12 @@ static double see_pass(BeamTracer *tr, Radiance *out) {
     beam_add_ambient(tr);
     for (size_t l = 0; l < scene->light_count; l++) beam_add_light(tr, &scene->lights[l]);
     beam_add_beyond(tr);
-    return take_pixels(tr, out);
+    take_pixels(tr, out, apart);
 }
 
-/* How the error of a tile falls with the samples: error·(samples/n)^power for n of them. */
-typedef struct ErrorLaw {
-    double error, samples, power;
-} ErrorLaw;
-
-static int samples_for(const ErrorLaw *law, double error, int most) {
-    if (!(error > 0) || law->error <= error) return 0;
-    return (int)fmin(ceil(law->samples * pow(law->error / error, 1 / law->power)), most);
-}
-
-/* A larger pass tells more: of edges the error falls with the power 3/4, of what is random on the scale of a pixel with 1/2. */
-static void learn(ErrorLaw *law, double error, int samples) {
-    double more = samples / law->samples;
-    if (more >= 2 && error > 0 && law->error > 0) law->power = double_clamp(log(law->error / error) / log(more), 0.5, 0.8);
-    if (more > 1) law->error = error, law->samples = samples;
-}
-
-/* Passes until the error should be small enough. */
 void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out, AovSum *aovs) {
-    int pixels = (x1 - x0) * (y1 - y0), wanted = tr->plan.first;
+    int pixels = (x1 - x0) * (y1 - y0), most_in_pass = int_min(tr->plan.samples.most, BEAM_MOST_IN_PASS);
+    float apart[BEAM_TILE * BEAM_TILE];
     tr->x0 = x0, tr->y0 = y0, tr->columns = x1 - x0, tr->rows = y1 - y0;
     tr->aovs = aovs;
     beam_aim(tr);
@@ -290,19 +278,15 @@ void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out, Ao
     tr->pixel_count += (uint64_t)pixels;
     tr->tile_noise = 0;
     if (beam_gather(&tr->draft, tr->compiled) == 0 && see_sky(tr, out)) return;
-    ErrorLaw law = {.samples = 0, .power = 0.75};
-    for (tr->before = 0; tr->before < wanted && !beam_is_interrupted(&tr->draft); tr->before += tr->samples) {
-        tr->samples = int_min(wanted - tr->before, BEAM_MOST_IN_PASS);
-        if (tr->before) beam_aim(tr); /* drawing has narrowed the beam */
-        double error = see_pass(tr, out);
-        if (tr->before) learn(&law, error, tr->samples);
-        else law.error = error, law.samples = tr->samples;
-        wanted = int_max(tr->before + tr->samples, samples_for(&law, tr->plan.max_error, tr->plan.most));
-        if (tr->plan.first == tr->plan.most) wanted = tr->plan.most;
-    }
-    double error = tr->before > 0 ? law.error * pow(law.samples / tr->before, law.power) : 0;
-    tr->tile_noise = error * error;
-    tr->squared_noise += error * error * pixels;
+    allot_begin(&tr->allotment, &tr->plan.samples, tr->columns, tr->rows, most_in_pass);
+    tr->first_pass = true;
+    do {
+        if (!tr->first_pass) beam_aim(tr); /* drawing has narrowed the beam */
+        see_pass(tr, out, apart);
+        tr->first_pass = false;
+    } while (allot_next(&tr->allotment, &tr->plan.samples, apart, most_in_pass) && !beam_is_interrupted(&tr->draft));
+    tr->tile_noise = allot_error(&tr->allotment);
+    tr->squared_noise += tr->tile_noise * pixels;
 }
 
 double beam_tracer_error(const BeamTracer *tr, uint64_t *pixels) {

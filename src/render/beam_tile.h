@@ -7,18 +7,16 @@
 #ifndef VTS_RENDER_BEAM_TILE_H
 #define VTS_RENDER_BEAM_TILE_H
 
+#include "render/beam_allot.h"
 #include "render/beam_shadow.h"
 #include "render/integrate.h"
 
-enum { BEAM_TILE = FILM_TILE, MOST_BEAM_SAMPLES = 256 };
+enum { BEAM_TILE = FILM_TILE, MOST_BEAM_SAMPLES = 1024 };
 
 typedef struct BeamTracer BeamTracer;
 
-/* Samples a pixel: of the first pass over each tile, and after it as many, up to `most`, as bring the RMSE of the tile below max_error
- * (0: the first pass is all). */
 typedef struct BeamPlan {
-    int first, most; /* at least 1, at most MOST_BEAM_SAMPLES */
-    double max_error;
+    AllotPlan samples; /* a pixel; at least 1, at most MOST_BEAM_SAMPLES */
     const atomic_bool *interrupted; /* may be NULL; tiles may be anything once it is true */
 } BeamPlan;
 

@@ -19,6 +19,7 @@ void cell_begin(Cell *cell, const Middle *m) {
                    .middle = m->seen,
                    .object = m->object,
                    .normal = m->normal,
+                   .tint = m->tint,
                    .refinable = m->refinable,
                    .doubt = m->doubt};
 }
@@ -60,4 +61,10 @@ double cell_halves_error(const Cell *cell) {
     Vec3f a = vec3f_scale(cell->late, 1 / (float)cell->late_count),
           b = vec3f_scale(vec3f_sub(cell_shown_sum(cell), cell->late), 1 / (float)early);
     return HALVES_TO_ERROR * (double)light_mean_square(vec3f_sub(a, b));
+}
+
+double cell_variance(const Cell *cell) {
+    double n = cell_count(cell), squares = (double)cell_squares_sum(cell) / n,
+           mean = (double)vec3f_dot(cell->mean, cell->mean);
+    return fmax(squares - mean, 0) * n / (n - 1) / 3;
 }

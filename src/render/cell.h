@@ -6,22 +6,25 @@
 
 /* What is known of a pixel. Errors and contrasts are those of light that the picture can show. */
 typedef struct Cell {
-    Radiance sum;      /* over the samples of its net */
-    Vec3f shown, late; /* sums of clamped light: of all of these, of the last half */
-    float squares;     /* of its channels */
-    Vec3f mean;        /* of what counts */
-    int class;         /* of the contrast: contrast_class() */
-    float contrast;    /* of the first sample with those around: squared error to be expected of it */
+    /* What is asked of all cells of a tile again and again stands together. */
+    double error;   /* expected squared error now */
+    float contrast; /* of the first sample with those around: squared error to be expected of it */
+    float doubt;    /* squared error to be expected of the first sample by itself */
+    int class;      /* of the contrast: contrast_class() */
     int net, late_count;
-    bool centred;          /* there is a sample in the middle, beside the net */
+    bool centred; /* there is a sample in the middle, beside the net */
     bool refinable;
+    bool probe;           /* its next samples are for others like it */
     bool checked, misled; /* whether what is shared was looked at in this round, and was wrong */
-    float doubt;     /* squared error to be expected of the first sample by itself */
-    uint32_t object; /* that the middle sees, from 1; 0: none */
-    Vec3f normal;    /* of it */
-    Radiance middle; /* the first sample, */
-    Vec3f first;     /* clamped */
-    double error;    /* expected squared error now */
+    Vec3f mean;           /* of what counts */
+    float squares;        /* of the channels of its net's samples */
+    Radiance sum;         /* over these, */
+    Vec3f shown, late;    /* and sums of clamped light: of all of these, of the last half */
+    uint32_t object;      /* that the middle sees, from 1; 0: none */
+    Vec3f normal;         /* of it */
+    SurfaceTint tint;     /* as Middle has it */
+    Radiance middle;      /* the first sample, */
+    Vec3f first;          /* clamped */
 } Cell;
 
 /* Light that the picture can show: clamped to [0, 1]. */
@@ -42,5 +45,7 @@ float cell_squares_sum(const Cell *cell);
 Radiance cell_light(const Cell *cell);
 /* The squared error of their mean, by how far those of the last half are from the others; 0 where there are none of either. */
 double cell_halves_error(const Cell *cell);
+/* The variance of one sample, by those that count, two at least: the mean over its channels. */
+double cell_variance(const Cell *cell);
 
 #endif

@@ -54,6 +54,7 @@ struct Cluster {
     ItemList owners; /* of triangles; of a mesh: one, in the cluster's own space */
     ClusterTriangleList triangles; /* few ones of the owners */
     const MeshData *mesh;          /* all of a mesh instead */
+    double width;  /* of the thinnest of the items (thin.h) */
     int depth;     /* clusters within each other, this one included */
     struct FilledItems {
         uint32_t *items;

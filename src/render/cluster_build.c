@@ -288,7 +288,7 @@ static void add_surface(Builder *b, Cluster *cluster, const Object *object, cons
 
 static uint8_t hidden_from(const Object *object) {
     return (uint8_t)((object->no_image ? 1 << RAY_SEES : 0) | (object->no_shadow ? 1 << RAY_SHADOWS : 0) |
-                     (object->no_reflection ? 1 << RAY_MIRRORS : 0));
+                     (object->no_reflection ? 1 << RAY_MIRRORS : 0) | (object->no_radiosity ? 1 << RAY_GATHERS : 0));
 }
 
 static void add_object(Builder *b, Cluster *cluster, const Object *object, const Transform *parent, const Inherited *outer);

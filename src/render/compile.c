@@ -2,7 +2,9 @@
 
 #include "base/stopwatch.h"
 #include "render/beam_rigid.h"
+#include "render/beam_worth.h"
 #include "render/exact_skin.h"
+#include "render/radiosity.h"
 #include "render/terrain_view.h"
 #include "render/volume_memo.h"
 #include "render/volume_set.h"
@@ -78,11 +80,14 @@ static const double DEFAULT_MAX_ERROR = 1.0 / 255;
 static const double FILM_SHARE = 0.65;
 /* A pixel of fur may want hundreds of samples: who does not ask for an error gets what is near it at a bearable cost. */
 enum { MOST_SAMPLES = 256, MOST_SAMPLES_UNASKED = 64 };
+/* The same of films with skins, asked or not: what is noise in a picture is flicker in them, which is seen sooner. */
+enum { MOST_FILM_SAMPLES = 512 };
 
 /* What the error that a user accepts buys. At 1/255: voxels half as wide as the cone (with linear interpolation between their
  * centres that is the cone's own blur, and finer levels hold more air to skip), steps of one and a half of them, two for
  * shadows, and 4 × 4 cones where explicit edges cross a pixel. The error of steps falls with their length, that of edges with
- * the number of cones. */
+ * the number of cones. What a cone hardly lets through differs from what it has seen by a fraction of a picture's range: a hundredth of the
+ * light from there is some thousandths of that. */
 static void choose_detail(double max_error, OpacityModel opacity, RayPath path, CompiledScene *out) {
     double e = max_error / DEFAULT_MAX_ERROR, root = pow(e, 0.25);
     out->march = (MarchSettings){.opacity = opacity, .path = path,
@@ -91,7 +96,9 @@ static void choose_detail(double max_error, OpacityModel opacity, RayPath path, 
     out->shadow_march = out->march;
     out->shadow_march.voxel_width *= 1.4f; /* shadows are parts of pixels (Neyret 1998 sec. IV-B: "a rougher level") */
     out->shadow_march.step = (float)double_clamp(2 * root, 1, 2.5);
-    out->max_error = max_error;
+    out->accepted_error = out->max_error = max_error;
+    out->opaque_below = (float)double_clamp(2 * max_error, 1.0 / 256, 1.0 / 16);
+    out->dark_below = (float)double_clamp(0.25 * max_error, 1.0 / 1024, 1.0 / 32);
     out->samples = (int)double_clamp(round(8 * pow(e, -1)), 2, 16);
     out->split = (int)double_clamp(round(4 * pow(e, -0.35)), 2, 12);
 }
@@ -142,19 +149,24 @@ static const BoxTree *tree_over_skins(const CompiledScene *compiled) {
 }
 
 typedef struct SkinsMet {
-    uint32_t *skins;
+    const CompiledScene *compiled;
+    const Ray *ray;
+    double t_max;
+    SkinMet *list;
     size_t count;
 } SkinsMet;
 
 static void meet_skin(void *context, uint32_t skin) {
     SkinsMet *met = context;
+    double near = 0, far = met->t_max;
+    box_tree_clip(&met->compiled->skins[skin].bounds, met->ray, &near, &far);
     size_t i = met->count++;
-    for (; i > 0 && met->skins[i - 1] > skin; i--) met->skins[i] = met->skins[i - 1];
-    met->skins[i] = skin;
+    for (; i > 0 && (met->list[i - 1].t > near || (met->list[i - 1].t == near && met->list[i - 1].skin > skin)); i--) met->list[i] = met->list[i - 1];
+    met->list[i] = (SkinMet){skin, near};
 }
 
-size_t compiled_skins_met(const CompiledScene *compiled, const Ray *ray, double t_max, uint32_t *skins) {
-    SkinsMet met = {skins, 0};
+size_t compiled_skins_met(const CompiledScene *compiled, const Ray *ray, double t_max, SkinMet *skins) {
+    SkinsMet met = {compiled, ray, t_max, skins, 0};
     box_tree_ray(compiled->skin_tree, ray, 0, &t_max, meet_skin, &met);
     return met.count;
 }
@@ -163,7 +175,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     double start = stopwatch_wall();
     size_t errors = diags->error_count;
     *out = (CompiledScene){.scene = scene, .options = options, .arena = arena, .view = {.camera = scene->camera, .width = options->width, .height = options->height}};
-    view_prepare(&out->view);
+    view_prepare(&out->view, arena);
     budget_begin(&out->budget);
     arena_init(&out->scratch, options->memory, 0);
     out->quadrature = quadrature_of(scene->settings.quadrature);
@@ -190,6 +202,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     for (size_t i = 0; i < scene->skin_count; i++) *list_push(arena, &skins) = scene->skins[i];
     Transform identity = transform_identity();
     for (size_t i = 0; i < scene->object_count; i++) find_placed_texels(scene->objects[i], &identity, NULL, arena, &skins);
+    if (skins.count && !hierarchy_start_embree(out->hierarchy, diags)) return COMPILE_FAILED;
     out->skins = arena_new_array(arena, CompiledSkin, skins.count);
     for (size_t i = 0; i < skins.count; i++)
         if (skin_compile(skins.items[i], out, diags, &out->skins[out->skin_count])) out->skin_count++;
@@ -198,14 +211,16 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     out->most_samples = scene->settings.max_error > 0 ? MOST_SAMPLES : MOST_SAMPLES_UNASKED;
     if (options->film && out->skin_count) { /* errors of two frames add up in their difference, and few of those of skins are the same */
         out->max_error *= FILM_SHARE;
-        out->most_samples = int_min(2 * out->most_samples, MOST_SAMPLES);
+        out->most_samples = MOST_FILM_SAMPLES;
     }
     Detail detail = detail_of(scene->settings.detail);
     CompileStatus status = build_texels(options, detail, diags, out);
     if (status != COMPILE_OK) return status;
     out->skin_tree = tree_over_skins(out);
     if (out->volumes && !options->exact && !volumes_light_kept(out)) return COMPILE_INTERRUPTED;
+    radiosity_build(out);
     beam_pilot(out);
+    beam_worth(out);
     budget_trial(out);
     if (options->exact && out->skin_count) out->exact = exact_skins_build(out->skins, out->skin_count, hierarchy_device(out->hierarchy));
     if (options->exact && out->skin_count && !out->exact) memory_budget_fail(options->memory);

@@ -5,6 +5,7 @@
 #include "base/diag.h"
 #include "base/pool.h"
 #include "base/progress.h"
+#include "render/beam_allot.h"
 #include "render/budget.h"
 #include "render/hierarchy.h"
 #include "render/skin.h"
@@ -21,6 +22,7 @@ typedef struct PilotResult {
     double planned;             /* what they were told at: the least of these distances, and */
     Vec3 lamps;                 /* the lamps' sum, by brightness and direction (those at a place: towards it from the middle of what is exact), and */
     double bright;              /* the sum of their brightness */
+    double worth;   /* of samples (beam_worth.c); 0: not told */
     bool elsewhere; /* they are to be told by another scene: nothing is drawn for it, and */
     bool asked;     /* if the scene needs them, this becomes true */
 } PilotResult;
@@ -36,6 +38,7 @@ typedef struct CompileOptions {
     bool exact; /* for the reference: texels and skins keep their geometry, no voxels are built */
     const struct NetStates *net_states; /* of springs in skins; NULL: they are followed from their beginning */
     struct VolumeMemo *volume_memo; /* NULL: nothing is kept of volumes */
+    struct ExactMemo *exact_memo; /* of audits; NULL: nothing is kept of texels' triangles */
     PilotResult *pilot; /* is used if it is known, else becomes known; NULL: trial pixels are drawn, and forgotten */
     bool film;  /* one of several pictures in a row: skins are drawn so much better that what changes between two is right to max_error */
 } CompileOptions;
@@ -70,17 +73,26 @@ typedef struct CompiledScene {
     bool secondary;       /* some explicit objects mirror or let light through: lines of sight go on from them */
     bool clear_shadows;   /* some explicit objects let light through */
     bool voxels;          /* skins have voxels, not exact geometry alone */
-    double max_error;     /* the RMSE that is accepted */
+    double accepted_error; /* the RMSE that the scene accepts, */
+    double max_error;     /* and of one frame of it: films have less */
     Budget budget;        /* who makes how much of it */
+    float opaque_below;   /* what skins let through that is less than this is taken to look like themselves */
+    float dark_below;     /* light of which skins leave less than this share is gone */
     int most_samples;     /* a pixel, to keep it */
     int samples;          /* a pixel, of the first pass of what is drawn by beams */
+    AllotPlan allot;      /* the samples of what is drawn by beams */
+    const PilotResult *told; /* that trial pixels need not tell again; NULL: there is none */
+    PilotResult *tells;      /* that they become known by; NULL: nobody wants to know */
     int split;            /* cones per pixel side where explicit edges cross the pixel */
+    double volume_rays;     /* that the light pass of volumes has shot, and */
+    double volume_error;    /* the RMSE to be expected of what it kept; negative: not known */
     bool volume_light_kept; /* from the frame before */
     int trials;           /* blocks of trial pixels drawn for this picture */
     double build_seconds;
     Box3 exact_bounds;    /* of the skins that beams draw, those of `rigid` not counted */
     double all_exact_to;  /* the least exact_to of all skins, 0 of those that are voxels alone */
     double nearest;       /* nearer to the eye than this nothing is drawn by beams */
+    const struct RadiosityKept *radiosity; /* radiosity.h; NULL: surfaces send each other no light */
     double voxel_error;   /* expected RMSE of pixels at the distance all_exact_to that are drawn from voxels, falling with it; < 0: not known */
 } CompiledScene;
 
@@ -89,8 +101,13 @@ typedef enum CompileStatus { COMPILE_OK, COMPILE_FAILED /* see diags */, COMPILE
 /* `arena` owns the result but for the voxels and hierarchies: compiled_scene_destroy() releases those. */
 CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, Arena *arena, DiagList *diags, CompiledScene *out);
 void compiled_scene_destroy(CompiledScene *compiled);
-/* The skins whose bounds the ray meets between t = 0 and t_max, by number, ascending. `met` has room for all skins; returns how many. */
-size_t compiled_skins_met(const CompiledScene *compiled, const Ray *ray, double t_max, uint32_t *met);
+/* A skin whose bounds a ray meets, from t on. */
+typedef struct SkinMet {
+    uint32_t skin;
+    double t;
+} SkinMet;
+/* The skins whose bounds the ray meets between t = 0 and t_max, by t, then by number. `met` has room for all skins; returns how many. */
+size_t compiled_skins_met(const CompiledScene *compiled, const Ray *ray, double t_max, SkinMet *met);
 void compiled_scene_print(const CompiledScene *compiled, StrBuf *out);
 
 /* ---- parts, for compile.c ---- */
@@ -126,6 +143,11 @@ void beam_pilot(CompiledScene *compiled);
 /* Shares max_error out among samples, sky and media, by what trial pixels tell; nothing where there is only one of them. When all else is
  * compiled. budget_trial.c */
 void budget_trial(CompiledScene *compiled);
+/* Voxels may make this part of the error that is accepted: the rest is left to noise, and to what differs from frame to frame. Where exact geometry would be
+ * noisier than that error with all the samples it may have, they may make all of it. */
+#define VOXELS_SHARE 0.6
+/* What light on the ground is off by where it is drawn as terrain_view.c has it, of the same. */
+#define TERRAIN_SHARE 0.75
 /* Voxels are built for distances from this part of the planned one on. */
 #define EARLIEST_VOXELS 0.4
 /* Of the scene's knob `detail`. */
@@ -142,6 +164,7 @@ bool texel_mesh_layer(const BuiltTexel *texel, const TexelLayer *layer, const Te
 typedef struct ExactMaking {
     double tolerance;
     size_t flakes, most;
+    Arena *arena; /* of the triangles; NULL: the compiled scene's */
 } ExactMaking;
 /* All matter of a texel as its source triangles, for the reference; false after a diagnostic, or silently where there would be too many. exact_build.c */
 bool exact_build_texel(BuiltTexel *texel, const ExactMaking *how, CompiledScene *compiled, DiagList *diags);

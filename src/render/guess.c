@@ -33,30 +33,38 @@ static Vec3f shown(const Middle *m) {
     return vec3f(float_clamp(c.x, 0, 1), float_clamp(c.y, 0, 1), float_clamp(c.z, 0, 1));
 }
 
-static bool same_surface(const Middle *m, uint32_t object, Vec3f normal) {
-    return m->object == object && (object == 0 || vec3f_dot(m->normal, normal) > SAME_NORMAL);
+static bool same_surface(const Middle *a, const Middle *b) {
+    if (a->object != b->object || a->tint.texture != b->tint.texture) return false;
+    return a->object == 0 || vec3f_dot(a->normal, b->normal) > SAME_NORMAL;
 }
 
 /* By what the others differ from the first: where all are the same nothing is lost to rounding. */
-static Radiance mean_light(const Guess *guess) {
-    const Radiance first = guess->corners[0]->seen;
-    Radiance out = first;
+static void take_mean(const Guess *guess, Middle *here) {
+    const Middle *first = guess->corners[0];
+    const bool tinted = here->tint.texture && !guess->even;
+    const Vec3f light = tinted ? middle_as(first->seen.color, &first->tint, &here->tint) : first->seen.color;
+    here->seen = (Radiance){light, first->seen.alpha};
+    here->tint.lit = first->tint.lit;
     for (int k = 1; k < 4; k++) {
-        const Radiance *other = &guess->corners[k]->seen;
-        out.color = vec3f_madd(out.color, vec3f_sub(other->color, first.color), guess->weights[k]);
-        out.alpha += (other->alpha - first.alpha) * guess->weights[k];
+        const Middle *other = guess->corners[k];
+        const float weight = guess->weights[k];
+        const Vec3f as_here = tinted ? middle_as(other->seen.color, &other->tint, &here->tint) : other->seen.color;
+        here->seen.color = vec3f_madd(here->seen.color, vec3f_sub(as_here, light), weight);
+        here->seen.alpha += (other->seen.alpha - first->seen.alpha) * weight;
+        here->tint.lit = vec3f_madd(here->tint.lit, vec3f_sub(other->tint.lit, first->tint.lit), weight);
     }
-    return out;
 }
+
+static bool is_finite(Vec3f c) { return isfinite(c.x) && isfinite(c.y) && isfinite(c.z); }
 
 static bool has_finite_light(const Middle *m) {
-    return isfinite(m->seen.color.x) && isfinite(m->seen.color.y) && isfinite(m->seen.color.z);
+    return is_finite(m->seen.color) && (!m->tint.texture || (is_finite(m->tint.lit) && is_finite(m->tint.color)));
 }
 
-bool guess_light(const Guess *guess, uint32_t object, Vec3f normal, Radiance *out) {
+bool guess_light(const Guess *guess, Middle *here) {
     for (int k = 0; k < 4; k++)
-        if (!same_surface(guess->corners[k], object, normal)) return false;
-    *out = mean_light(guess);
+        if (!same_surface(guess->corners[k], here)) return false;
+    take_mean(guess, here);
     return true;
 }
 
@@ -83,23 +91,21 @@ static Guess guess_at(const Tile *t, const Square *s, int x, int y) {
     return guess;
 }
 
-static Vec3f error_of(const Radiance *guessed, const Middle *m) {
-    return vec3f_sub(shown(&(Middle){.seen = *guessed}), shown(m));
-}
+static Vec3f error_of(const Middle *guessed, const Middle *m) { return vec3f_sub(shown(guessed), shown(m)); }
+
+static float most_of(Vec3f c) { return float_max(fabsf(c.x), float_max(fabsf(c.y), fabsf(c.z))); }
 
 /* Whether the corners and the middle, which is found for this, see the same surface, and its light there is what they tell: an edge that
  * parts them would show, and how much the light curves does. */
 static bool agree(Tile *t, const Square *s, int mx, int my) {
     const Middle *corners[4], *middle = &t->middles[place(mx, my)];
-    Radiance guessed;
     corners_of(t, s, corners);
     for (int k = 0; k < 4; k++)
-        if (!has_finite_light(corners[k]) || !same_surface(corners[k], corners[0]->object, corners[0]->normal)) return false;
+        if (!has_finite_light(corners[k]) || !same_surface(corners[k], corners[0])) return false;
     find(t, mx, my);
     const Guess guess = guess_at(t, s, mx, my);
-    if (!guess_light(&guess, middle->object, middle->normal, &guessed)) return false;
-    Vec3f off = error_of(&guessed, middle);
-    return (double)float_max(fabsf(off.x), float_max(fabsf(off.y), fabsf(off.z))) <= t->sight->tolerance;
+    Middle guessed = *middle;
+    return guess_light(&guess, &guessed) && (double)most_of(error_of(&guessed, middle)) <= t->sight->tolerance;
 }
 
 static int kind_of(const Tile *t, const Square *s) {
@@ -107,7 +113,8 @@ static int kind_of(const Tile *t, const Square *s) {
     corners_of(t, s, corners);
     float most = 0;
     for (int k = 1; k < 4; k++) {
-        Vec3f off = error_of(&corners[0]->seen, corners[k]);
+        const Middle other = {.seen.color = middle_as(corners[k]->seen.color, &corners[k]->tint, &corners[0]->tint)};
+        Vec3f off = error_of(&other, corners[0]);
         most = float_max(most, vec3f_dot(off, off));
     }
     int kind = 0;
@@ -117,10 +124,10 @@ static int kind_of(const Tile *t, const Square *s) {
 
 /* Finds what could have been guessed, for all the others. */
 static void try_guess(Tile *t, const Guess *guess, struct Kind *kind, int x, int y) {
-    Middle *m = &t->middles[place(x, y)];
-    Radiance guessed;
+    const Middle *m = &t->middles[place(x, y)];
     find(t, x, y);
-    if (!guess_light(guess, m->object, m->normal, &guessed)) return;
+    Middle guessed = *m;
+    if (!guess_light(guess, &guessed)) return;
     Vec3f off = error_of(&guessed, m);
     kind->wrong += (double)vec3f_dot(off, off) / 3;
     kind->tried++;
@@ -131,61 +138,114 @@ static void put_guess(Tile *t, const Guess *guess, int x, int y) {
     Middle *m = &t->middles[place(x, y)];
     *m = *guess->corners[0];
     Vec3f normal = {0, 0, 0};
-    m->seen = mean_light(guess);
+    take_mean(guess, m);
     for (int k = 0; k < 4; k++) normal = vec3f_madd(normal, guess->corners[k]->normal, guess->weights[k]);
     float length = vec3f_length(normal);
     if (length > 0) m->normal = vec3f_scale(normal, 1 / length);
 }
 
-/* Where one of two pixels is looked at, like squares of a checkerboard, all beside this one see what the corners see. */
-static bool is_among(const Tile *t, const Square *s, int x, int y) {
+/* The pixels beside one of a square, within it, that are known. */
+static int known_beside(const Tile *t, const Square *s, int x, int y, const Middle *out[4]) {
     static const int beside[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
-    const Middle *corner = &t->middles[place(s->x0, s->y0)];
+    int count = 0;
     for (int k = 0; k < 4; k++) {
         int bx = x + beside[k][0], by = y + beside[k][1];
-        if (bx < s->x0 || by < s->y0 || bx > s->x1 || by > s->y1) continue;
-        const Middle *m = &t->middles[place(bx, by)];
-        if (t->known[place(bx, by)] == UNKNOWN || !same_surface(m, corner->object, corner->normal)) return false;
+        if (bx < s->x0 || by < s->y0 || bx > s->x1 || by > s->y1 || t->known[place(bx, by)] == UNKNOWN) continue;
+        out[count++] = &t->middles[place(bx, by)];
     }
+    return count;
+}
+
+/* Where one of two pixels is looked at, like squares of a checkerboard, all beside this one see what the corners see. */
+static bool is_among(const Tile *t, const Square *s, int x, int y) {
+    const Middle *beside[4], *corner = &t->middles[place(s->x0, s->y0)];
+    int count = known_beside(t, s, x, y, beside);
+    for (int k = 0; k < count; k++)
+        if (!same_surface(beside[k], corner)) return false;
+    return count >= 2;
+}
+
+/* In the light of those beside it; false where these differ: a pattern has an edge there. */
+static bool put_mean(Tile *t, const Square *s, int x, int y) {
+    const Middle *beside[4];
+    int count = known_beside(t, s, x, y, beside);
+    Middle mean = *beside[0];
+    for (int k = 1; k < count; k++) {
+        const Middle *other = beside[k];
+        if ((double)most_of(error_of(other, beside[0])) > t->sight->tolerance) return false;
+        const float weight = 1 / (float)(k + 1);
+        mean.seen.color = vec3f_madd(mean.seen.color, vec3f_sub(other->seen.color, mean.seen.color), weight);
+        mean.seen.alpha += (other->seen.alpha - mean.seen.alpha) * weight;
+        mean.tint.color = vec3f_madd(mean.tint.color, vec3f_sub(other->tint.color, mean.tint.color), weight);
+        mean.tint.lit = vec3f_madd(mean.tint.lit, vec3f_sub(other->tint.lit, mean.tint.lit), weight);
+    }
+    t->middles[place(x, y)] = mean;
     return true;
 }
 
-static void fill_pixel(Tile *t, const Square *s, int kind, bool even, int x, int y) {
-    const Guess guess = guess_at(t, s, x, y);
-    bool holds = true;
-    if (random_hash((uint64_t)x, (uint64_t)y, 0, 0) % TRIED == 0) {
-        try_guess(t, &guess, &t->kinds[kind], x, y);
-        return;
-    }
-    if (even) put_guess(t, &guess, x, y);
-    else holds = t->sight->see(t->sight->context, x, y, &guess, &t->middles[place(x, y)]);
-    t->known[place(x, y)] = (uint8_t)(holds ? GUESSED + kind : FOUND);
-    t->kinds[kind].guessed += holds;
-}
+/* What a square is filled by. */
+typedef struct Fill {
+    Square square;
+    int kind, half;
+    VistaView view;
+    bool even;      /* there is one colour */
+    bool patterned; /* its light is that of a pattern's colours, which have to be looked at */
+} Fill;
 
 /* First the one, then the other half of a checkerboard's squares. */
-static void fill(Tile *t, const Square *s) {
+static void fill_pixel(Tile *t, const Fill *f, int x, int y) {
+    const Square *s = &f->square;
+    Guess guess = guess_at(t, s, x, y);
+    guess.even = f->even;
+    bool holds = true, even = f->view == VISTA_EVEN || (f->view == VISTA_ONE && f->half == 1);
+    if (random_hash((uint64_t)x, (uint64_t)y, 0, 0) % TRIED == 0) {
+        try_guess(t, &guess, &t->kinds[f->kind], x, y);
+        return;
+    }
+    if (even && (f->patterned || f->view == VISTA_ONE)) even = f->half == 1 && is_among(t, s, x, y);
+    if (even && f->patterned) even = put_mean(t, s, x, y);
+    else if (even) put_guess(t, &guess, x, y);
+    if (!even) holds = t->sight->see(t->sight->context, x, y, &guess, &t->middles[place(x, y)]);
+    t->known[place(x, y)] = (uint8_t)(holds ? GUESSED + f->kind : FOUND);
+    t->kinds[f->kind].guessed += holds;
+}
+
+static void corners_are(const Tile *t, const Square *s, bool *calm, bool *tinted) {
+    const Middle *corners[4];
+    corners_of(t, s, corners);
+    *calm = *tinted = true;
+    for (int k = 0; k < 4; k++) {
+        *calm &= corners[k]->calm;
+        *tinted &= corners[k]->tint.texture != NULL;
+    }
+}
+
+/* A pattern averaged over a square's footprint has exactly the colour of its corners where that is all there is, as within a tile. */
+static bool has_even_color(const Tile *t, const Square *s, int mx, int my) {
+    const Middle *corners[4], *middle = &t->middles[place(mx, my)];
+    const double width = 1.25 * int_max(s->x1 - s->x0, s->y1 - s->y0) + 2;
+    const Vec3f c = middle->tint.color;
+    corners_of(t, s, corners);
+    for (int k = 0; k < 4; k++) {
+        Vec3f other = corners[k]->tint.color;
+        if (other.x != c.x || other.y != c.y || other.z != c.z) return false;
+    }
+    return t->sight->even && t->sight->even(t->sight->context, mx, my, width, middle);
+}
+
+static void fill(Tile *t, const Square *s, bool even, bool patterned) {
     const GuessSight *sight = t->sight;
-    const int kind = kind_of(t, s);
-    VistaView view = sight->view ? sight->view(sight->context, s->x0, s->y0, s->x1, s->y1, t->middles[place(s->x0, s->y0)].object) : VISTA_OPEN;
-    for (int half = 0; half < 2; half++)
+    Fill f = {*s, kind_of(t, s), 0, VISTA_OPEN, even, patterned};
+    if (sight->view) f.view = sight->view(sight->context, s->x0, s->y0, s->x1, s->y1, t->middles[place(s->x0, s->y0)].object);
+    for (; f.half < 2; f.half++)
         for (int y = s->y0; y <= s->y1; y++)
-            for (int x = s->x0 + ((s->x0 + y + half) & 1); x <= s->x1; x += 2)
-                if (t->known[place(x, y)] == UNKNOWN)
-                    fill_pixel(t, s, kind, view == VISTA_EVEN || (view == VISTA_ONE && half == 1 && is_among(t, s, x, y)), x, y);
+            for (int x = s->x0 + ((s->x0 + y + f.half) & 1); x <= s->x1; x += 2)
+                if (t->known[place(x, y)] == UNKNOWN) fill_pixel(t, &f, x, y);
 }
 
 static void find_all(Tile *t, const Square *s) {
     for (int y = s->y0; y <= s->y1; y++)
         for (int x = s->x0; x <= s->x1; x++) find(t, x, y);
-}
-
-static bool is_calm(const Tile *t, const Square *s) {
-    const Middle *corners[4];
-    corners_of(t, s, corners);
-    for (int k = 0; k < 4; k++)
-        if (!corners[k]->calm) return false;
-    return true;
 }
 
 /* The square's corners are found. */
@@ -195,8 +255,11 @@ static void divide(Tile *t, const Square *s) {
         find_all(t, s);
         return;
     }
-    if (agree(t, s, mx, my) && (int_max(width, height) <= NARROW || is_calm(t, s))) {
-        fill(t, s);
+    bool calm, tinted;
+    corners_are(t, s, &calm, &tinted);
+    if (agree(t, s, mx, my) && (int_max(width, height) <= NARROW || calm || tinted)) {
+        bool even = calm || (tinted && has_even_color(t, s, mx, my));
+        fill(t, s, even, tinted && !even);
         return;
     }
     for (int k = 0; k < 9; k++)
@@ -209,6 +272,7 @@ static void divide(Tile *t, const Square *s) {
 
 /* ---- the tile ---- */
 
+/* Also all along the tile's borders: what tiles around see of it hangs on nothing but the pixel, whether or not they see all of it. */
 static void find_lattice(Tile *t, int columns, int rows) {
     for (int y = 0; y < rows; y++)
         for (int x = 0; x < columns; x++)
@@ -247,7 +311,7 @@ static void settle(Tile *t, int columns, int rows) {
 
 void guess_tile(const GuessSight *sight, int columns, int rows, Middle *out) {
     Tile t = {.sight = sight, .middles = out};
-    if (!(sight->tolerance > 0)) {
+    if (!(sight->tolerance > 0) || columns == 1 || rows == 1) {
         find_all(&t, &(Square){0, 0, columns - 1, rows - 1});
         return;
     }

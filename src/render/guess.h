@@ -1,6 +1,7 @@
 /* Middles of a tile's pixels where light is not found in each: between middles that agree it is interpolated. What is met there is found
  * wherever it can be anything else, so that no edge is lost; where the light may have details that a square's corners do not show, squares are as small
- * as can be; and the light of a share of those pixels, which tells how wrong the others are. (Adaptive
+ * as can be; and the light of a share of those pixels, which tells how wrong the others are. Where light is a multiple of a pattern's
+ * colour, what is interpolated is what makes it from the colour, which is looked at. (Adaptive
  * undersampling: Akimoto, Mase & Suenaga, Pixel-selected ray tracing, 1991; there edges are guessed, too.) */
 #ifndef VTS_RENDER_GUESS_H
 #define VTS_RENDER_GUESS_H
@@ -12,16 +13,20 @@
 typedef struct Guess {
     const Middle *corners[4];
     float weights[4];
+    bool even; /* in between there is no other colour than at the corners */
 } Guess;
 
-/* The light between the corners; false where something else is met there than at them. `object`, from 1, and `normal` as Middle has them. */
-bool guess_light(const Guess *guess, uint32_t object, Vec3f normal, Radiance *out);
+/* The light between the corners, of what is seen there: object, normal, texture and colour of `here` are set. False where something else
+ * is met than at the corners; else its light is set, and `lit` of its tint. */
+bool guess_light(const Guess *guess, Middle *here);
 
 /* How the middle of a pixel of the tile is seen: its light is found when `guess` is NULL, or does not hold there. */
 typedef struct GuessSight {
     bool (*see)(void *context, int x, int y, const Guess *guess, Middle *out); /* whether it holds */
     /* What can be seen between these pixels, which all see `object`; or NULL: anything. */
     VistaView (*view)(void *context, int x0, int y0, int x1, int y1, uint32_t object);
+    /* Whether what this middle sees has its colour all over a square of so many pixels about it; NULL: nobody knows. */
+    bool (*even)(void *context, int x, int y, double width, const Middle *middle);
     void *context;
     double
         tolerance; /* of light in [0, 1]: how far the middle of a square may be from what its corners tell; 0: nothing is guessed */

@@ -1,7 +1,9 @@
 #include "render/hierarchy.h"
 
+#include "render/blockers.h"
 #include "render/embree_ray.h"
 #include "render/hit.h"
+#include "render/thin.h"
 #include "shape/box_tree.h"
 #include "shape/intersect.h"
 
@@ -12,6 +14,7 @@ struct Hierarchy {
     bool clear; /* something lets light through */
     bool plain; /* no line of sight goes on from anything */
     VistaPieces pieces;
+    const Blockers *blockers; /* where the scene has media */
     double reach; /* from the middle of what is bounded; 0: there is nothing */
 };
 
@@ -264,7 +267,7 @@ static void add_piece(VistaPieces *pieces, const Item *item, bool convex) {
     if (item->hidden >> RAY_SEES & 1) return;
     bool plane = !item->body && !item->cluster && item->object->kind == OBJECT_PLANE;
     if (!vec3_is_finite(box.min) || !vec3_is_finite(box.max)) pieces->endless |= !plane;
-    else pieces->items[pieces->count++] = (VistaPiece){box, convex ? hit_object_of(item) + 1 : 0};
+    else pieces->items[pieces->count++] = (VistaPiece){.box = box, .width = thin_item(item), .object = convex ? hit_object_of(item) + 1 : 0};
 }
 
 static void find_pieces(const Cluster *all, Arena *arena, VistaPieces *out) {
@@ -274,6 +277,19 @@ static void find_pieces(const Cluster *all, Arena *arena, VistaPieces *out) {
 }
 
 const VistaPieces *hierarchy_pieces(const Hierarchy *h) { return &h->pieces; }
+const Blockers *hierarchy_blockers(const Hierarchy *h) { return h->blockers; }
+
+static bool is_few(const Hierarchy *h) {
+    bool few = true;
+    for (size_t i = 0; i < h->set.clusters.count; i++) few &= h->set.clusters.items[i]->few != NULL;
+    return few;
+}
+
+bool hierarchy_start_embree(Hierarchy *h, DiagList *diags) {
+    if (!h->device) h->device = rtcNewDevice("threads=1,set_affinity=0");
+    if (!h->device) diag_error(diags, (Span){0}, "Embree cannot be started on this machine");
+    return h->device != NULL;
+}
 
 Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags) {
     Hierarchy *h = arena_new(arena, Hierarchy);
@@ -287,13 +303,11 @@ Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags) {
         h->clear |= look && !look->opaque;
         h->plain &= !look || look->plain;
     }
+    thin_clusters(&h->set);
     find_pieces(h->all, arena, &h->pieces);
+    if (scene->has_media) h->blockers = blockers_find(h->all, arena);
     /* From here on nothing is taken from the arena: if memory ran out, the device would be lost. */
-    h->device = rtcNewDevice("threads=1,set_affinity=0");
-    if (!h->device) {
-        diag_error(diags, (Span){0}, "Embree cannot be started on this machine");
-        return NULL;
-    }
+    if (!is_few(h) && !hierarchy_start_embree(h, diags)) return NULL;
     for (size_t i = 0; i < h->set.clusters.count; i++)
         if (!h->set.clusters.items[i]->few && !commit(h->device, h->set.clusters.items[i])) {
             hierarchy_destroy(h);

@@ -10,9 +10,10 @@
 
 typedef struct Hierarchy Hierarchy;
 struct Interior;
+struct Blockers;
 
-/* What a ray is for: `no_image`, `no_reflection` and `no_shadow` hide objects from each. */
-typedef enum RayPurpose { RAY_SEES, RAY_MIRRORS, RAY_SHADOWS } RayPurpose;
+/* What a ray is for: `no_image`, `no_reflection`, `no_shadow` and `no_radiosity` hide objects from each. */
+typedef enum RayPurpose { RAY_SEES, RAY_MIRRORS, RAY_SHADOWS, RAY_GATHERS } RayPurpose;
 
 /* A further look of a surface, which has so much of it. */
 typedef struct LookShare {
@@ -66,6 +67,12 @@ bool hierarchy_is_plain(const Hierarchy *hierarchy);
 void hierarchy_work(const Hierarchy *hierarchy, SolidWork *sum);
 /* What the eye can see, for vista_of(); `object` as SurfaceHit has it, plus 1. */
 const VistaPieces *hierarchy_pieces(const Hierarchy *hierarchy);
+/* What may block light on its way (blockers.h); NULL in scenes without media. */
+const struct Blockers *hierarchy_blockers(const Hierarchy *hierarchy);
+/* Starts Embree if it is not yet, which takes as long as thousands of rays: a hierarchy of few things does without, skins do not. False
+ * after a diagnostic. */
+bool hierarchy_start_embree(Hierarchy *hierarchy, DiagList *diags);
+/* Embree's; NULL until it is started. */
 void *hierarchy_device(const Hierarchy *hierarchy);
 
 /* A box around everything that is drawn, empty if nothing is; false when there is something endless. */

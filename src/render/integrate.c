@@ -1,6 +1,8 @@
 #include "render/integrate.h"
 
 #include "base/random.h"
+#include "render/matter_color.h"
+#include "render/skin_joint.h"
 #include "render/volume_set.h"
 
 #include <string.h>
@@ -19,6 +21,9 @@ enum { MOST_MATTER_SUMS = MOST_MATTER_HITS };
 typedef struct Group {
     float weight;
     double t, voxel_world; /* sums, weighted */
+    uint32_t skin;         /* of the last segment, and the place of its middle there */
+    SkinPoint point;
+    SkinJoint joint;       /* at the first segment */
     MatterSum sums[MOST_MATTER_SUMS];
     int sum_count;
 } Group;
@@ -38,42 +43,23 @@ static const float GROUP_WEIGHT = 1.0f / 24;
 /* Below these transmittances voxels are one level coarser, and another: what is seen through much matter needs less. */
 static const float COARSER_BELOW[] = {0.3f, 0.08f};
 
-/* A segment that lets less than this through ends the march: a step of 8-bit pictures at most. */
-static const float OPAQUE_BELOW = 1.0f / 256;
 /* Light that shadows could take away is tested where it makes more than this of a pixel. */
 static const float SHADOW_WORTH = 1.0f / 512;
 enum { MOST_SHADOW_POINTS = 2 };
+/* Between the first matter that is seen and what lies deeper light may fall to nothing: of so much light one shadow in the middle is not enough. */
+static const float SHADOWS_PER_LIGHT = 24;
+
 
 void tracer_init(Tracer *tracer, const CompiledScene *compiled, Arena *arena) {
-    size_t skins = compiled->skin_count + 1; /* never zero */
     *tracer = (Tracer){.compiled = compiled,
-                       .marches = arena_new_array(arena, SkinMarch, skins),
-                       .segments = arena_new_array(arena, SkinSegment, skins),
-                       .has_segment = arena_new_array(arena, bool, skins),
-                       .met = arena_new_array(arena, uint32_t, skins),
                        .records = arena_new_array(arena, ShadeRecord, MOST_SHADE_RECORDS),
                        .direct = arena_new_array(arena, Vec3f, MOST_SHADE_RECORDS * (compiled->scene->light_count + 1)),
                        .light_rays = arena_new_array(arena, LightRay, compiled->scene->light_count)};
-    for (size_t i = 0; i < compiled->skin_count; i++) skin_march_init(&tracer->marches[i], &compiled->skins[i], arena);
+    skin_front_init(&tracer->front, compiled, &tracer->counters, arena);
     skin_light_init(&tracer->light, compiled, &tracer->counters, arena);
 }
 
 /* ---- matter of skins ---- */
-
-static Vec3 place_in_bounds(const MatterHit *hit) {
-    Box3 b = hit->texel->def->bounds;
-    Vec3 size = vec3_sub(b.max, b.min);
-    return vec3_add(b.min, vec3_mul(size, vec3_from_f(hit->place)));
-}
-
-/* The colour of matter under the cone: a texel's own texture lives in its bounds, one laid over it by the skin in the scene. */
-static Vec3f matter_color(const MatterHit *hit, const Cone *cone, double t) {
-    if (hit->look->uniform) return hit->look->color;
-    if (hit->look != &hit->matter->look) return look_color(hit->look, cone_point(cone, t), vec3(0, 0, 0), cone_diameter(cone, t));
-    Vec3 size = vec3_sub(hit->texel->def->bounds.max, hit->texel->def->bounds.min);
-    double unit = fmax(size.x, fmax(size.y, size.z)); /* of texel space */
-    return look_color(hit->look, place_in_bounds(hit), vec3(0, 0, 0), unit * (double)hit->width);
-}
 
 static MatterSum *sum_of(Group *group, const Look *look) {
     for (int i = 0; i < group->sum_count; i++)
@@ -84,8 +70,11 @@ static MatterSum *sum_of(Group *group, const Look *look) {
     return sum;
 }
 
-static void group_add(Group *group, const Cone *cone, const SkinSegment *segment, float weight) {
+static void group_add(Group *group, const Cone *cone, const SkinMarch *march, const SkinSegment *segment, float weight) {
     double middle = (segment->t0 + segment->t1) / 2;
+    float voxel_width = march->settings->voxel_width;
+    group->point = skin_march_guess(march, middle);
+    if (!(group->weight > 0)) skin_joint_find(march, &group->joint);
     group->weight += weight;
     group->t += (double)weight * middle;
     group->voxel_world += (double)(weight * segment->voxel_world);
@@ -95,9 +84,17 @@ static void group_add(Group *group, const Cone *cone, const SkinSegment *segment
         float share = weight * hit->share;
         sum->weight += share;
         sum->sky += share * hit->sky;
-        sum->color = vec3f_madd(sum->color, vec3f_mul(matter_color(hit, cone, middle), hit->tint), share);
+        sum->color = vec3f_madd(sum->color, vec3f_mul(matter_color(hit, cone, middle, voxel_width), hit->tint), share);
         sum->s = sym3f_madd(&sum->s, &hit->s, share);
     }
+}
+
+/* What the voxels of a skin make of a light on a sheet of theirs. */
+static SheetLook look_in_light(const SheetLook *sheet, const float factor[2]) {
+    SheetLook look = *sheet;
+    look.diffuse *= factor[0];
+    look.transmission *= factor[1];
+    return look;
 }
 
 /* Shades a group for all lights: `direct`; and with its own light and the ambient. */
@@ -107,22 +104,29 @@ static void shade_group(const Tracer *tr, const Cone *cone, const Group *group, 
     memset(direct, 0, lights * sizeof *direct);
     for (int i = 0; i < group->sum_count; i++) {
         const MatterSum *sum = &group->sums[i];
-        const Look *look = sum->look;
         if (!(sum->weight > 0)) continue;
         Vec3f color = vec3f_scale(sum->color, 1 / sum->weight);
-        ambient = vec3f_madd(ambient, vec3f_mul(look->ambient, color), sum->sky);
-        glow = vec3f_madd(glow, vec3f_mul(look->emission, color), sum->weight);
-        for (size_t l = 0; l < lights; l++) {
-            NdfShade shade = ndf_shade(tr->compiled->quadrature, &sum->s, view, vec3f_from(rays[l].direction), &look->sheet);
-            direct[l] = vec3f_madd(direct[l], vec3f_mul(shade_tone(&shade, look, color), rays[l].color), sum->weight);
+        ambient = vec3f_madd(ambient, vec3f_mul(sum->look->ambient, color), sum->sky);
+        glow = vec3f_madd(glow, vec3f_mul(sum->look->emission, color), sum->weight);
+    }
+    for (size_t l = 0; l < lights; l++) {
+        float factor[2] = {1, 1};
+        if (!tr->compiled->scene->lights[l].shadowless) skin_joint_facing(&group->joint, vec3_negate(cone->direction), rays[l].direction, factor);
+        for (int i = 0; i < group->sum_count; i++) {
+            const MatterSum *sum = &group->sums[i];
+            if (!(sum->weight > 0)) continue;
+            SheetLook sheet = look_in_light(&sum->look->sheet, factor);
+            NdfShade shade = ndf_shade(tr->compiled->quadrature, &sum->s, view, vec3f_from(rays[l].direction), &sheet);
+            Vec3f tone = shade_tone(&shade, sum->look, vec3f_scale(sum->color, 1 / sum->weight));
+            direct[l] = vec3f_madd(direct[l], vec3f_mul(tone, rays[l].color), sum->weight);
         }
     }
     record->ambient = ambient;
     record->glow = glow;
 }
 
-/* Makes a record of the group, whose last segment is in skin `nearest`, and empties it. */
-static void close_group(Tracer *tr, const Cone *cone, Group *group, int nearest, ShadeRecord *record, Vec3f *direct) {
+/* Makes a record of the group and empties it. */
+static void close_group(Tracer *tr, const Cone *cone, Group *group, ShadeRecord *record, Vec3f *direct) {
     const Scene *scene = tr->compiled->scene;
     double t = group->t / (double)group->weight;
     Vec3 point = cone_point(cone, t);
@@ -131,20 +135,10 @@ static void close_group(Tracer *tr, const Cone *cone, Group *group, int nearest,
         if (!light_shines_on(&scene->lights[l], NULL)) tr->light_rays[l].color = vec3f(0, 0, 0);
     }
     *record = (ShadeRecord){.weight = group->weight, .t = t, .tolerance = 0.02 * group->voxel_world / (double)group->weight,
-                            .skin = (uint32_t)nearest, .point = skin_march_guess(&tr->marches[nearest], t)};
+                            .skin = group->skin, .point = group->point};
     shade_group(tr, cone, group, tr->light_rays, record, direct);
     for (int i = 0; tr->matter && i < group->sum_count; i++) tr->matter->albedo = vec3f_add(tr->matter->albedo, group->sums[i].color);
     *group = (Group){0};
-}
-
-/* Of the first `met` in tr->met. */
-static int nearest_segment(const Tracer *tr, size_t met) {
-    int nearest = -1;
-    for (size_t k = 0; k < met; k++) {
-        size_t i = tr->met[k];
-        if (tr->has_segment[i] && (nearest < 0 || tr->segments[i].t0 < tr->segments[nearest].t0)) nearest = (int)i;
-    }
-    return nearest;
 }
 
 /* ---- from exact geometry to voxels ---- */
@@ -162,7 +156,8 @@ static Passed passed_nothing(const ConeStart *start) {
     return passed;
 }
 
-static double march_start(const CompiledSkin *skin, const ConeStart *start) {
+static double march_start(const CompiledSkin *skin, const void *context) {
+    const ConeStart *start = context;
     return skin->boxes && start->count ? skin->exact_to * (double)start->factor[0] : 0;
 }
 
@@ -187,42 +182,30 @@ static float pass_segment(Passed *passed, const CompiledSkin *skin, const SkinSe
 /* Follows the cone through all skins at once, nearest segment first; returns how many records were made. */
 static size_t gather(Tracer *tr, const Cone *cone, const ConeStart *start, double t_max, float *transmittance) {
     const CompiledScene *scene = tr->compiled;
-    const Ray axis = {cone->origin, cone->direction};
-    size_t stride = scene->scene->light_count + 1, count = 0, met = compiled_skins_met(scene, &axis, t_max, tr->met);
+    size_t stride = scene->scene->light_count + 1, count = 0;
+    const SkinSegment *segment;
+    const SkinMarch *march;
+    uint32_t skin;
     Group group = {0};
-    int coarser = 0, last = -1;
-    for (size_t k = 0; k < met; k++) {
-        size_t i = tr->met[k];
-        double from = march_start(&scene->skins[i], start);
-        tr->has_segment[i] = false;
-        if (!(from < t_max)) continue;
-        skin_march_begin(&tr->marches[i], cone, from, t_max, &scene->march, &tr->counters, true);
-        tr->has_segment[i] = skin_march_next(&tr->marches[i], &tr->segments[i]);
-    }
+    int coarser = 0;
     Passed passed = passed_nothing(start);
-    while (count < MOST_SHADE_RECORDS && passed.transmittance > OPAQUE_BELOW) {
-        int nearest = nearest_segment(tr, met);
-        if (nearest < 0) break;
-        const SkinSegment *segment = &tr->segments[nearest];
-        if (last >= 0 && group.weight > 0 && (nearest != last || group.weight > GROUP_WEIGHT)) {
-            close_group(tr, cone, &group, last, &tr->records[count], &tr->direct[count * stride]);
+    skin_front_begin(&tr->front, cone, t_max, march_start, start);
+    while (count < MOST_SHADE_RECORDS && passed.transmittance > scene->opaque_below && (segment = skin_front_next(&tr->front, &skin, &march)) != NULL) {
+        if (group.weight > 0 && (skin != group.skin || group.weight > GROUP_WEIGHT)) {
+            close_group(tr, cone, &group, &tr->records[count], &tr->direct[count * stride]);
             count++;
         }
-        last = nearest;
-        float hidden = pass_segment(&passed, &scene->skins[nearest], segment);
-        if (hidden > 0) group_add(&group, cone, segment, hidden);
+        group.skin = skin;
+        float hidden = pass_segment(&passed, &scene->skins[skin], segment);
+        if (hidden > 0) group_add(&group, cone, march, segment, hidden);
         if (hidden > 0 && tr->matter) matter_sum_add(tr->matter, segment, hidden, scene->march.voxel_width);
-        if (coarser < (int)VTS_ARRAY_COUNT(COARSER_BELOW) && passed.transmittance < COARSER_BELOW[coarser]) {
-            coarser++;
-            for (size_t k = 0; k < met; k++) skin_march_coarsen(&tr->marches[tr->met[k]], coarser);
-        }
-        tr->has_segment[last] = skin_march_next(&tr->marches[last], &tr->segments[last]);
+        if (coarser < (int)VTS_ARRAY_COUNT(COARSER_BELOW) && passed.transmittance < COARSER_BELOW[coarser]) skin_front_coarsen(&tr->front, ++coarser);
     }
     if (group.weight > 0 && count < MOST_SHADE_RECORDS) {
-        close_group(tr, cone, &group, last, &tr->records[count], &tr->direct[count * stride]);
+        close_group(tr, cone, &group, &tr->records[count], &tr->direct[count * stride]);
         count++;
     }
-    *transmittance = passed.transmittance > OPAQUE_BELOW ? passed.transmittance : 0;
+    *transmittance = passed.transmittance;
     return count;
 }
 
@@ -268,7 +251,7 @@ static Vec3f add_shadowed(Tracer *tr, const Cone *cone, size_t count, size_t lig
     Vec3f sum = {0, 0, 0};
     if (total <= 0) return sum;
     bool worth = total > SHADOW_WORTH && !light->shadowless;
-    int points = worth ? int_clamp(1 + (int)(total * 8), 1, MOST_SHADOW_POINTS) : 0;
+    int points = worth ? int_clamp(1 + (int)(total * SHADOWS_PER_LIGHT), 1, MOST_SHADOW_POINTS) : 0;
     if (worth && count == 1) points = 1;
     float seen[MOST_SHADOW_POINTS + 1], at[MOST_SHADOW_POINTS + 1];
     float passed = 0;
@@ -337,6 +320,10 @@ Vec3f trace_skins(Tracer *tr, const Cone *cone, const ConeStart *start, double t
     }
     color = vec3f_add(color, vec3f_mul(ambient, sky_over(tr, cone, count, ambient)));
     for (size_t l = 0; l < scene->light_count; l++) color = vec3f_add(color, add_shadowed(tr, cone, count, l));
+    if (count && *transmittance <= tr->compiled->opaque_below) {
+        color = vec3f_scale(color, 1 / (1 - *transmittance));
+        *transmittance = 0;
+    }
     float covered = 1 - *transmittance;
     if (count && covered > 0) {
         SurfaceTracer surfaces = tracer_of_surfaces(tr);
@@ -363,6 +350,10 @@ SurfaceTracer tracer_of_surfaces(Tracer *tr) {
     return surfaces;
 }
 
+/* Light hangs on the normal in no straight way: the mean of what bumps send is not what their mean normal sends. That is wrong by more than sharper bumps are noisy,
+ * where a pixel may have as many lines of sight as it needs. */
+static const double SHARP_BUMPS = 0.1;
+
 Radiance trace_cone(Tracer *tr, const Cone *cone, const SurfaceHit *hit, float *reaching) {
     const Scene *scene = tr->compiled->scene;
     float transmittance = 1;
@@ -376,14 +367,17 @@ Radiance trace_cone(Tracer *tr, const Cone *cone, const SurfaceHit *hit, float *
     *reaching = transmittance;
     if (transmittance <= 0) return out;
     SurfaceTracer surfaces = tracer_of_surfaces(tr);
+    surfaces.bumps = SHARP_BUMPS;
     Air air = air_from_eye(&surfaces, cone, hit ? hit->t : VTS_INFINITY);
     Vec3f behind;
+    if (hit) surfaces.tint = tr->tint;
     out.alpha += transmittance * air.cover;
     if (hit) {
         Leg leg;
         surface_eye_leg(tr->compiled, cone, &leg);
         leg.weight = transmittance;
         behind = surface_radiance(&surfaces, &leg, hit);
+        if (tr->tint) tr->tint->lit = vec3f_scale(vec3f_mul(tr->tint->lit, air.keep), transmittance);
         out.alpha = 1;
     } else {
         behind = sky_radiance(scene, cone->direction, cone->spread);

@@ -17,17 +17,15 @@ typedef struct ShadeRecord ShadeRecord;
 /* What one worker needs; sized once, so that tracing allocates nothing. */
 typedef struct Tracer {
     const CompiledScene *compiled;
-    SkinMarch *marches;        /* one for each skin */
+    SkinFront front;
     SkinLight light;
-    SkinSegment *segments;     /* likewise: the next of each */
-    bool *has_segment;
-    uint32_t *met;             /* the skins that the cone meets */
     ShadeRecord *records;
     Vec3f *direct;             /* [record][light] */
     LightRay *light_rays;      /* [light], at the segment that is being shaded */
     uint64_t seed;             /* of what is sampled in this pixel */
     double part;               /* of its lines of sight, what one of these is; 0: all */
     Draw draw;                 /* likewise, of samples that follow each other in one pixel: lens, lights, glossy directions */
+    SurfaceTint *tint;         /* gets how the light of the next surface depends on its colour; NULL: not wanted */
     MatterAov *matter;         /* gets what a cone sees of skins; NULL: not wanted */
     TraceCounters counters;
 } Tracer;

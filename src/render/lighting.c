@@ -1,6 +1,7 @@
 #include "render/lighting.h"
 
 #include "pattern/pattern.h"
+#include "tape/tape.h"
 
 /* Smooth from 0 at `low` to 1 at `high`, and a step there if `low` is not below it: POV-Ray's cubic at the rims of lights. */
 static double rim(double low, double high, double x) {
@@ -30,9 +31,23 @@ static double cylinder_factor(const Light *light, Vec3 to) {
     return factor;
 }
 
+/* By the angle to the axis. Lamps do not swallow light: what is below 0, or no number, is 0. */
+static double goniometric_factor(const Light *light, Vec3 to_light) {
+    double angle = atan2(vec3_length(vec3_cross(light->to_light, to_light)), vec3_dot(light->to_light, to_light)), out[LIGHT_GONIOMETRIC_OUTPUTS];
+    tape_eval_once(light->goniometric, &angle, out);
+    return out[0] > 0 && isfinite(out[0]) ? out[0] : 0;
+}
+
 static double fading(const Light *light, double distance) {
     if (!(light->fade_power > 0) || !(light->fade_distance > 0)) return 1;
     return 2 / (1 + pow(distance / light->fade_distance, light->fade_power));
+}
+
+/* Of a light's colour, and again of what its place makes of it: floats hold the product, and sums of many. */
+static const float BRIGHTEST = 1e15f;
+
+static Vec3f limited(Vec3f c) {
+    return vec3f(float_clamp(c.x, -BRIGHTEST, BRIGHTEST), float_clamp(c.y, -BRIGHTEST, BRIGHTEST), float_clamp(c.z, -BRIGHTEST, BRIGHTEST));
 }
 
 LightRay light_ray(const Light *light, Vec3 point) { return light_ray_from(light, point, light->location); }
@@ -45,7 +60,8 @@ LightRay light_ray_from(const Light *light, Vec3 point, Vec3 place) {
     factor = fading(light, light_is_parallel(light) ? fmax(0, vec3_dot(to, light->to_light)) : length);
     if (light->kind == LIGHT_SPOT) factor *= spot_factor(light, ray.direction);
     if (light->kind == LIGHT_CYLINDER) factor *= cylinder_factor(light, to);
-    ray.color = vec3f_scale(vec3f_from_color(light->color), (float)factor);
+    if (light->goniometric && !light_is_parallel(light)) factor *= goniometric_factor(light, ray.direction);
+    ray.color = vec3f_scale(limited(vec3f_from_color(light->color)), (float)fmin(factor, (double)BRIGHTEST));
     return ray;
 }
 

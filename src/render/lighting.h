@@ -39,6 +39,8 @@ typedef struct Air {
 } Air;
 /* air.c. Between the origin and what is seen at t (VTS_INFINITY: the sky) along the unit direction. */
 Air air_between(const Scene *scene, const Ray *ray, double t);
+/* What fogs alone let through of light to t: lights with media_attenuation go through them (measured), not through rainbows. */
+Vec3f air_fog_passing(const Scene *scene, const Ray *ray, double t);
 /* `color` is multiplied by `alpha`. */
 static inline Vec3f air_over(const Air *air, Vec3f color, float alpha) {
     return vec3f_madd(vec3f_mul(color, air->keep), air->add, alpha);

@@ -1,6 +1,7 @@
 /* What media add to a line of sight and take from it: its integral by pieces, halved until halves and whole agree. */
 #include "render/media.h"
 
+#include "render/blockers.h"
 #include "scene/medium.h"
 #include "volume/phase.h"
 
@@ -248,6 +249,56 @@ static void stop_for_light(const Light *light, const Ray *ray, double *extra, in
     add_extra(extra, count, nearest - away), add_extra(extra, count, nearest + away);
 }
 
+/* The hull of light that a lamp sends to the way between t0 and t1; false where its light is no even one. Parallel light comes from so far. */
+static bool light_hull(const Way *way, const Light *light, double t0, double t1, double far, LightHull *hull) {
+    const Vec3 ends[2] = {vec3_madd(way->ray.origin, way->ray.direction, t0), vec3_madd(way->ray.origin, way->ray.direction, t1)};
+    if (light->goniometric || light->projected_through) return false;
+    hull->points[0] = ends[0], hull->points[1] = ends[1];
+    hull->count = 2;
+    if (light_is_parallel(light))
+        for (int i = 0; i < 2; i++) hull->points[hull->count++] = vec3_madd(ends[i], light->to_light, far);
+    else hull->points[hull->count++] = light->location;
+    if (!light_is_area(light)) return true;
+    if (light_is_parallel(light)) return false;
+    double side = 0.9 * (vec3_length(light->axis_u) + vec3_length(light->axis_v)); /* an octahedron around its area, however that is turned */
+    hull->count = 2;
+    for (int i = 0; i < 6; i++) {
+        double along = i < 3 ? side : -side;
+        hull->points[hull->count++] = vec3_add(light->location, vec3(i % 3 == 0 ? along : 0, i % 3 == 1 ? along : 0, i % 3 == 2 ? along : 0));
+    }
+    return true;
+}
+
+/* Whether a beam or a shadow may lie between two places of the way; of those that begin gently, one that is not so wide. */
+static bool is_uneven(const Way *way, double t0, double t1, double fine) {
+    const CompiledScene *compiled = way->tracer->compiled;
+    const Scene *scene = compiled->scene;
+    const Blockers *blockers = hierarchy_blockers(compiled->hierarchy);
+    const Medium *media[MEDIA_MOST_SITES];
+    LightHull hull = {.media = media, .media_count = way->matter->count, .fine = fine};
+    if (!blockers || way->tracer->passing || (compiled->volumes && !way->tracer->no_volumes)) return true;
+    for (int i = 0; i < way->matter->count; i++) media[i] = way->matter->sites[i].medium;
+    for (size_t i = 0; i < scene->light_count; i++) {
+        const Light *light = &scene->lights[i];
+        if (!shines_on_media(light)) continue;
+        if (!light_hull(way, light, t0, t1, FAR, &hull) || blockers_touch(blockers, &hull)) return true;
+    }
+    return false;
+}
+
+/* Cuts the way into so many pieces; beside those where light is even in both, it is not cut, but for a few. */
+static void cut_lit_way(const Way *way, double t0, double t1, int pieces, double *extra, int *count) {
+    enum { EVEN_PIECES = 2, EVEN_STEPS = 8 };
+    const double fine = (t1 - t0) / EVEN_STEPS;
+    bool some = is_uneven(way, t0, t1, fine), before = some && is_uneven(way, t0, t0 + (t1 - t0) / pieces, fine);
+    for (int i = 1; i < pieces; i++) {
+        double at = t0 + (t1 - t0) * i / pieces;
+        bool after = some && is_uneven(way, at, t0 + (t1 - t0) * (i + 1) / pieces, fine);
+        if (before || after || i % (pieces / EVEN_PIECES) == 0) add_extra(extra, count, at);
+        before = after;
+    }
+}
+
 static int find_extra(const Way *way, double t0, double t1, double *extra) {
     enum { LEAST_PIECES = 12, MOST_PIECES = 48, PLACES = 5, POWERS = 18 };
     const Scene *scene = way->tracer->compiled->scene;
@@ -256,8 +307,11 @@ static int find_extra(const Way *way, double t0, double t1, double *extra) {
         if (shines_on_media(&scene->lights[i])) stop_for_light(&scene->lights[i], &way->ray, extra, &count);
     double samples = 0;
     for (int i = 0; i < way->matter->count; i++) samples = double_max(samples, way->matter->sites[i].medium->samples);
-    int pieces = (int)double_clamp(samples / PLACES, !way->lit ? 1 : way->tracer->compiled->exact_paths ? MOST_PIECES : LEAST_PIECES, MOST_PIECES);
-    for (int i = 1; i < pieces && t1 < FAR; i++) add_extra(extra, &count, t0 + (t1 - t0) * i / pieces);
+    const bool exact = way->tracer->compiled->exact_paths;
+    const int asked = (int)double_clamp(samples / PLACES, 1, MOST_PIECES), pieces = exact ? MOST_PIECES : int_max(asked, LEAST_PIECES);
+    if (t1 < FAR && way->lit && !exact) cut_lit_way(way, t0, t1, pieces, extra, &count);
+    else if (t1 < FAR)
+        for (int i = 1; i < (way->lit ? pieces : asked); i++) add_extra(extra, &count, t0 + (t1 - t0) * i / (way->lit ? pieces : asked));
     double power = 1e-3;
     for (int i = 0; i < POWERS && t1 >= FAR; i++, power *= 6) add_extra(extra, &count, power);
     return count;
@@ -283,8 +337,11 @@ static Vec3f to_floats(Vec3 v) {
     return vec3f((float)double_clamp(v.x, -1e30, 1e30), (float)double_clamp(v.y, -1e30, 1e30), (float)double_clamp(v.z, -1e30, 1e30));
 }
 
+/* Sums of floats are not known better. */
+static const double LEAST_ERROR = 1e-6;
+
 static double tolerance_of(const CompiledScene *compiled) {
-    return compiled->max_error * (compiled->exact_paths ? EXACT_SHARE : SHARE * compiled->budget.slack[BUDGET_MEDIA]);
+    return double_max(compiled->max_error, LEAST_ERROR) * (compiled->exact_paths ? EXACT_SHARE : SHARE * compiled->budget.slack[BUDGET_MEDIA]);
 }
 
 static Air gather(SurfaceTracer *tracer, const Leg *leg, const MediaMatter *matter) {

@@ -12,8 +12,14 @@ typedef struct Middle {
     uint32_t object; /* and its number, from 1; 0: none */
     bool calm;       /* it is even, mirrors nothing and lets nothing through */
     bool refinable;  /* the pixel's error can be that of edges */
+    SurfaceTint tint; /* how its light depends on its colour, if it does */
     float doubt;     /* of light that was guessed: squared error to be expected */
 } Middle;
+
+/* The light of a middle, if the surface there had another colour. */
+static inline Vec3f middle_as(Vec3f seen, const SurfaceTint *tint, const SurfaceTint *other) {
+    return tint->texture ? vec3f_add(seen, vec3f_mul(vec3f_sub(other->color, tint->color), tint->lit)) : seen;
+}
 
 typedef struct Middles Middles;
 

@@ -48,10 +48,10 @@ static bool has_exact_skins(const CompiledScene *compiled) {
     return false;
 }
 
-static BeamPlan noisier(BeamPlan plan, double factor) {
+static AllotPlan noisier(AllotPlan plan, double factor) {
     plan.first = int_max(2, (int)(plan.first / (factor * factor))); /* both halves of one pass tell the noise */
     plan.most = int_max(plan.first, (int)(plan.most / (factor * factor)));
-    plan.max_error *= factor;
+    plan.worth = allot_worth_noisier(plan.worth, factor);
     return plan;
 }
 
@@ -64,9 +64,9 @@ static void make_workers(Frame *frame, int workers) {
     Arena *arena = compiled->arena;
     if (options->aovs) frame->aovs = arena_new_array(arena, AovSum, (size_t)workers * FILM_TILE * FILM_TILE);
     if (has_exact_skins(compiled)) {
-        BeamPlan plan = {.first = compiled->samples, .most = compiled->most_samples, .max_error = compiled->max_error};
-        if (options->noise > 1) plan = noisier(plan, options->noise);
-        if (options->samples > 0) plan = (BeamPlan){.first = options->samples, .most = options->samples};
+        BeamPlan plan = {.samples = compiled->allot};
+        if (options->noise > 1) plan.samples = noisier(plan.samples, options->noise);
+        if (options->samples > 0) plan.samples = (AllotPlan){.first = options->samples, .most = options->samples};
         plan.interrupted = options->interrupted;
         frame->beams = arena_new_array(arena, BeamTracer *, (size_t)workers);
         for (int i = 0; i < workers; i++) frame->beams[i] = beam_tracer_create(compiled, &plan, options->seed, arena);
@@ -106,6 +106,8 @@ static void count_workers(const Frame *frame, int workers, RenderStats *stats) {
     stats->split_pixels = tally.refined;
     bool known = frame->beams ? isinf(frame->compiled->all_exact_to) || frame->compiled->voxel_error >= 0 : frame->compiled->skin_count == 0;
     stats->noise_estimate = pixels ? sqrt(noise / (double)pixels) : 0;
+    stats->voxels_estimate = !known ? -1 : pixels ? sqrt(fmax(squares - noise, 0) / (double)pixels) : 0;
+    stats->pixels = pixels;
     stats->error_estimate = !known ? -1 : pixels ? sqrt(squares / (double)pixels) : 0;
 }
 

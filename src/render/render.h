@@ -13,6 +13,8 @@ typedef struct RenderStats {
     uint64_t moments;      /* that a blurred picture is the mean of; 0: sharp */
     uint64_t split_pixels; /* traced by several cones */
     double noise_estimate; /* the RMSE to be expected from samples alone */
+    double voxels_estimate; /* the RMSE to be expected of voxels that stand for geometry; negative: not known */
+    uint64_t pixels;        /* drawn */
     double error_estimate; /* the RMSE to be expected; negative: not known, as voxels are seen */
 } RenderStats;
 

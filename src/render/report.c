@@ -1,5 +1,7 @@
 #include "render/report.h"
 
+#include "render/report_errors.h"
+
 static void add_text(StrBuf *out, const char *key, const char *text) {
     strbuf_addf(out, "\"%s\":", key);
     strbuf_add_json(out, text);
@@ -67,6 +69,7 @@ void report_add_frame(StrBuf *out, const FrameReport *f) {
     add_functions(out, &c->functions);
     add_texels(out, f->compiled);
     add_budget(out, f->compiled);
+    report_errors(out, f->compiled, f->stats);
     add_terrains(out, &f->compiled->terrains);
     if (f->stats->error_estimate >= 0) strbuf_addf(out, ",\"error_estimate\":%.6f", f->stats->error_estimate);
     else strbuf_adds(out, ",\"error_estimate\":null");

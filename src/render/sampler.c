@@ -2,40 +2,27 @@
 
 #include "render/candidates.h"
 #include "render/cell.h"
+#include "render/error_laws.h"
 #include "render/guess.h"
+#include "render/shared_light.h"
 #include "render/tile_sight.h"
 
 #include <string.h>
 
-/* A tile and the pixels around it, whose first samples tell what differs across its border. */
-enum { EDGE = FILM_TILE + 2, CELLS = EDGE * EDGE };
+enum { EDGE = CONTRAST_EDGE, CELLS = CONTRAST_CELLS };
 /* Where so much of the light comes from explicit surfaces, their edges are worth samples; where less, skins hide them. */
 static const float EDGE_WORTH = 1.0f / 64, ALL_EXPLICIT = 0.999f;
-/* An edge of contrast C that crosses a pixel anywhere leaves an error of C/√12 in its middle's sample; of two pixels whose second
- * difference it makes C it crosses one. */
-static const double STEP_TO_ERROR = 0.408;
-/* Against random samples, of which n leave 1/n of the variance: what n of a straight edge leave (measured: 0.40 at 5, falling as 1/√n). */
-static const double EDGE_GAIN = 0.4;
 enum { FIRST_NET = 4 };
 /* Samples of a net are so wide, against its mesh: wider ones, which blur what is at a pixel's border, are wrong by more than narrower ones are noisy. */
 static const double SAMPLE_WIDTH = 0.7;
-/* Whoever stops where errors seem to be small stops more often where they only seem so: what was found true of the sum of squares. */
-static const double CAUTION = 2.4;
-/* Samples at edges share the light of the middles around, of two at least, that see as smooth a part of the same surface and agree. */
-static const double SAME_NORMAL = 0.98, NEAREST = 0.05, SHARED_RANGE = 4;
 /* Middles are guessed where this is found to be no further off than so many times the error that is accepted, unless the guesses take
  * more than this part of it. */
 static const double ALIKE = 1, GUESSES_MAY = 0.25;
-/* What is known of a law by itself counts as much as so many pixels. */
-static const double PRIOR = 4;
-/* Contrasts are learned apart by their powers of four. */
-enum { CONTRASTS = 8, LEVELS = 9 };
-
-/* A ratio that is learned: of what came out to what was expected. */
-typedef struct Learned {
-    double expected, found;
-    int count;
-} Learned;
+/* Pixels that seem to need nothing are quiet: of a tile's, one of a square of so many each way is looked at all the same, for all of these, and of those that have had samples one of so many, if there are
+ * enough of them. Where things are narrower than pixels it is one of a smaller square. */
+enum { PROBE_SIDE = 8, PROBE_SIDE_THIN = 2, PROBE_AGAIN = 16, ENOUGH_QUIET = 32 };
+/* Pixels of less than this part of the mean error that is accepted are looked at when nothing else is left. */
+static const double NO_WORTH = 0.125;
 
 struct Sampler {
     const CompiledScene *compiled;
@@ -44,10 +31,12 @@ struct Sampler {
     Middle own[FILM_TILE * FILM_TILE]; /* of the tile, where none are shared */
     Tracer tracer;
     Cell cells[CELLS];
+    LightPlanes light; /* their means */
     bool shares;  /* light is a matter of the surface alone: neither skins nor a lens */
     AovSum *aovs; /* of the tile without what is around it; NULL: not wanted */
     int x0, y0, columns, rows;
-    Learned contrasts[CONTRASTS], levels[LEVELS];
+    ErrorLaws laws;
+    int probes; /* that are waiting */
     CandidateHeap heap;
     SamplerTally tally;
 };
@@ -114,47 +103,6 @@ static AovSum *aovs_of(const Sampler *sp, int px, int py) {
     return sp->aovs && within ? &sp->aovs[row * sp->columns + column] : NULL;
 }
 
-/* The middles around a sample that see the same as it. */
-typedef struct Shared {
-    Vec3f color, least, most;
-    float alpha, weight;
-    int count;
-} Shared;
-
-static void share_middle(Shared *shared, const Cell *cell, double dx, double dy) {
-    float weight = (float)(1 / (dx * dx + dy * dy + NEAREST));
-    Vec3f light = light_shown(cell->middle.color);
-    if (shared->count++ == 0) shared->least = shared->most = light;
-    shared->least = vec3f(float_min(shared->least.x, light.x), float_min(shared->least.y, light.y),
-                          float_min(shared->least.z, light.z));
-    shared->most = vec3f(float_max(shared->most.x, light.x), float_max(shared->most.y, light.y),
-                         float_max(shared->most.z, light.z));
-    shared->color = vec3f_madd(shared->color, cell->middle.color, weight);
-    shared->alpha += cell->middle.alpha * weight;
-    shared->weight += weight;
-}
-
-/* The light of a further sample of a cell, at (x, y) of its pixel, as the middles around have it; false where they do not tell. */
-static bool shared_light(const Sampler *sp, const Cell *cell, double x, double y, const SurfaceHit *hit,
-                         Radiance *out) {
-    uint32_t object = hit ? hit->object + 1 : 0;
-    Vec3f normal = hit ? vec3f_from(hit->normal) : vec3f(0, 0, 0);
-    Shared shared = {.count = 0};
-    if (!sp->shares || cell->misled) return false;
-    for (int row = -1; row <= 1; row++)
-        for (int column = -1; column <= 1; column++) {
-            const Cell *other = cell + row * EDGE + column;
-            if (other->object != object || (hit && (double)vec3f_dot(other->normal, normal) < SAME_NORMAL))
-                continue;
-            share_middle(&shared, other, x - 0.5 - column, y - 0.5 - row);
-        }
-    Vec3f range = vec3f_sub(shared.most, shared.least);
-    if (shared.count < 2 || (double)float_max(range.x, float_max(range.y, range.z)) > SHARED_RANGE * sp->plan.max_error)
-        return false;
-    *out = (Radiance){vec3f_scale(shared.color, 1 / shared.weight), shared.alpha / shared.weight};
-    return true;
-}
-
 /* A sample's place on the picture and its number in the pixel. */
 typedef struct Aim {
     int px, py, number;
@@ -166,6 +114,7 @@ typedef struct Sighting {
     bool found;
     bool known;     /* the light is known from others */
     SurfaceHit hit; /* where something was found */
+    SurfaceTint tint;
     float reaching; /* the share that explicit surfaces have */
     Radiance seen;
 } Sighting;
@@ -175,21 +124,32 @@ static bool agree(const Sampler *sp, Vec3f a, Vec3f b) {
     return (double)float_max(fabsf(apart.x), float_max(fabsf(apart.y), fabsf(apart.z))) <= sp->plan.max_error;
 }
 
+static bool guessed_light(const Guess *guess, const Cone *cone, Sighting *s, Radiance *out) {
+    Middle here = {.object = s->found ? s->hit.object + 1 : 0, .tint.texture = NULL};
+    if (s->found) here.normal = vec3f_from(s->hit.normal);
+    if (guess->even) here.tint = guess->corners[0]->tint;
+    else if (s->found && guess->corners[0]->tint.texture) surface_tint(cone, &s->hit, &here.tint);
+    if (!guess_light(guess, &here)) return false;
+    *out = here.seen;
+    s->tint = here.tint;
+    return true;
+}
+
 /* The light as it is known from others: of a further sample of a `cell`, of a first one by a `guess`; either may be NULL. What middles say
  * may be wrong of what is thin: the first of each round of samples that could go by it is looked at all the same. */
 static void see_light(Sampler *sp, const Aim *aim, Cell *cell, const Guess *guess, const Cone *cone,
                       Sighting *out) {
     const SurfaceHit *hit = out->found ? &out->hit : NULL;
-    Vec3f normal = hit ? vec3f_from(hit->normal) : vec3f(0, 0, 0);
     Radiance known;
-    bool shared = cell && shared_light(sp, cell, aim->x, aim->y, hit, &known);
-    bool guessed = guess && guess_light(guess, hit ? hit->object + 1 : 0, normal, &known);
-    out->known = guessed || (shared && cell->checked);
+    bool shared = cell && sp->shares && !cell->misled && shared_light(cell, &(SharedPlace){aim->x, aim->y, cone, hit}, sp->plan.max_error, &known);
+    out->known = (guess && guessed_light(guess, cone, out, &known)) || (shared && cell->checked);
     if (out->known) {
         sp->tracer.counters.camera_rays++;
         out->seen = known;
         return;
     }
+    out->tint.texture = NULL;
+    sp->tracer.tint = sp->shares && hit ? &out->tint : NULL;
     out->seen = trace_cone(&sp->tracer, cone, hit, &out->reaching);
     if (!shared) return;
     cell->checked = true;
@@ -211,6 +171,7 @@ static void see(Sampler *sp, const Aim *aim, Cell *cell, const Guess *guess, Sig
     out->found = ray && find_surface(sp->compiled, &cone, aovs, &out->hit);
     out->reaching = 1;
     out->known = false;
+    out->tint.texture = NULL;
     out->seen = (Radiance){{0, 0, 0}, 0};
     const SurfaceHit *hit = out->found ? &out->hit : NULL;
     if (ray) see_light(sp, aim, cell, guess, &cone, out);
@@ -227,6 +188,7 @@ static bool see_first(Sampler *sp, const Aim *aim, const Guess *guess, Middle *o
     Sighting s;
     see(sp, aim, NULL, guess, &s);
     out->seen = s.seen;
+    out->tint = s.tint;
     out->object = s.found ? s.hit.object + 1 : 0;
     out->normal = s.found ? vec3f_from(s.hit.normal) : vec3f(0, 0, 0);
     out->refinable = view_has_lens(&sp->compiled->view) || s.reaching >= ALL_EXPLICIT ||
@@ -240,6 +202,11 @@ static bool see_first(Sampler *sp, const Aim *aim, const Guess *guess, Middle *o
 static bool see_middle(Sampler *sp, int px, int py, const Guess *guess, Middle *out) {
     out->doubt = 0;
     return see_first(sp, &(Aim){px, py, 0, 0.5, 0.5, 1, 1}, guess, out);
+}
+
+static void set_mean(Sampler *sp, int index, Vec3f mean) {
+    sp->cells[index].mean = mean;
+    for (int c = 0; c < 3; c++) sp->light.channels[c][index] = c == 0 ? mean.x : c == 1 ? mean.y : mean.z;
 }
 
 static void place_of(const Sampler *sp, int cell, int *px, int *py) {
@@ -277,112 +244,24 @@ static void see_more(Sampler *sp, int index, int count) {
         add_sample(sp, cell, &(Aim){px, py, k, x, y, width, 1.0 / count});
     }
     int counted = cell_count(cell);
-    if (counted) cell->mean = vec3f_scale(cell_shown_sum(cell), 1 / (float)counted);
+    if (counted) set_mean(sp, index, vec3f_scale(cell_shown_sum(cell), 1 / (float)counted));
 }
 
 /* ---- errors ---- */
 
-static int level_of(int count) {
-    int level = 0;
-    while (count > 2 && level < LEVELS - 1) count /= 2, level++;
-    return level;
-}
-
-/* -log4, rounded down; from the number's own exponent. */
-static int contrast_class(double contrast) {
-    int exponent;
-    if (!(contrast > 0)) return CONTRASTS - 1;
-    bool power = frexp(contrast, &exponent) == 0.5;
-    return exponent > 0 ? 0 : int_min((power - exponent) / 2, CONTRASTS - 1);
-}
-
-static void learn(Learned *learned, double expected, double found) {
-    learned->expected += expected;
-    learned->found += found;
-    learned->count++;
-}
-
-static double learned_ratio(const Learned *learned, double before) {
-    if (learned->count == 0 || !(learned->expected > 0)) return before;
-    return (PRIOR * before + learned->count * learned->found / learned->expected) / (PRIOR + learned->count);
-}
-
-/* Of what is expected of a first sample, the part that was found where the contrast was as large, or next larger. */
-static void contrast_ratios(const Sampler *sp, int classes, double ratios[CONTRASTS]) {
-    for (int class = 0; class < classes; class ++)
-        ratios[class] = learned_ratio(&sp->contrasts[class], class ? ratios[class - 1] : 1);
-}
-
-static void set_contrast(Cell *cell, float contrast) {
+static void set_contrast(const Sampler *sp, Cell *cell, float contrast) {
     cell->contrast = contrast;
-    cell->class = contrast_class((double)contrast);
+    cell->class = contrast_class(contrast);
+    if (error_counts(&sp->laws, contrast) && sp->shares && shared_but_pattern(cell, sp->plan.max_error)) cell->class += ERROR_OF_PATTERNS;
 }
 
-static double variance(const Cell *cell) {
-    double n = cell_count(cell), squares = (double)cell_squares_sum(cell) / n,
-           mean = (double)vec3f_dot(cell->mean, cell->mean);
-    double found = fmax(squares - mean, 0) * n / (n - 1) / 3;
-    /* Few samples may have missed what the neighbours show. */
-    return found + (double)cell->contrast / (n * n);
-}
-
-/* By so many: of pixels with one sample, of those with more. */
-static double error_of_first(const Cell *cell, double ratio) {
-    return CAUTION * (double)cell->contrast * ratio + (double)cell->doubt;
-}
-static double error_of_many(const Sampler *sp, const Cell *cell) {
-    int count = cell_count(cell);
-    double ratio = learned_ratio(&sp->levels[level_of(count)], EDGE_GAIN * sqrt(5.0 / count));
-    return CAUTION * variance(cell) * ratio / count;
-}
-
-static double expected_error(const Sampler *sp, const Cell *cell) {
-    if (!cell->refinable) return 0;
-    if (cell_count(cell) > 1) return error_of_many(sp, cell);
-    double ratios[CONTRASTS];
-    contrast_ratios(sp, cell->class + 1, ratios);
-    return error_of_first(cell, ratios[cell->class]);
-}
-
-/* How much of a second difference, squared, counts: where light changes alike on both sides it is that of something smooth, of which the
- * middle has but a small error. */
-static float step_like(Vec3f before, Vec3f after) {
-    static const float SMOOTH = 0.05f;
-    float most = float_max(vec3f_dot(before, before), vec3f_dot(after, after));
-    return most > 0 ? float_clamp(1.4f - 2 * vec3f_dot(before, after) / most, SMOOTH, 1) : 0;
-}
-
-/* Whether all around looks exactly the same. */
-static bool is_even(const Sampler *sp, int index) {
-    static const int around[] = {-EDGE - 1, -EDGE, -EDGE + 1, -1, 1, EDGE - 1, EDGE, EDGE + 1};
-    Vec3f here = sp->cells[index].first;
-    for (int k = 0; k < 8; k++) {
-        Vec3f other = sp->cells[index + around[k]].mean;
-        if (other.x != here.x || other.y != here.y || other.z != here.z) return false;
-    }
-    return true;
-}
-
-/* The largest second difference of the middle's light with those on both sides, as a squared error. */
-static float contrast_of(const Sampler *sp, int index) {
-    static const int across[] = {1, EDGE, EDGE + 1, EDGE - 1};
-    Vec3f here = sp->cells[index].first;
-    float most = 0;
-    if (is_even(sp, index)) return 0;
-    for (int k = 0; k < 4; k++) {
-        Vec3f after = vec3f_sub(sp->cells[index + across[k]].mean, here),
-              before = vec3f_sub(here, sp->cells[index - across[k]].mean);
-        float second = light_mean_square(vec3f_sub(after, before));
-        if (second > most) most = float_max(most, second * step_like(before, after));
-    }
-    return most * (float)(STEP_TO_ERROR * STEP_TO_ERROR / 4);
-}
+static double expected_error(const Sampler *sp, const Cell *cell) { return error_expected(&sp->laws, cell, error_alone(&sp->laws, cell)); }
 
 /* ---- a tile ---- */
 
 static int next_net(const Cell *cell) { return cell->net ? 2 * cell->net : FIRST_NET; }
 
-static double gain_of(const Cell *cell) { return cell->error / (next_net(cell) - cell->net); }
+static double gain_of(const Cell *cell) { return cell->probe ? VTS_INFINITY : cell->error / (next_net(cell) - cell->net); }
 
 static bool can_refine(const Sampler *sp, const Cell *cell) {
     return cell->refinable && next_net(cell) <= sp->plan.most;
@@ -393,22 +272,56 @@ static int64_t most_of_tile(const Sampler *sp) {
     return (int64_t)sp->plan.most_mean * sp->columns * sp->rows;
 }
 
-/* Values every pixel of the tile anew, by what has been learned. Returns the sum of its errors. */
-static double value_all(Sampler *sp) {
-    double sum = 0, ratios[CONTRASTS];
+static void ask_probe(Sampler *sp, Cell *cell) {
+    if (cell->probe || !can_refine(sp, cell)) return;
+    cell->probe = true;
+    sp->probes++;
+}
+
+/* One pixel of each square, whatever it seems to need. */
+static void probe_middles(Sampler *sp) {
+    const bool thin = tile_sight_thin(sp->compiled, sp->x0, sp->y0, sp->columns, sp->rows);
+    const int side = thin ? PROBE_SIDE_THIN : PROBE_SIDE;
+    for (int y = 0; y < sp->rows; y += side)
+        for (int x = 0; x < sp->columns; x += side) {
+            uint64_t bits = random_hash((uint64_t)(sp->x0 + x), (uint64_t)(sp->y0 + y), sp->plan.seed, 53);
+            int row = y + (int)(random_unit(bits) * side), column = x + (int)(random_unit(random_mix(bits)) * side);
+            if (row < sp->rows && column < sp->columns) ask_probe(sp, &sp->cells[(row + 1) * EDGE + column + 1]);
+        }
+}
+
+/* Of enough quiet pixels that have had as many samples, some by lot. */
+static void probe_net(Sampler *sp, int index) {
+    const Cell *cell = &sp->cells[index];
+    uint64_t lot = random_hash((uint64_t)(sp->x0 + index % EDGE), (uint64_t)(sp->y0 + index / EDGE), (uint64_t)cell->net, 59);
+    if (lot % PROBE_AGAIN == 0) ask_probe(sp, &sp->cells[index]);
+}
+
+static void probe_nets(Sampler *sp) {
+    int nets[FILM_TILE * FILM_TILE], count = 0, quiet[QUIET_CLASSES] = {0};
+    for (int row = 1; row <= sp->rows; row++)
+        for (int column = 1; column <= sp->columns; column++) {
+            const Cell *cell = &sp->cells[row * EDGE + column];
+            if (cell->net == 0 || !error_is_quiet(&sp->laws, cell, 0)) continue;
+            nets[count++] = row * EDGE + column;
+            quiet[error_quiet_class(cell)]++;
+        }
+    for (int i = 0; i < count; i++)
+        if (quiet[error_quiet_class(&sp->cells[nets[i]])] >= ENOUGH_QUIET) probe_net(sp, nets[i]);
+}
+
+/* Values every pixel of the tile anew, by what has been learned; those that gain less than `least` are no candidates. Returns the sum of
+ * the errors. */
+static double value_all(Sampler *sp, double least) {
+    double sum = 0;
     sp->heap.count = 0;
-    contrast_ratios(sp, CONTRASTS, ratios);
+    probe_nets(sp);
     for (int row = 1; row <= sp->rows; row++)
         for (int column = 1; column <= sp->columns; column++) {
             Cell *cell = &sp->cells[row * EDGE + column];
-            if (!cell->refinable || (cell->net == 0 && cell->contrast == 0 && cell->doubt == 0))
-                cell->error = 0;
-            else
-                cell->error =
-                    cell->net ? error_of_many(sp, cell) : error_of_first(cell, ratios[cell->class]);
+            cell->error = expected_error(sp, cell);
             sum += cell->error;
-            if (cell->error > 0 && can_refine(sp, cell))
-                candidates_push(&sp->heap, row * EDGE + column, gain_of(cell));
+            if ((cell->error > 0 || cell->probe) && gain_of(cell) >= least && can_refine(sp, cell)) candidates_push(&sp->heap, row * EDGE + column, gain_of(cell));
         }
     return sum;
 }
@@ -416,13 +329,12 @@ static double value_all(Sampler *sp) {
 /* One pixel's next samples, and what they tell of others like it. Returns how many. */
 static int refine(Sampler *sp, int index) {
     Cell *cell = &sp->cells[index];
-    int before = cell->net;
+    const Cell before = *cell;
     see_more(sp, index, next_net(cell));
-    if (before == 0)
-        learn(&sp->contrasts[cell->class], (double)cell->contrast,
-              (double)light_mean_square(vec3f_sub(cell->first, cell->mean)));
-    learn(&sp->levels[level_of(cell_count(cell))], variance(cell) / cell_count(cell), cell_halves_error(cell));
-    return cell->net - before;
+    sp->probes -= cell->probe;
+    cell->probe = false;
+    error_learn(&sp->laws, &before, cell);
+    return cell->net - before.net;
 }
 
 /* A pixel that turned out to be other than its middle may be part of something thin, which goes on beside it. */
@@ -435,9 +347,9 @@ static double look_around(Sampler *sp, int index) {
         if (row < 1 || row > sp->rows || column < 1 || column > sp->columns || cell->net ||
             !cell->refinable)
             continue;
-        float contrast = contrast_of(sp, other);
+        float contrast = contrast_at(&sp->light, other);
         if (contrast <= 1.5f * cell->contrast) continue;
-        set_contrast(cell, contrast);
+        set_contrast(sp, cell, contrast);
         change -= cell->error;
         cell->error = expected_error(sp, cell);
         change += cell->error;
@@ -446,24 +358,42 @@ static double look_around(Sampler *sp, int index) {
     return change;
 }
 
+/* The next to be refined; false when none is left. Those of small gain are looked for when there are no others. */
+static bool next_candidate(Sampler *sp, double *least, double *sum, Candidate *out) {
+    if (sp->heap.count == 0 && *least > 0) {
+        *least = 0;
+        *sum = value_all(sp, 0);
+    }
+    if (sp->heap.count == 0) return false;
+    *out = candidates_pop(&sp->heap);
+    return true;
+}
+
 /* Refines where it helps most until the tile is good enough, or has had its share of samples. Returns the sum of its errors. */
 static double refine_all(Sampler *sp) {
     enum { REVALUE = 64 };
-    double accepted = sp->plan.max_error * sp->plan.max_error * sp->columns * sp->rows, sum = value_all(sp);
+    const double mean = sp->plan.max_error * sp->plan.max_error, accepted = mean * sp->columns * sp->rows;
+    probe_middles(sp);
+    double least = NO_WORTH * mean / FIRST_NET, sum = value_all(sp, least);
     int64_t left = most_of_tile(sp);
-    for (int done = 1; sum > accepted && left > 0 && sp->heap.count && !stopped(sp); done++) {
-        Candidate best = candidates_pop(&sp->heap);
+    Candidate best;
+    bool valued = true; /* since the last samples */
+    for (int done = 1; (sum > accepted || sp->probes) && left > 0 && !stopped(sp) && next_candidate(sp, &least, &sum, &best); done++) {
         Cell *cell = &sp->cells[best.cell];
         if (best.gain != gain_of(cell) || !can_refine(sp, cell)) continue;
         left -= refine(sp, best.cell);
+        valued = false;
         double before = cell->error;
         cell->error = expected_error(sp, cell);
         sum += cell->error - before;
         sum += look_around(sp, best.cell);
         if (can_refine(sp, cell)) candidates_push(&sp->heap, best.cell, gain_of(cell));
-        if (done % REVALUE == 0 || sum <= accepted) sum = value_all(sp);
+        if (done % REVALUE && (sum > accepted || sp->probes)) continue;
+        sum = value_all(sp, least);
+        valued = true;
     }
-    return value_all(sp);
+    if (!valued) sum = value_all(sp, least);
+    return left > 0 ? sum : error_of_stopped(sum);
 }
 
 /* A tile whose middles are wanted. */
@@ -483,6 +413,18 @@ static bool see_of_tile(void *context, int x, int y, const Guess *guess, Middle 
     return false;
 }
 
+static bool even_in_tile(void *context, int x, int y, double width, const Middle *middle) {
+    const SharedSight *sight = context;
+    const CompiledScene *compiled = sight->sampler->compiled;
+    Cone cone = view_cone(&compiled->view, sight->tile.x0 + x + 0.5, sight->tile.y0 + y + 0.5, width);
+    SurfaceHit hit;
+    SurfaceTint tint;
+    if (!find_surface(compiled, &cone, false, &hit)) return false;
+    surface_tint(&cone, &hit, &tint);
+    const Vec3f a = tint.color, b = middle->tint.color;
+    return tint.texture == middle->tint.texture && a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
 /* All of a tile, for whoever needs them. Whoever wants more than light looks at everything. */
 static void see_shared(void *context, int tile_x, int tile_y, Middle *rows) {
     Sampler *sp = context;
@@ -493,7 +435,7 @@ static void see_shared(void *context, int tile_x, int tile_y, Middle *rows) {
     SharedSight shared = {.sampler = sp};
     if (sp->shares) shared.tile = tile_sight(sp->compiled, x0, y0, columns, row_count);
     else shared.tile = (TileSight){.x0 = x0, .y0 = y0};
-    const GuessSight sight = {.see = see_of_tile, .view = sp->shares && !sp->aovs ? view_in_tile : NULL, .context = &shared, .tolerance = ALIKE * error, .accepted = GUESSES_MAY * error * error};
+    const GuessSight sight = {.see = see_of_tile, .view = sp->shares && !sp->aovs ? view_in_tile : NULL, .even = even_in_tile, .context = &shared, .tolerance = ALIKE * error, .accepted = GUESSES_MAY * error * error};
     guess_tile(&sight, columns, row_count, rows);
 }
 
@@ -528,6 +470,7 @@ static void see_middles(Sampler *sp) {
             const Middle *m = shared_middle(sp, shared, px, py);
             if (!m) see_middle(sp, px, py, NULL, &own);
             cell_begin(&sp->cells[row * EDGE + column], m ? m : &own);
+            set_mean(sp, row * EDGE + column, sp->cells[row * EDGE + column].first);
         }
     middles_leave(sp->middles, sp->x0 / FILM_TILE, sp->y0 / FILM_TILE);
     bool at_border = sp->x0 == 0 || sp->y0 == 0 || sp->x0 + sp->columns == view->width ||
@@ -537,11 +480,15 @@ static void see_middles(Sampler *sp) {
         for (int column = 0; column <= sp->columns + 1; column++) {
             int x = int_clamp(sp->x0 + column - 1, 0, view->width - 1) - sp->x0 + 1,
                 y = int_clamp(sp->y0 + row - 1, 0, view->height - 1) - sp->y0 + 1;
-            if (x != column || y != row) sp->cells[row * EDGE + column] = sp->cells[y * EDGE + x];
+            if (x == column && y == row) continue;
+            sp->cells[row * EDGE + column] = sp->cells[y * EDGE + x];
+            set_mean(sp, row * EDGE + column, sp->cells[y * EDGE + x].first);
         }
-    for (int row = 1; row <= sp->rows; row++)
-        for (int column = 1; column <= sp->columns; column++)
-            set_contrast(&sp->cells[row * EDGE + column], contrast_of(sp, row * EDGE + column));
+    for (int row = 1; row <= sp->rows; row++) {
+        float contrasts[FILM_TILE];
+        contrast_row(&sp->light, row * EDGE + 1, sp->columns, contrasts);
+        for (int i = 0; i < sp->columns; i++) set_contrast(sp, &sp->cells[row * EDGE + 1 + i], contrasts[i]);
+    }
 }
 
 static double see_fixed(Sampler *sp) {
@@ -551,22 +498,21 @@ static double see_fixed(Sampler *sp) {
             Cell *cell = &sp->cells[row * EDGE + column];
             *cell = (Cell){.net = 0};
             see_more(sp, row * EDGE + column, sp->plan.fixed);
-            if (cell->net > 1)
-                learn(&sp->levels[level_of(cell->net)], variance(cell) / cell->net, cell_halves_error(cell));
+            if (cell->net > 1) error_learn(&sp->laws, &(Cell){.net = 0}, cell);
         }
     for (int row = 1; row <= sp->rows; row++)
         for (int column = 1; column <= sp->columns; column++) {
             const Cell *cell = &sp->cells[row * EDGE + column];
             if (cell->net > 1) sum += expected_error(sp, cell);
         }
-    return sum / CAUTION; /* all have as many, whatever they seem to need */
+    return error_of_all(sum);
 }
 
 void sampler_tile(Sampler *sp, int x0, int y0, int x1, int y1, Radiance *out, AovSum *aovs) {
     sp->aovs = aovs;
     sp->x0 = x0, sp->y0 = y0, sp->columns = x1 - x0, sp->rows = y1 - y0;
-    memset(sp->contrasts, 0, sizeof sp->contrasts);
-    memset(sp->levels, 0, sizeof sp->levels);
+    error_laws_begin(&sp->laws, sp->plan.max_error * sp->plan.max_error);
+    sp->probes = 0;
     if (sp->plan.fixed) {
         sp->tally.squared_error += see_fixed(sp);
     } else {

@@ -8,6 +8,8 @@
 #ifndef VTS_RENDER_SKIN_H
 #define VTS_RENDER_SKIN_H
 
+#include <stdatomic.h>
+
 #include "base/diag.h"
 #include "render/cone.h"
 #include "render/beam_texel.h"
@@ -46,6 +48,7 @@ typedef struct SkinCell {
 typedef struct TexelMatter {
     VoxelLayer *voxels; /* NULL in an exact texel */
     Look look;
+    _Atomic uint32_t *colors[TEXEL_MAX_LEVELS]; /* matter_color.h; NULL: none are kept */
 } TexelMatter;
 
 typedef struct BuiltTexel {
@@ -89,6 +92,7 @@ typedef struct PlacedTexel {
     double overhang;     /* how far one may reach out of its tile, in tiles */
 } PlacedTexel;
 
+typedef struct SkinBox SkinBox;   /* skin_box.h */
 typedef struct CellTree CellTree; /* hierarchy over the cells' bounds, for entering the layer */
 typedef struct TileSet TileSet; /* skin_rim.h */
 typedef struct ExactSkins ExactSkins; /* hierarchy over what is in the cells of all skins, for the reference: exact_skin.h */
@@ -102,7 +106,8 @@ typedef struct CompiledSkin {
     PlacedTexel *texels;
     size_t texel_count;
     bool overlaps;       /* sheets lie over one another: a cell is folded, or neighbours are turned opposite ways */
-    CellTree *tree;   /* NULL in the reference */
+    const SkinBox *box; /* it is a straight one, else NULL */
+    CellTree *tree;   /* NULL in the reference, and of a box */
     const BoxTree *boxes; /* over the cells' bounds, for beams; NULL: the skin is drawn from voxels alone */
     bool rigid;           /* its copies are whole and not bent: beam_rigid.h draws them */
     double exact_to;      /* distance from the eye at which voxels take the place of exact geometry; VTS_INFINITY: never */

@@ -6,12 +6,14 @@
 #include "grow/wind.h"
 #include "pattern/pattern.h"
 #include "render/beam_rigid.h"
-#include "render/skin_fold.h"
+#include "render/matter_color.h"
+#include "render/skin_box.h"
 #include "render/skin_rim.h"
 #include "render/skin_wind.h"
 #include "scene/scene_hash.h"
 #include "tape/noise.h"
 #include "texel/texel_content.h"
+#include "texel/layer_views.h"
 #include "texel/texel_field.h"
 
 #include <string.h>
@@ -46,13 +48,13 @@ bool texel_mesh_layer(const BuiltTexel *texel, const TexelLayer *layer, const Te
     return true;
 }
 
-/* Builds the voxels of a layer; NULL when that is not possible (see diags) or interrupted. */
-static VoxelLayer *build_voxels(const BuiltTexel *texel, const TexelLayer *layer, const CompileOptions *options, CompiledScene *compiled,
+/* Builds the voxels of a layer; NULL when that is not possible (see diags) or interrupted. `views`: of one of several layers, else NULL. */
+static VoxelLayer *build_voxels(const BuiltTexel *texel, const TexelLayer *layer, LayerViews *views, const CompileOptions *options, CompiledScene *compiled,
                                 DiagList *diags) {
     const TexelDef *def = texel->def;
     TexelBuildOptions build = {.resolution = texel->built, .extent = texel->extent, .cyclic = def->cyclic, .filtering = compiled->filtering,
                                .pool = options->pool, .memory = options->memory, .progress = options->progress,
-                               .name = def->name};
+                               .name = def->name, .views = views};
     TexelMesh mesh;
     ArenaMark mark = arena_mark(&compiled->scratch);
     if (layer->density) {
@@ -78,21 +80,75 @@ static void remember(const BuiltTexel *texel, Hash128 key, VoxelLayer *voxels, c
     strbuf_free(&error);
 }
 
-static VoxelLayer *get_voxels(BuiltTexel *texel, size_t index, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
+/* All layers from the texel's file; false after a diagnostic. */
+static bool take_from_file(BuiltTexel *texel, const CompileOptions *options, DiagList *diags) {
     const TexelDef *def = texel->def;
-    const TexelLayer *layer = &def->layers[index];
-    if (def->file) {
-        const TexelFile *file = options->texels ? texel_cache_opened(options->texels, def->file_content) : NULL;
-        if (!file) diag_error(diags, def->span, "the texel file '%s' is no longer there", def->file);
-        return file ? voxel_layer_share(file->layers[index].voxels) : NULL;
+    const TexelFile *file = options->texels ? texel_cache_opened(options->texels, def->file_content) : NULL;
+    if (!file) diag_error(diags, def->span, "the texel file '%s' is no longer there", def->file);
+    for (size_t i = 0; file && i < def->layer_count; i++) texel->matter[i].voxels = voxel_layer_share(file->layers[i].voxels);
+    return file != NULL;
+}
+
+/* All that a layer's voxels depend on: with those of other layers they are made to hide together what is hidden. */
+static Hash128 layer_key(const BuiltTexel *texel, size_t index, const CompiledScene *compiled) {
+    const TexelDef *def = texel->def;
+    Hash128 key = texel_layer_key(def, &def->layers[index], texel->built, compiled->filtering);
+    if (def->layer_count > 1) hash_add_u64(&key, index);
+    for (size_t i = 0; i < def->layer_count; i++)
+        if (i != index) hash_add_hash(&key, def->layers[i].hash);
+    return key;
+}
+
+/* All layers from the cache, or none. */
+static bool take_from_cache(BuiltTexel *texel, const CompileOptions *options, const CompiledScene *compiled) {
+    const TexelDef *def = texel->def;
+    size_t found = 0;
+    for (; options->texels && found < def->layer_count; found++) {
+        texel->matter[found].voxels = texel_cache_find(options->texels, layer_key(texel, found, compiled), def, texel->built);
+        if (!texel->matter[found].voxels) break;
     }
-    Hash128 key = texel_layer_key(def, layer, texel->built, compiled->filtering);
-    VoxelLayer *voxels = options->texels ? texel_cache_find(options->texels, key, def, texel->built) : NULL;
-    if (voxels) return voxels;
+    if (found == def->layer_count) return true;
+    while (found > 0) {
+        voxel_layer_destroy(texel->matter[--found].voxels);
+        texel->matter[found].voxels = NULL;
+    }
+    return false;
+}
+
+static void join_layers(BuiltTexel *texel, LayerViews *const *views, const CompileOptions *options) {
+    enum { MOST_JOINED = 8 };
+    VoxelLayer *layers[MOST_JOINED];
+    LayerViews *known[MOST_JOINED];
+    size_t count = 0;
+    for (size_t i = 0; i < texel->def->layer_count; i++) {
+        if (!views[i]->known || count == MOST_JOINED) continue; /* a density, or nothing */
+        layers[count] = texel->matter[i].voxels;
+        known[count++] = views[i];
+    }
+    if (count) voxel_layers_join(layers, known, count, texel->extent, options->pool);
+}
+
+static bool build_layers(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
+    const TexelDef *def = texel->def;
+    ArenaMark mark = arena_mark(&compiled->scratch);
+    bool several = def->layer_count > 1, done = true;
+    LayerViews **views = arena_new_array(&compiled->scratch, LayerViews *, def->layer_count + 1);
+    for (size_t i = 0; several && i < def->layer_count; i++) views[i] = arena_new(&compiled->scratch, LayerViews);
+    for (size_t i = 0; done && i < def->layer_count; i++)
+        done = (texel->matter[i].voxels = build_voxels(texel, &def->layers[i], views[i], options, compiled, diags)) != NULL;
+    if (done && several) join_layers(texel, views, options);
+    arena_reset_to(&compiled->scratch, mark);
+    done = done && !(options->interrupted && *options->interrupted);
+    for (size_t i = 0; done && i < def->layer_count; i++) remember(texel, layer_key(texel, i, compiled), texel->matter[i].voxels, options, diags);
+    return done;
+}
+
+/* Sets the voxels of all layers; false after a diagnostic, or when interrupted. */
+static bool get_voxels(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
+    if (texel->def->file) return take_from_file(texel, options, diags);
+    if (take_from_cache(texel, options, compiled)) return true;
     texel->cached = false;
-    voxels = build_voxels(texel, layer, options, compiled, diags);
-    remember(texel, key, voxels, options, diags);
-    return voxels;
+    return build_layers(texel, options, compiled, diags);
 }
 
 /* NULL when interrupted, or for want of matter. */
@@ -116,7 +172,7 @@ static Hash128 sky_key(const BuiltTexel *texel, const CompiledScene *compiled) {
     hash_add_u64(&key, texel->def->cyclic);
     for (size_t i = 0; i < texel->def->layer_count; i++)
         hash_add_hash(&key, texel->def->file ? texel->def->file_content
-                                             : texel_layer_key(texel->def, &texel->def->layers[i], texel->built, compiled->filtering));
+                                             : layer_key(texel, i, compiled));
     return key;
 }
 
@@ -136,10 +192,10 @@ static bool build_matter(BuiltTexel *texel, const CompileOptions *options, Compi
     if (options->texels) texel_cache_patience(options->texels, 2 * (uint64_t)def->phase_count * (def->layer_count + 1));
     double start = stopwatch_wall();
     texel->cached = def->layer_count > 0;
+    if (!get_voxels(texel, options, compiled, diags)) return false;
     for (size_t i = 0; i < def->layer_count; i++) {
-        VoxelLayer *voxels = get_voxels(texel, i, options, compiled, diags);
-        if (!voxels) return false;
-        texel->matter[i].voxels = voxels;
+        matter_colors_prepare(&texel->matter[i], compiled->arena);
+        VoxelLayer *voxels = texel->matter[i].voxels;
         for (int l = 0; l < voxel_layer_levels(voxels); l++) texel->voxel_count += voxel_layer_voxels(voxels, l);
         texel->bytes += voxel_layer_bytes(voxels);
     }
@@ -254,8 +310,8 @@ static SkinVertex make_vertex(const Skin *skin, const SurfaceMesh *mesh, size_t 
 
 /* NULL after a diagnostic, or when interrupted. */
 static const SkinVertex *make_vertices(const Skin *skin, const SurfaceMesh *mesh, double top, CompiledScene *compiled, DiagList *diags) {
-    SkinVertex *vertex = arena_new_array(compiled->arena, SkinVertex, mesh->vertex_count);
-    Vec3 *heights = arena_new_array(compiled->arena, Vec3, mesh->vertex_count);
+    SkinVertex *vertex = arena_new_array(&compiled->scratch, SkinVertex, mesh->vertex_count);
+    Vec3 *heights = arena_new_array(&compiled->scratch, Vec3, mesh->vertex_count);
     for (size_t i = 0; i < mesh->vertex_count; i++) {
         vertex[i] = make_vertex(skin, mesh, i);
         heights[i] = vertex[i].height;
@@ -342,13 +398,19 @@ static bool sheets_overlap(const CompiledSkin *skin) {
     return false;
 }
 
+static size_t open_edges(const SurfaceMesh *mesh) {
+    size_t count = 0;
+    for (size_t i = 0; i < mesh->cell_count; i++)
+        for (int e = 0; e < mesh->cells[i].corner_count; e++) count += mesh->neighbours[i][e].cell < 0;
+    return count;
+}
+
 static bool make_cells(const Skin *skin, const SurfaceMesh *mesh, CompiledScene *compiled, CompiledSkin *out, DiagList *diags) {
-    Arena *arena = compiled->arena;
     const SkinVertex *vertex = make_vertices(skin, mesh, out->top, compiled, diags);
     if (!vertex) return false;
     double repeat_u, repeat_v;
     repeats(&skin->mapping, skin->surface, mesh, &repeat_u, &repeat_v);
-    out->cells = arena_new_array(arena, SkinCell, mesh->cell_count);
+    out->cells = arena_new_array(compiled->arena, SkinCell, mesh->cell_count + open_edges(mesh)); /* room for a rim */
     out->cell_count = mesh->cell_count;
     out->bounds = box3_empty();
     Folds folds = {.unfolded = 1};
@@ -471,7 +533,7 @@ double skin_longest_cell(const Skin *skin) {
 static bool make_mesh(const Skin *skin, CompiledScene *compiled, DiagList *diags, SurfaceMesh *mesh) {
     SurfaceMeshOptions options = {.tolerance = 0.02 * skin->mapping.height, .longest_edge = longest_cell(skin)};
     ShapeRefusal refusal;
-    if (surface_mesh_build(skin->surface, &options, compiled->arena, mesh, &refusal)) return true;
+    if (surface_mesh_build(skin->surface, &options, &compiled->scratch, mesh, &refusal)) return true;
     diag_error(diags, refusal.span, "this surface cannot carry a skin: %s", refusal.reason);
     return false;
 }
@@ -491,7 +553,7 @@ static const Skin *without_short_waves(const Skin *skin, const SurfaceMesh *mesh
     return smooth;
 }
 
-bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, CompiledSkin *out) {
+static bool compile_skin(const Skin *skin, CompiledScene *compiled, DiagList *diags, CompiledSkin *out) {
     SurfaceMesh mesh;
     *out = (CompiledSkin){.def = skin, .top = tallest_copy(skin)};
     if (skin->texel_count > MOST_SUPERIMPOSED) {
@@ -504,10 +566,18 @@ bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, Co
     if (!make_cells(smooth ? smooth : skin, &mesh, compiled, out, diags)) return false;
     out->texels = arena_new_array(compiled->arena, PlacedTexel, skin->texel_count * (skin->wang ? WANG_GRIDS + 1 : 1));
     for (size_t i = 0; i < skin->texel_count; i++) place_texel(i, compiled, diags, out);
-    skin_rim_add(out, &mesh, compiled->arena);
+    skin_rim_add(out, &mesh, compiled->arena, &compiled->scratch);
     out->rigid = skin_is_rigid(out);
     out->overlaps = sheets_overlap(out);
+    out->box = skin_box_of(out, compiled->arena);
     return true;
+}
+
+bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, CompiledSkin *out) {
+    ArenaMark mark = arena_mark(&compiled->scratch); /* of the surface's mesh, of which the skin has its own cells */
+    bool good = compile_skin(skin, compiled, diags, out);
+    arena_reset_to(&compiled->scratch, mark);
+    return good;
 }
 
 /* The least that what triangles see of the sky is known with. */
@@ -539,5 +609,5 @@ bool skin_finish(CompiledSkin *skin, const CompileOptions *options, CompiledScen
             placed->finest_extent = texel->extent;
         }
     }
-    return options->exact || (skin->tree = cell_tree_build(skin, device)) != NULL;
+    return options->exact || skin->box || (skin->tree = cell_tree_build(skin, device)) != NULL;
 }

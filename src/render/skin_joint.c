@@ -2,23 +2,18 @@
 
 #include "texel/voxel_lit.h"
 
+#include <string.h>
+
 /* What is not matter counts as ground up to this height, less and less up to twice as high. */
 static const double GROUND_HEIGHT = 0.1;
 /* Voxels of so many levels below the coarsest tell by themselves where light falls, at least: where they are about as small as triangles, of
  * which there are N in a tile, log4(N) levels down. */
 static const float LEVELS_BLURRED = 3, MOST_LEVELS_BLURRED = 8, LEVELS_OF_TRIANGLES = 1.3f;
 
-/* The layer that tells what eye and light have in common at the march's place, seen in one copy of its texel. */
-typedef struct Joint {
-    const VoxelLayer *layer;
-    Vec3f to_eye, to_light; /* in texel space */
-    float lod, blurred; /* 1 where the coarsest voxel is used, 0 where they tell by themselves */
-} Joint;
-
-/* A direction of the scene at the march's place, in a copy of a texel. */
-static Vec3f in_texel(const SkinMarch *march, const TexelCopy *copy, Vec3 d) {
-    const TexturePlace *place = &march->span.place;
-    return texel_copy_rate(copy, vec3(vec3_dot(place->grad_u, d), vec3_dot(place->grad_v, d), vec3_dot(place->grad_w, d)));
+/* A direction of the scene, in a copy of the texel. */
+static Vec3f in_texel(const SkinJoint *at, int copy, Vec3 d) {
+    const TexturePlace *place = &at->place;
+    return texel_copy_rate(&at->copies[copy], vec3(vec3_dot(place->grad_u, d), vec3_dot(place->grad_v, d), vec3_dot(place->grad_w, d)));
 }
 
 static float blurred(float levels_from_top, const BuiltTexel *texel) {
@@ -26,11 +21,17 @@ static float blurred(float levels_from_top, const BuiltTexel *texel) {
     return float_clamp(1 - levels_from_top / float_clamp(structure, LEVELS_BLURRED, MOST_LEVELS_BLURRED), 0, 1);
 }
 
-/* Any copy will do: steep views of one that is turned, or of another of the family, are much the same. */
-static bool any_copy(const PlacedTexel *placed, TexelCopy *copy) {
-    for (int64_t i = 0; i < 4; i++)
-        if (texel_copy_of(placed, i & 1, i >> 1, copy)) return copy->texel->matter_count > 0;
-    return false;
+static bool turned_alike(const TexelCopy *a, const TexelCopy *b) { return a->xu == b->xu && a->xv == b->xv && a->zu == b->zu && a->zv == b->zv; }
+
+/* Some copies of the first that there is, and how many: another member of the family is much the same. */
+static int some_copies(const PlacedTexel *placed, TexelCopy copies[JOINT_COPIES]) {
+    int count = 0;
+    for (int64_t i = 0; i < JOINT_COPIES; i++) {
+        TexelCopy *copy = &copies[count];
+        if (!texel_copy_of(placed, i & 1, i >> 1, copy) || copy->texel->matter_count == 0) continue;
+        if (count == 0 || (copy->texel == copies[0].texel && !turned_alike(copy, &copies[0]))) count++;
+    }
+    return count;
 }
 
 static size_t voxels_of(const VoxelLayer *layer) { return layer->level[0].code_count; }
@@ -43,39 +44,56 @@ static const VoxelLayer *main_layer(const BuiltTexel *texel) {
     return most;
 }
 
-static bool find_joint(const SkinMarch *march, Vec3 to_eye, Joint *joint) {
-    TexelCopy copy, most = {0};
-    size_t which = 0;
+void skin_joint_find(const SkinMarch *march, SkinJoint *joint) {
     joint->layer = NULL;
-    if (march->sheets || march->settings->opacity != OPACITY_CORRELATED) return false;
+    if (march->sheets || march->settings->opacity != OPACITY_CORRELATED) return;
     for (size_t i = 0; i < march->skin->texel_count; i++) {
-        if (!any_copy(&march->skin->texels[i], &copy)) continue;
-        const VoxelLayer *layer = main_layer(copy.texel);
-        if (!joint->layer || voxels_of(layer) > voxels_of(joint->layer)) joint->layer = layer, most = copy, which = i;
+        TexelCopy copies[JOINT_COPIES];
+        int count = some_copies(&march->skin->texels[i], copies);
+        if (!count) continue;
+        const VoxelLayer *layer = main_layer(copies[0].texel);
+        if (joint->layer && voxels_of(layer) <= voxels_of(joint->layer)) continue;
+        joint->layer = layer;
+        joint->count = count;
+        joint->lod = march->span.fits[i].lod;
+        memcpy(joint->copies, copies, (size_t)count * sizeof *copies);
     }
-    if (!joint->layer) return false;
-    joint->to_eye = in_texel(march, &most, to_eye);
-    joint->to_light = in_texel(march, &most, march->cone->direction);
-    joint->lod = float_clamp(march->span.fits[which].lod, 0, (float)(joint->layer->levels - 1));
-    joint->blurred = blurred((float)(joint->layer->levels - 1) - joint->lod, most.texel);
-    return true;
+    joint->place = march->span.place;
 }
 
-static float brighter(const Joint *joint, float share) {
-    return share + (1 - share) * voxel_layer_spot(joint->layer, joint->to_eye, joint->to_light) * joint->blurred;
-}
+/* Finer or coarser than any voxels the cone's may be. */
+static float within_voxels(const SkinJoint *joint) { return float_clamp(joint->lod, 0, (float)(joint->layer->levels - 1)); }
 
 float skin_joint_ground(const SkinMarch *march, Vec3 to_eye, float through) {
     double height = march->stretch.start.w / GROUND_HEIGHT - 1;
-    Joint joint;
-    if (march->entries != 1 || march->stretch.t0 > 1e-6 * (double)march->span.voxel_world || height >= 1 || !find_joint(march, to_eye, &joint)) return through;
-    float power = voxel_layer_ground_power(joint.layer, joint.lod, joint.to_eye, joint.to_light);
-    float seen = brighter(&joint, powf(through, power));
+    SkinJoint joint;
+    if (march->entries != 1 || march->stretch.t0 > 1e-6 * (double)march->span.voxel_world || height >= 1) return through;
+    skin_joint_find(march, &joint);
+    if (!joint.layer) return through;
+    float lod = within_voxels(&joint), coarse = blurred((float)(joint.layer->levels - 1) - lod, joint.copies[0].texel), seen = 0;
+    for (int i = 0; i < joint.count; i++) {
+        Vec3f eye = in_texel(&joint, i, to_eye), light = in_texel(&joint, i, march->cone->direction);
+        float share = powf(through, voxel_layer_ground_power(joint.layer, lod, eye, light));
+        seen += (share + (1 - share) * voxel_layer_spot(joint.layer, eye, light) * coarse) / (float)joint.count;
+    }
     return through + (seen - through) * (float)double_min(1, 1 - height);
 }
 
 float skin_joint_matter(const SkinMarch *march, Vec3 to_eye, float share) {
-    Joint joint;
-    if (!find_joint(march, to_eye, &joint)) return share;
-    return powf(share, voxel_layer_matter_power(joint.layer, joint.lod, joint.to_eye, joint.to_light));
+    SkinJoint joint;
+    float mean = 0;
+    skin_joint_find(march, &joint);
+    if (!joint.layer) return share;
+    for (int i = 0; i < joint.count; i++)
+        mean += powf(share, voxel_layer_matter_power(joint.layer, joint.lod, in_texel(&joint, i, to_eye), in_texel(&joint, i, march->cone->direction))) / (float)joint.count;
+    return mean;
+}
+
+void skin_joint_facing(const SkinJoint *joint, Vec3 to_eye, Vec3 to_light, float factor[2]) {
+    factor[0] = factor[1] = joint->layer ? 0 : 1;
+    for (int i = 0; joint->layer && i < joint->count; i++) {
+        float of_copy[2];
+        voxel_layer_facing(joint->layer, joint->lod, in_texel(joint, i, to_eye), in_texel(joint, i, to_light), of_copy);
+        for (int side = 0; side < 2; side++) factor[side] += of_copy[side] / (float)joint->count;
+    }
 }

@@ -12,4 +12,20 @@ float skin_joint_ground(const SkinMarch *march, Vec3 to_eye, float through);
  * voxels are. The march is one to the light from a place in the layer. */
 float skin_joint_matter(const SkinMarch *march, Vec3 to_eye, float share);
 
+/* The layer that tells what eye and light have in common at a place of the skin. */
+enum { JOINT_COPIES = 4 };
+typedef struct SkinJoint {
+    const VoxelLayer *layer; /* NULL: nothing does */
+    TexelCopy copies[JOINT_COPIES]; /* that are turned differently: the mean of what these tell holds for all */
+    int count;
+    TexturePlace place;
+    float lod; /* of the cone's voxels */
+} SkinJoint;
+
+/* At the march's place. */
+void skin_joint_find(const SkinMarch *march, SkinJoint *joint);
+/* How much more or less light than by the normals of the voxels alone matter gets on the side towards the eye, and on the other: factor[2], > 0. The place
+ * was found by a march from the eye. */
+void skin_joint_facing(const SkinJoint *joint, Vec3 to_eye, Vec3 to_light, float factor[2]);
+
 #endif

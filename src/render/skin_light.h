@@ -2,13 +2,13 @@
 #ifndef VTS_RENDER_SKIN_LIGHT_H
 #define VTS_RENDER_SKIN_LIGHT_H
 
-#include "render/compile.h"
+#include "render/skin_front.h"
 
 /* What one worker needs. */
 typedef struct SkinLight {
     const CompiledScene *compiled;
-    SkinMarch *marches; /* one for each skin */
-    uint32_t *met;      /* the skins that a cone meets */
+    SkinMarches marches;
+    SkinMet *met;       /* the skins that a cone meets */
     TraceCounters *counters;
 } SkinLight;
 

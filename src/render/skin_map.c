@@ -2,7 +2,7 @@
 #include "render/skin.h"
 
 #include "render/embree_ray.h"
-#include "render/skin_fold.h"
+#include "render/skin_box.h"
 
 #include <embree3/rtcore.h>
 #include <stdlib.h>
@@ -273,6 +273,13 @@ void cell_tree_destroy(CellTree *tree) {
 }
 
 int skin_first_pieces(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, SkinPiece *out, int most) {
+    SkinStretch within;
+    if (skin->box) {
+        if (most < 1 || !skin_box_stretch(skin->box, ray, t_min, t_max, &within)) return 0;
+        SkinPoint a = within.start, b = within.end;
+        out[0] = (SkinPiece){within.t0, within.t1, {0, (a.a + b.a) / 2, (a.b + b.b) / 2, (a.w + b.w) / 2}};
+        return 1;
+    }
     EnterQuery query = {.skin = skin, .ray = ray, .t_min = t_min, .t_max = t_max, .list = out, .most = most};
     rtcInitIntersectContext(&query.context);
     struct RTCRayHit rayhit = {

@@ -1,5 +1,6 @@
 #include "render/skin_march.h"
 
+#include "render/skin_copies.h"
 #include "render/skin_sheets.h"
 #include "texel/voxel_trim.h"
 
@@ -17,8 +18,27 @@ static const double SPAN_TILES = 1.0, SPAN_BEND_VOXELS = 1;
 static const float NEAR_STEP = 0.5f;
 /* Of this mean gamma on, that of solids not counted, steps are halved. */
 static const float SHEET_GAMMA = 0.85f;
+static const float BETWEEN_LEVELS = 2;
 /* Empty way is looked for along the tangent as far as the path stays this near to it, in voxels. */
 static const double TANGENT_VOXELS = 1;
+
+/* Of copies that may be around a tile. */
+static size_t copies_around(const PlacedTexel *placed) { return (size_t)(2 * placed->reach + 1) * (size_t)(2 * placed->reach + 1); }
+
+void skin_march_init_shared(SkinMarch *m, const SkinRoom *room, Arena *arena) {
+    m->skin = NULL;
+    m->tiles_kept = 1;
+    m->tiles = arena_new_array(arena, TileCopies, room->texels);
+    m->span.fits = arena_new_array(arena, VoxelFit, room->texels);
+    for (size_t i = 0; i < room->texels; i++) m->tiles[i].copies = arena_new_array(arena, CopyOnWay, room->copies);
+    m->confined = false;
+    m->sheets = NULL;
+}
+
+void skin_march_ask_room(const CompiledSkin *skin, SkinRoom *room) {
+    room->texels = size_max(room->texels, skin->texel_count);
+    for (size_t i = 0; i < skin->texel_count; i++) room->copies = size_max(room->copies, copies_around(&skin->texels[i]));
+}
 
 void skin_march_init_confined(SkinMarch *m, const CompiledSkin *skin, Arena *arena) {
     m->skin = skin;
@@ -26,7 +46,7 @@ void skin_march_init_confined(SkinMarch *m, const CompiledSkin *skin, Arena *are
     m->tiles = arena_new_array(arena, TileCopies, skin->texel_count * (size_t)m->tiles_kept);
     m->span.fits = arena_new_array(arena, VoxelFit, skin->texel_count);
     for (size_t i = 0; i < skin->texel_count; i++) {
-        size_t around = (size_t)(2 * skin->texels[i].reach + 1) * (size_t)(2 * skin->texels[i].reach + 1);
+        size_t around = copies_around(&skin->texels[i]);
         for (int k = 0; k < m->tiles_kept; k++) m->tiles[i * (size_t)m->tiles_kept + (size_t)k].copies = arena_new_array(arena, CopyOnWay, around);
     }
     m->confined = true;
@@ -59,6 +79,12 @@ static void begin(SkinMarch *m, const Cone *cone, double t_min, double t_max, co
 
 /* ---- spans ---- */
 
+/* Between two levels both are read, which costs twice as much as one: only in the middle half of the way from one to the next. */
+static float level_between(float lod) {
+    float whole = floorf(lod);
+    return whole + float_clamp(BETWEEN_LEVELS * (lod - whole - 0.5f) + 0.5f, 0, 1);
+}
+
 static VoxelFit fit_voxels(const TexturePlace *place, Vec3f extent, float finest_voxel, Vec3 d, double width, float *speed) {
     Vec3 row[3] = {vec3_scale(place->grad_u, (double)extent.x), vec3_scale(place->grad_w, (double)extent.y),
                    vec3_scale(place->grad_v, (double)extent.z)};
@@ -67,7 +93,7 @@ static VoxelFit fit_voxels(const TexturePlace *place, Vec3f extent, float finest
     Vec3 area = vec3(vec3_dot(vec3_cross(row[1], row[2]), d), vec3_dot(vec3_cross(row[2], row[0]), d),
                      vec3_dot(vec3_cross(row[0], row[1]), d));
     float side = (float)(width * sqrt(vec3_length(area)));
-    return (VoxelFit){.lod = side > finest_voxel ? log2f(side / finest_voxel) : 0, .voxel = float_max(side, finest_voxel), .width = side};
+    return (VoxelFit){.lod = side > finest_voxel ? level_between(log2f(side / finest_voxel)) : 0, .voxel = float_max(side, finest_voxel), .width = side};
 }
 
 /* One voxel for the whole texel: the layer as a homogeneous slab. */
@@ -90,7 +116,7 @@ static void fit_span(const SkinMarch *m, const TexturePlace *place, double t, Ma
         span->fits[i].width *= 1 / m->settings->voxel_width;
         span->fits[i].coarsening = exp2f(float_min(span->fits[i].lod, (float)(placed->levels - 1)));
         if (!(speed > 0)) continue;
-        side = float_min(side, span->fits[i].voxel / speed);
+        side = float_min(side, float_min(span->fits[i].voxel, coarsest_voxels(placed).voxel) / speed);
         finest = float_min(finest, placed->finest_voxel / speed);
         /* Nearer than the finest voxels single walls are looked at: long steps would let their light through in rings. */
         stride = float_min(stride, span->fits[i].voxel / speed * (span->fits[i].lod > 0 ? 1 : NEAR_STEP));
@@ -237,6 +263,28 @@ static void reach_through_cells(const SkinMarch *m, double least, SpanTrial *tri
 }
 
 /* The next span from the current place. False where the layer ends: the march then looks for another entry. */
+/* A box maps straight lines to straight lines. */
+static void lay_line(SkinMarch *m, double t1) {
+    MarchSpan *span = &m->span;
+    Vec3 d = m->cone->direction, x = coordinates(&m->place);
+    double length = t1 - m->at;
+    span->t0 = m->at;
+    span->t1 = t1;
+    span->c0 = x;
+    span->c1 = vec3(vec3_dot(m->place.grad_u, d), vec3_dot(m->place.grad_v, d), vec3_dot(m->place.grad_w, d));
+    span->c2 = vec3(0, 0, 0);
+    span->middle = guess(&m->point, &m->place, d, length / 2);
+    m->point = guess(&m->point, &m->place, d, length);
+    x = vec3_madd(x, span->c1, length);
+    m->place.u = x.x, m->place.v = x.y, m->place.w = x.z;
+    span->place = m->place;
+    span->straight = VTS_INFINITY;
+    span->leaves = t1 >= m->stretch.t1;
+    fit_span(m, &m->place, (m->at + t1) / 2, span);
+    m->at = t1;
+    m->inside = !span->leaves;
+}
+
 static bool next_span(SkinMarch *m) {
     if (m->at >= m->stretch.t1 && !next_stretch(m)) return false;
     if (!m->fitted) fit_span(m, &m->place, m->at, &m->span); /* else the span before tells how long steps are here */
@@ -245,6 +293,10 @@ static bool next_span(SkinMarch *m) {
     double rate = fmax(fabs(vec3_dot(m->place.grad_u, d)), fabs(vec3_dot(m->place.grad_v, d)));
     double step = m->span.step, length = (m->settings->path == RAY_PATH_EXACT ? 1 : SPAN_STEPS) * step;
     if (rate > 0) length = double_min(length, SPAN_TILES / rate);
+    if (m->skin->box) {
+        lay_line(m, m->stretch.t1 - m->at - length < 0.25 * double_min(step, length) ? m->stretch.t1 : m->at + length);
+        return true;
+    }
     SpanTrial trial;
     reach_through_cells(m, double_min(step, length), &trial);
     double most = trial.last.t1 - m->at;
@@ -327,143 +379,6 @@ double skin_march_begin_around(SkinMarch *m, const Cone *cone, const SkinPoint *
     return wanted;
 }
 
-/* ---- copies ---- */
-
-static Vec3f to_copy(const TexelCopy *copy, Vec3 x) {
-    Vec3f e = copy->texel->extent;
-    return vec3f((float)(copy->xu * x.x + copy->xv * x.y + copy->x0) * e.x, (float)(x.z * copy->inverse_scale) * e.y,
-                 (float)(copy->zu * x.x + copy->zv * x.y + copy->z0) * e.z);
-}
-
-static float wrapped(float x, float size) {
-    float turns = x / size;
-    if (!(fabsf(turns) < 1e9f)) return 0; /* past all precision, or not a number */
-    float whole = (float)(int64_t)turns;
-    float part = turns - whole + (turns < whole ? 1.0f : 0.0f);
-    return part < 1 ? part * size : 0; /* a hair below 0 is rounded to 1 */
-}
-
-/* A path along the foot or the top of the layer may pass them by a hair, by rounding and by what the quadratic misses. */
-static const float HAIR = 0.02f;
-
-/* Wrapped on cyclic axes. */
-static Vec3f wrap(const BuiltTexel *texel, Vec3f p) {
-    unsigned cyclic = texel->def->cyclic;
-    float hair = HAIR * texel->extent.y;
-    if (p.y < 0 && p.y > -hair) p.y = 0;
-    if (p.y > texel->extent.y && p.y < texel->extent.y + hair) p.y = texel->extent.y;
-    if (cyclic & TEXEL_CYCLIC_X) p.x = wrapped(p.x, texel->extent.x);
-    if (cyclic & TEXEL_CYCLIC_Y) p.y = wrapped(p.y, texel->extent.y);
-    if (cyclic & TEXEL_CYCLIC_Z) p.z = wrapped(p.z, texel->extent.z);
-    return p;
-}
-
-/* The number of a tile; where texture coordinates are absurd some number that casts. */
-static int64_t tile_number(double x) { return isfinite(x) ? (int64_t)double_clamp(floor(x), -9e15, 9e15) : 0; }
-
-static TileCopies *copies_at(SkinMarch *m, size_t i, int64_t iu, int64_t iv) {
-    const PlacedTexel *placed = &m->skin->texels[i];
-    const SkinCell *cell = &m->skin->cells[m->span.middle.cell];
-    if (placed->alike) iu = iv = 0;
-    TileCopies *tile = &m->tiles[i * (size_t)m->tiles_kept + ((size_t)((iu & 3) | (iv & 3) << 2) & (size_t)(m->tiles_kept - 1))];
-    if (tile->placed == placed && tile->iu == iu && tile->iv == iv && tile->part == cell->part && tile->rim == cell->rim) return tile;
-    tile->placed = placed;
-    tile->iu = iu;
-    tile->iv = iv;
-    tile->part = cell->part;
-    tile->rim = cell->rim;
-    tile->count = 0;
-    int candidates = skin_cell_bears(cell, placed) ? (2 * placed->reach + 1) * (2 * placed->reach + 1) : 0;
-    for (int k = 0; k < candidates; k++)
-        if (skin_copy_near(m->skin, cell, placed, iu, iv, k, &tile->copies[tile->count].copy)) tile->copies[tile->count++].cone = 0;
-    return tile;
-}
-
-/* When the path p + t·v is within [0, size] along an axis. */
-static void clip_slab(float p, float v, float size, float *t0, float *t1) {
-    if (v == 0) {
-        if (p < 0 || p > size) *t1 = -1;
-        return;
-    }
-    float a = -p / v, b = (size - p) / v;
-    *t0 = float_max(*t0, float_min(a, b));
-    *t1 = float_min(*t1, float_max(a, b));
-}
-
-/* How far in t the copy's box is away, at most `limit`; 0 inside. */
-static float box_gap(const TexelCopy *copy, Vec3f p, Vec3f velocity, float limit) {
-    Vec3f e = copy->texel->extent;
-    unsigned cyclic = copy->texel->def->cyclic; /* along these axes the box has no end */
-    float t0 = 0, t1 = limit, hair = HAIR * e.y;
-    if (!(cyclic & TEXEL_CYCLIC_X)) clip_slab(p.x, velocity.x, e.x, &t0, &t1);
-    if (!(cyclic & TEXEL_CYCLIC_Y)) clip_slab(p.y + hair, velocity.y, e.y + 2 * hair, &t0, &t1);
-    if (!(cyclic & TEXEL_CYCLIC_Z)) clip_slab(p.z, velocity.z, e.z, &t0, &t1);
-    return t0 > t1 ? limit : t0;
-}
-
-/* Brings clear_until of all layers of a copy up to date at t; returns the smallest. `x` and `rate` are texture coordinates
- * and their rate there, `rest` the length of way that is nearly straight. */
-static double clear_copy(CopyOnWay *on_way, const VoxelFit *fit, uint32_t cone, double t, Vec3 x, Vec3 rate, float rest) {
-    const TexelCopy *copy = &on_way->copy;
-    const BuiltTexel *texel = copy->texel;
-    bool fresh = on_way->cone != cone, placed = false;
-    double clear = VTS_INFINITY;
-    Vec3f p = {0, 0, 0}, direction = {0, 0, 0};
-    float speed = 0, box = 0;
-    on_way->cone = cone;
-    for (size_t k = 0; k < texel->matter_count; k++) {
-        double *until = &on_way->clear_until[size_min(k, LAYERS_APART - 1)];
-        if (fresh || *until <= t || k >= LAYERS_APART) {
-            if (!placed) { /* only now: most copies are known to be clear */
-                Vec3f velocity = texel_copy_rate(copy, rate);
-                p = to_copy(copy, x);
-                speed = vec3f_length(velocity);
-                direction = speed > 0 ? vec3f_scale(velocity, 1 / speed) : velocity;
-                box = box_gap(copy, p, velocity, rest);
-                p = wrap(texel, p);
-                placed = true;
-            }
-            float gap = box > 0 ? box : speed > 0 ? voxel_layer_skip(texel->matter[k].voxels, fit->lod, p, direction, rest * speed) / speed : 0;
-            double found = t + (double)gap;
-            *until = k >= LAYERS_APART ? double_min(*until, found) : found;
-        }
-        clear = double_min(clear, *until);
-    }
-    return clear;
-}
-
-/* t until the path leaves the tile of x. */
-static double tile_exit(Vec3 x, Vec3 rate) {
-    double exit = VTS_INFINITY;
-    if (rate.x != 0) exit = double_min(exit, (floor(x.x) + (rate.x > 0) - x.x) / rate.x);
-    if (rate.y != 0) exit = double_min(exit, (floor(x.y) + (rate.y > 0) - x.y) / rate.y);
-    return double_max(exit, 0);
-}
-
-static Vec3 span_at(const MarchSpan *span, double t) {
-    double s = t - span->t0;
-    return vec3_madd(vec3_madd(span->c0, span->c1, s), span->c2, s * s);
-}
-
-static Vec3 span_rate(const MarchSpan *span, double t) { return vec3_madd(span->c1, span->c2, 2 * (t - span->t0)); }
-
-/* The length of empty way from t in all copies of all texels, within the span. */
-static double empty_way(SkinMarch *m, double t) {
-    const MarchSpan *span = &m->span;
-    Vec3 x = span_at(span, t), rate = span_rate(span, t);
-    int64_t iu = tile_number(x.x), iv = tile_number(x.y);
-    double rest = double_min(span->t1 - t, span->straight), gap = rest;
-    for (size_t i = 0; i < m->skin->texel_count; i++) {
-        const PlacedTexel *placed = &m->skin->texels[i];
-        if (!placed->alike) gap = double_min(gap, double_max(tile_exit(x, rate), 1e-3 * span->step));
-        TileCopies *tile = copies_at(m, i, iu, iv);
-        /* All copies are brought up to date even when one is near: sampling passes by those that are known to be clear. */
-        for (int c = 0; c < tile->count; c++)
-            gap = double_min(gap, clear_copy(&tile->copies[c], &span->fits[i], m->number, t, x, rate, (float)rest) - t);
-    }
-    return gap;
-}
-
 SkinPoint skin_march_guess(const SkinMarch *m, double t) {
     if (m->sheets) return skin_sheets_guess(m->sheets, t);
     const MarchSpan *span = &m->span;
@@ -495,7 +410,7 @@ static void sample_copy(SkinMarch *m, size_t i, const CopyOnWay *on_way, StepSam
     bool known = on_way->cone == m->number, any = !known;
     for (size_t k = 0; k < texel->matter_count && !any; k++) any = on_way->clear_until[size_min(k, LAYERS_APART - 1)] < step->t1;
     if (!any) return;
-    Vec3f at = wrap(texel, to_copy(copy, step->middle)), along = texel_copy_rate(copy, step->difference);
+    Vec3f at = skin_copy_place(copy, step->middle), along = texel_copy_rate(copy, step->difference);
     const VoxelFit *fit = &m->span.fits[i];
     float lod = float_min(fit->lod, (float)(texel->levels - 1)), coarsening = fit->coarsening;
     if (texel->voxel != placed->finest_voxel) { /* members of a family may be built to different resolutions */
@@ -521,8 +436,7 @@ static void sample_copy(SkinMarch *m, size_t i, const CopyOnWay *on_way, StepSam
         MatterHit *hit = &out->hits[out->hit_count++];
         *hit = (MatterHit){.matter = &texel->matter[k], .look = placed->look ? placed->look : &texel->matter[k].look,
                            .tint = copy->tint, .share = tau, .texel = texel,
-                           .width = fit->width,
-                           .place = {at.x / texel->extent.x, at.y / texel->extent.y, at.z / texel->extent.z}};
+                           .width = fit->width, .lod = lod, .place = at};
         hit->s = to_world(&v.s, copy, &m->span.place);
         hit->sky = texel->sky ? skin_sky_seen(copy, &m->span.place, at, vec3_negate(m->cone->direction)) : 1;
     }
@@ -532,12 +446,11 @@ static void sample_copy(SkinMarch *m, size_t i, const CopyOnWay *on_way, StepSam
 static void sample(SkinMarch *m, double t0, double t1, SkinSegment *out) {
     const MarchSpan *span = &m->span;
     double tm = (t0 + t1) / 2;
-    StepSample step = {.t0 = t0, .t1 = t1, .middle = span_at(span, tm)};
-    step.difference = vec3_sub(span_at(span, t1), span_at(span, t0));
-    int64_t iu = tile_number(step.middle.x), iv = tile_number(step.middle.y);
+    StepSample step = {.t0 = t0, .t1 = t1, .middle = skin_span_at(span, tm)};
+    step.difference = vec3_sub(skin_span_at(span, t1), skin_span_at(span, t0));
     out->hit_count = 0;
     for (size_t i = 0; i < m->skin->texel_count; i++) {
-        TileCopies *tile = copies_at(m, i, iu, iv);
+        TileCopies *tile = skin_copies_at(m, i, step.middle);
         for (int c = 0; c < tile->count; c++) sample_copy(m, i, &tile->copies[c], &step, out);
     }
     for (int i = 0; i < out->hit_count; i++) out->hits[i].share /= step.depth;
@@ -578,7 +491,7 @@ bool skin_march_next(SkinMarch *m, SkinSegment *segment) {
             if (m->t >= m->span.t1) continue;
         }
         /* Over what is empty, and ask again: other tiles may begin there. Slivers are not worth the question. */
-        double gap = empty_way(m, m->t), sliver = 1e-3 * m->span.step;
+        double gap = skin_copies_empty_way(m, m->t), sliver = 1e-3 * m->span.step;
         if (m->span.t1 - m->t - gap < sliver) {
             m->t = m->span.t1;
             continue;

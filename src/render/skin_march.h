@@ -47,8 +47,9 @@ typedef struct MatterHit {
     float share;          /* of the step's optical depth */
     Sym3f s;              /* world space, any scale */
     float sky;            /* how much of the sky it sees: 1 where that is not asked */
-    Vec3f place;          /* in the texel's bounds, for its pigment: fractions of the box */
+    Vec3f place;          /* texel space, for its pigment */
     float width;          /* of the cone there, texel space */
+    float lod;            /* of the voxels */
     const BuiltTexel *texel;
 } MatterHit;
 
@@ -130,6 +131,15 @@ typedef struct SkinMarch {
 
 /* Gives the march its memory, once; the rest is set by each begin. */
 void skin_march_init(SkinMarch *march, const CompiledSkin *skin, Arena *arena);
+
+/* What a march needs room for: texels of a skin, and copies around a tile. */
+typedef struct SkinRoom {
+    size_t texels, copies;
+} SkinRoom;
+/* Makes room for the skin, too. */
+void skin_march_ask_room(const CompiledSkin *skin, SkinRoom *room);
+/* One that follows any skin of one cell that there is room for and that does not overlap: whoever begins sets `skin` before. */
+void skin_march_init_shared(SkinMarch *march, const SkinRoom *room, Arena *arena);
 
 /* Start outside or anywhere: looks for the first entry in [t_min, t_max]. */
 void skin_march_begin(SkinMarch *march, const Cone *cone, double t_min, double t_max,

@@ -71,7 +71,7 @@ typedef struct RimEdge {
 
 typedef struct Rim {
     CompiledSkin *skin;
-    Arena *arena;
+    Arena *scratch, *kept; /* of the work alone; of what the skin has from it */
     RimEdge *edges;
     size_t count;
     int32_t *number; /* [4·cell + edge]: of the border's edge, or -1 */
@@ -179,10 +179,10 @@ static EdgeEnds *open_edges(const CompiledSkin *skin, const SurfaceMesh *mesh, A
 static void find_border(Rim *rim, const SurfaceMesh *mesh) {
     const CompiledSkin *skin = rim->skin;
     size_t count;
-    EdgeEnds *open = open_edges(skin, mesh, rim->arena, &count);
-    rim->edges = arena_new_array(rim->arena, RimEdge, count);
+    EdgeEnds *open = open_edges(skin, mesh, rim->scratch, &count);
+    rim->edges = arena_new_array(rim->scratch, RimEdge, count);
     if (!count) return;
-    rim->number = arena_new_array(rim->arena, int32_t, 4 * mesh->cell_count);
+    rim->number = arena_new_array(rim->scratch, int32_t, 4 * mesh->cell_count);
     for (size_t i = 0; i < 4 * mesh->cell_count; i++) rim->number[i] = -1;
     qsort(open, count, sizeof *open, by_ends);
     for (size_t i = 0; i < count; i++) {
@@ -276,17 +276,14 @@ static void make_cell(Rim *rim, RimEdge *e) {
 
 static void make_cells(Rim *rim) {
     CompiledSkin *skin = rim->skin;
-    SkinCell *more = arena_new_array(rim->arena, SkinCell, skin->cell_count + rim->count);
-    for (size_t i = 0; i < skin->cell_count; i++) more[i] = skin->cells[i];
-    skin->cells = more;
     for (size_t i = 0; i < rim->count; i++)
         if (rim->edges[i].width > 0) make_cell(rim, &rim->edges[i]);
     for (size_t i = 0; i < rim->count; i++) {
         const RimEdge *e = &rim->edges[i], *next = edge_at(rim, e->next);
         if (!next || e->rim < 0 || next->rim < 0) continue;
         bool seam = fabs(e->q.u - next->p.u) + fabs(e->q.v - next->p.v) > 1e-9;
-        more[e->rim].neighbour[3] = (SurfaceNeighbour){next->rim, 1, seam};
-        more[next->rim].neighbour[1] = (SurfaceNeighbour){e->rim, 3, seam};
+        skin->cells[e->rim].neighbour[3] = (SurfaceNeighbour){next->rim, 1, seam};
+        skin->cells[next->rim].neighbour[1] = (SurfaceNeighbour){e->rim, 3, seam};
     }
 }
 
@@ -323,7 +320,7 @@ static bool note_tiles(Rim *rim, uint32_t part, double u0, double v0, double u1,
     for (int64_t iu = low_u; iu <= high_u; iu++)
         for (int64_t iv = low_v; iv <= high_v; iv++) {
             double distance = distance_to((double)iu + 0.5, (double)iv + 0.5, u0, v0, u1, v1);
-            Tile *t = border ? add_tile(rim->set, part, iu, iv, rim->arena) : find_tile(rim->set, part, iu, iv);
+            Tile *t = border ? add_tile(rim->set, part, iu, iv, rim->kept) : find_tile(rim->set, part, iu, iv);
             if (!t->key) continue;
             if (border) t->border = fmin(t->border, distance);
             else t->seam = fmin(t->seam, distance);
@@ -386,14 +383,14 @@ static const BoxTree *tree_of_textures(const CompiledSkin *skin, Arena *arena) {
 
 /* False where there are too many. */
 static bool find_tiles(Rim *rim) {
-    rim->set = arena_new(rim->arena, TileSet);
-    double_room(rim->set, rim->arena);
+    rim->set = arena_new(rim->kept, TileSet);
+    double_room(rim->set, rim->kept);
     for (size_t i = 0; i < rim->count; i++) {
         const RimEdge *e = &rim->edges[i];
         if (e->width > 0 && !note_edge(rim, rim->skin->cells[e->cell].part, &e->p, &e->q, true)) return false;
     }
     note_seams(rim);
-    const BoxTree *tree = tree_of_textures(rim->skin, rim->arena);
+    const BoxTree *tree = tree_of_textures(rim->skin, rim->scratch);
     for (size_t i = 0; i <= rim->set->mask; i++) {
         Tile *t = &rim->set->tiles[i];
         Inside in = {rim->skin, t->part, (double)t->iu + 0.5, (double)t->iv + 0.5};
@@ -402,8 +399,8 @@ static bool find_tiles(Rim *rim) {
     return true;
 }
 
-void skin_rim_add(CompiledSkin *skin, const SurfaceMesh *mesh, Arena *arena) {
-    Rim rim = {.skin = skin, .arena = arena};
+void skin_rim_add(CompiledSkin *skin, const SurfaceMesh *mesh, Arena *arena, Arena *scratch) {
+    Rim rim = {.skin = skin, .scratch = scratch, .kept = arena};
     for (size_t i = 0; i < skin->texel_count; i++) {
         if (!(skin->texels[i].overhang > 0)) continue;
         rim.around = int_max(rim.around, skin->texels[i].reach);
@@ -412,7 +409,7 @@ void skin_rim_add(CompiledSkin *skin, const SurfaceMesh *mesh, Arena *arena) {
     if (!rim.around) return;
     find_border(&rim, mesh);
     if (!rim.count) return;
-    number_parts(skin, arena);
+    number_parts(skin, scratch);
     link_edges(&rim);
     for (size_t i = 0; i < rim.count; i++) aim_edge(&rim, &rim.edges[i]);
     if (!find_tiles(&rim)) return;

@@ -9,8 +9,9 @@
 #include "render/skin.h"
 
 /* Adds the rim's cells to a skin whose cells and texels are made, where copies may reach over its border. Where the border is so bent that
- * a cell would fold, and where texture coordinates are singular, there is none. All memory comes from the arena. */
-void skin_rim_add(CompiledSkin *skin, const SurfaceMesh *mesh, Arena *arena);
+ * a cell would fold, and where texture coordinates are singular, there is none. There is room behind the cells for one at each edge
+ * without a neighbour; scratch may be reset afterwards. */
+void skin_rim_add(CompiledSkin *skin, const SurfaceMesh *mesh, Arena *arena, Arena *scratch);
 
 /* Numbers of tiles, each of one connected part of a surface. */
 typedef struct TileSet TileSet;

@@ -1,6 +1,6 @@
 #include "render/skin_walk.h"
 
-#include "render/skin_fold.h"
+#include "render/skin_box.h"
 
 double skin_hair(const SkinCell *cell, const Ray *ray, double t) {
     Vec3 size = vec3_sub(cell->bounds.max, cell->bounds.min), far = vec3_madd(ray->origin, ray->direction, t);
@@ -37,7 +37,12 @@ static void end_within(const CompiledSkin *skin, const Ray *ray, double t_max, S
 }
 
 SkinStretch skin_stretch_from(const CompiledSkin *skin, const Ray *ray, SkinPoint start, double t, double t_max) {
-    SkinStretch s = stretch_through(skin, ray, start, NO_FACE, t, t_max);
+    SkinStretch s;
+    if (skin->box) {
+        if (skin_box_stretch(skin->box, ray, t, t_max, &s)) return s;
+        return (SkinStretch){t, t, start, start, NO_FACE};
+    }
+    s = stretch_through(skin, ray, start, NO_FACE, t, t_max);
     end_within(skin, ray, t_max, &s);
     return s;
 }
@@ -57,6 +62,7 @@ SkinStretch skin_stretch_next(const CompiledSkin *skin, const Ray *ray, const Sk
 }
 
 bool skin_stretch_first(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, SkinStretch *out) {
+    if (skin->box) return skin_box_stretch(skin->box, ray, t_min, t_max, out);
     SkinPiece piece;
     if (!skin_first_pieces(skin, ray, double_max(t_min, 0), t_max, &piece, 1)) return false; /* Embree's rays begin at 0 or later */
     const SkinCell *cell = &skin->cells[piece.middle.cell];

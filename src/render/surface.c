@@ -3,6 +3,7 @@
 #include "base/random.h"
 #include "pattern/pattern.h"
 #include "render/footprint.h"
+#include "render/radiosity.h"
 #include "render/surface_parts.h"
 #include "render/volume_set.h"
 
@@ -36,6 +37,7 @@ void surface_leg(const Cone *cone, Leg *leg) {
     leg->level = 0;
     leg->weight = 1;
     leg->wave = -1;
+    leg->gathers = 0;
     leg->enclosure_count = 0;
 }
 
@@ -53,6 +55,7 @@ typedef struct Meeting {
     Vec3f faded;             /* what is left of light that came to the leg through the interior that it ends in */
     Vec3f through;           /* what all layers let through, faded */
     double curvature;        /* of the surface; NAN: not asked yet */
+    SurfaceTint *tint;       /* gets what is found for each unit of colour; or NULL */
 } Meeting;
 
 /* What a surface makes of a leg: light, and the share with which the leg goes on straight (0: it ends). */
@@ -86,13 +89,13 @@ static double index_ratio(const Leg *leg, const SurfaceHit *hit) {
 
 /* ---- layers ---- */
 
-static void read_layers(Meeting *m, float bailout) {
+static void read_layers(Meeting *m, double bumps, float bailout) {
     Vec3f above = {1, 1, 1};
     const SurfaceHit *hit = m->hit;
     m->layer_count = 0;
     for (const Texture *layer = m->part->texture; layer && m->layer_count < MOST_LAYERS; layer = layer->under) {
         SurfaceLayer *seen = &m->layers[m->layer_count++];
-        Vec3 normal = texture_layer_normal(m->part, layer, hit->normal);
+        Vec3 normal = texture_layer_normal(m->part, layer, hit->normal, bumps > 0 ? bumps : 1);
         Color c = texture_layer_color(m->part, layer, normal);
         *seen = (SurfaceLayer){layer->finish, normal, rgb_of(c), above, (float)(1 - c.filter - c.transmit), surface_film(layer->finish, m->point)};
         float filter = (float)c.filter, transmit = (float)c.transmit;
@@ -121,6 +124,38 @@ static Vec3f sky_seen(SurfaceTracer *tracer, const Meeting *m, float worth) {
     return surface_sky(tracer, &place, m->leg->weight * worth, m->seed ^ 0x736B79);
 }
 
+/* Of what comes from all directions over one side of the surface, what is sent to the eye: `share` for each unit of it. */
+static Vec3f light_of_side(SurfaceTracer *tracer, const Meeting *m, bool behind, Vec3f share) {
+    const Radiosity *radiosity = &tracer->compiled->scene->settings.radiosity;
+    const SurfaceHit *hit = m->hit;
+    float worth = m->leg->weight * (float)m->part->weight * most_of(share);
+    if (!(worth > 0)) return vec3f(0, 0, 0);
+    double side = (vec3_dot(hit->flat, m->leg->cone.direction) > 0) == behind ? 1 : -1;
+    Vec3 flat = vec3_scale(hit->flat, side), normal = radiosity->bumps ? m->layers[0].normal : hit->normal;
+    if (vec3_dot(normal, flat) < 0) normal = vec3_negate(normal);
+    const RadiosityPlace place = {vec3_madd(m->point, flat, m->clear), flat, normal, m->clear, cone_diameter(&m->leg->cone, hit->t), hit->t, m->leg->gathers, worth};
+    return vec3f_mul(share, radiosity_light(tracer, &place, m->seed));
+}
+
+/* Diffuse light of what comes from all sides; through leaves, of what comes from behind. */
+static Vec3f light_sent(SurfaceTracer *tracer, const Meeting *m) {
+    Vec3f before = {0, 0, 0}, behind = {0, 0, 0};
+    if (m->tint) {
+        const SurfaceLayer *layer = &m->layers[0];
+        float front = (float)layer->finish->diffuse * layer->opaque, back = (float)layer->finish->transmission * layer->opaque;
+        Vec3f lit = vec3f_add(light_of_side(tracer, m, false, vec3f(front, front, front)), light_of_side(tracer, m, true, vec3f(back, back, back)));
+        m->tint->lit = vec3f_add(m->tint->lit, lit);
+        return vec3f_mul(lit, layer->color);
+    }
+    for (int i = 0; i < m->layer_count; i++) {
+        const SurfaceLayer *layer = &m->layers[i];
+        Vec3f color = vec3f_scale(vec3f_mul(layer->color, layer->above), layer->opaque);
+        before = vec3f_madd(before, color, (float)layer->finish->diffuse);
+        behind = vec3f_madd(behind, color, (float)layer->finish->transmission);
+    }
+    return vec3f_add(light_of_side(tracer, m, false, before), light_of_side(tracer, m, true, behind));
+}
+
 static Vec3f own_light(SurfaceTracer *tracer, const Meeting *m) {
     const GlobalSettings *settings = &tracer->compiled->scene->settings;
     Vec3f ambient = {0, 0, 0}, glow = {0, 0, 0}, everywhere = rgb_of(settings->ambient_light);
@@ -130,19 +165,33 @@ static Vec3f own_light(SurfaceTracer *tracer, const Meeting *m) {
         ambient = vec3f_add(ambient, vec3f_mul(vec3f_mul(rgb_of(layer->finish->ambient), everywhere), back));
         glow = vec3f_add(glow, vec3f_mul(rgb_of(layer->finish->emission), back));
     }
-    if (settings->sky_light) ambient = vec3f_mul(ambient, sky_seen(tracer, m, (float)m->part->weight * most_of(ambient)));
-    return vec3f_add(ambient, glow);
+    if (radiosity_is_on(tracer)) {
+        glow = vec3f_add(glow, light_sent(tracer, m));
+        if (!settings->radiosity.with_ambient) ambient = everywhere = vec3f(0, 0, 0);
+    }
+    Vec3f share = {1, 1, 1};
+    if (settings->sky_light) share = sky_seen(tracer, m, (float)m->part->weight * most_of(m->tint ? everywhere : ambient));
+    if (m->tint) {
+        const Finish *f = m->layers[0].finish;
+        Vec3f lit = vec3f_add(vec3f_mul(vec3f_mul(rgb_of(f->ambient), everywhere), share), rgb_of(f->emission));
+        m->tint->lit = vec3f_madd(m->tint->lit, lit, m->layers[0].opaque);
+    }
+    return vec3f_add(vec3f_mul(ambient, share), glow);
 }
 
-/* What all layers make of light that comes this way, unshadowed. */
-static Vec3f lit_along(const SurfaceTracer *tracer, const Meeting *m, const LightRay *way, size_t number) {
+/* What all layers make of light that comes this way, unshadowed; `lit`: of each unit of the colour of the one layer that there is, where
+ * that is wanted. */
+static Vec3f lit_along(const SurfaceTracer *tracer, const Meeting *m, const LightRay *way, size_t number, Vec3f *lit) {
     Vec3f sum = {0, 0, 0};
+    float diffuse = 0;
+    *lit = sum;
     if (!(most_of(way->color) > 0)) return sum;
     for (int i = 0; i < m->layer_count; i++) {
         Vec3f one = surface_layer_light(&m->layers[i], m->leg->cone.direction, way->direction, m->hit->both_sides,
-                                        tracer->compiled->scene->settings.irid_wavelength, random_mix(m->seed + number));
+                                        tracer->compiled->scene->settings.irid_wavelength, random_mix(m->seed + number), &diffuse);
         sum = vec3f_add(sum, one);
     }
+    if (m->tint) *lit = vec3f_scale(way->color, diffuse);
     return vec3f_mul(sum, way->color);
 }
 
@@ -161,10 +210,11 @@ static Vec3f light_from_area(SurfaceTracer *tracer, const Meeting *m, const Ligh
     for (int k = 0; k < count; k++) {
         const int at[2] = {k % counts[0], k / counts[0]};
         LightRay way = light_ray_from(light, m->point, light_member(light, m->point, at, counts));
-        Vec3f one = lit_along(tracer, m, &way, number);
-        if (m->leg->weight * most_of(one) >= SHADOW_WORTH)
-            one = vec3f_mul(one, surface_shadow_way(tracer, light, &way, m->leg, off_surface(m, way.direction), m->clear));
-        sum = vec3f_add(sum, one);
+        Vec3f lit, passed = {1, 1, 1}, one = lit_along(tracer, m, &way, number, &lit);
+        if (m->leg->weight * float_max(most_of(one), most_of(lit)) >= SHADOW_WORTH)
+            passed = surface_shadow_way(tracer, light, &way, m->leg, off_surface(m, way.direction), m->clear);
+        sum = vec3f_add(sum, vec3f_mul(one, passed));
+        if (m->tint) m->tint->lit = vec3f_madd(m->tint->lit, vec3f_mul(lit, passed), 1 / (float)count);
     }
     return vec3f_scale(sum, 1 / (float)count);
 }
@@ -174,9 +224,11 @@ static Vec3f light_from(SurfaceTracer *tracer, const Meeting *m, size_t number) 
     if (!light_shines_on(light, m->hit->look->texture->group)) return vec3f(0, 0, 0);
     if (light->area_illumination && light_is_area(light)) return light_from_area(tracer, m, light, number);
     LightRay way = light_ray(light, m->point);
-    Vec3f sum = lit_along(tracer, m, &way, number);
-    if (m->leg->weight * most_of(sum) < SHADOW_WORTH) return sum;
-    return vec3f_mul(sum, surface_shadow(tracer, light, &way, m->leg, off_surface(m, way.direction), m->clear, random_mix(m->seed ^ (number << 8))));
+    Vec3f lit, passed = {1, 1, 1}, sum = lit_along(tracer, m, &way, number, &lit);
+    if (m->leg->weight * float_max(most_of(sum), most_of(lit)) >= SHADOW_WORTH)
+        passed = surface_shadow(tracer, light, &way, m->leg, off_surface(m, way.direction), m->clear, random_mix(m->seed ^ (number << 8)));
+    if (m->tint) m->tint->lit = vec3f_add(m->tint->lit, vec3f_mul(lit, passed));
+    return vec3f_mul(sum, passed);
 }
 
 /* ---- further legs ---- */
@@ -245,13 +297,27 @@ static Vec3f bent_light(SurfaceTracer *tracer, Meeting *m, double ratio, bool *a
     return vec3f_mul(m->through, follow(tracer, &leg, NULL, false));
 }
 
+/* Light of one plain layer is a multiple of its colour, and white highlights. */
+static bool is_tinted(const Texture *texture) {
+    const Finish *f = texture->finish;
+    return !texture->map && !texture->under && !texture->normal && f->irid == 0 && f->crand == 0 && f->metallic == 0;
+}
+
+static void tint_begin(Meeting *m) {
+    if (!m->tint) return;
+    *m->tint = (SurfaceTint){.color = m->layers[0].color};
+    if (m->through.x == 0 && m->through.y == 0 && m->through.z == 0) m->tint->texture = m->part->texture;
+    else m->tint = NULL;
+}
+
 static Outcome see_part(SurfaceTracer *tracer, Meeting *m) {
     const Scene *scene = tracer->compiled->scene;
     Outcome out = {{0, 0, 0}, {0, 0, 0}};
     bool all_of_it = false;
-    read_layers(m, (float)scene->settings.adc_bailout);
+    read_layers(m, tracer->bumps, (float)scene->settings.adc_bailout);
+    tint_begin(m);
     if (!m->lit_already) out.light = own_light(tracer, m);
-    for (size_t l = 0; l < scene->light_count && !m->lit_already; l++) out.light = vec3f_add(out.light, light_from(tracer, m, l));
+    for (size_t l = 0; l < scene->light_count && !m->lit_already && !tracer->asks; l++) out.light = vec3f_add(out.light, light_from(tracer, m, l));
     if (m->through.x != 0 || m->through.y != 0 || m->through.z != 0) {
         double ratio = index_ratio(m->leg, m->hit);
         if (fabs(ratio - 1) < SAME_INDEX) out.straight = m->through;
@@ -285,6 +351,9 @@ static Outcome see_surface(SurfaceTracer *tracer, const Leg *leg, const SurfaceH
     m.seed = random_mix(tracer->seed + (uint64_t)leg->level);
     m.lit_already = lit_already;
     m.curvature = (double)NAN;
+    m.tint = NULL;
+    if (tracer->tint && looks.count == 1 && hit->look->plain && is_tinted(looks.parts[0].texture)) m.tint = tracer->tint;
+    tracer->tint = NULL;
     Outcome out = {{0, 0, 0}, {0, 0, 0}};
     for (size_t i = 0; i < looks.count; i++) {
         m.part = &looks.parts[i];
@@ -304,11 +373,12 @@ void surface_glance(const Cone *cone, const SurfaceHit *hit, Vec3f *color, Vec3 
     m.leg = &leg;
     m.hit = hit;
     m.point = cone_point(cone, hit->t);
+    m.tint = NULL;
     double heaviest = 0;
     *color = vec3f(0, 0, 0);
     for (size_t i = 0; i < looks.count; i++) {
         m.part = &looks.parts[i];
-        read_layers(&m, 0);
+        read_layers(&m, 1, 0);
         for (int k = 0; k < m.layer_count; k++)
             *color = vec3f_madd(*color, vec3f_mul(m.layers[k].color, m.layers[k].above), m.layers[k].opaque * (float)m.part->weight);
         if (!(m.part->weight > heaviest)) continue;
@@ -317,10 +387,24 @@ void surface_glance(const Cone *cone, const SurfaceHit *hit, Vec3f *color, Vec3 
     }
 }
 
+void surface_tint(const Cone *cone, const SurfaceHit *hit, SurfaceTint *out) {
+    Leg leg;
+    SurfaceParts looks;
+    *out = (SurfaceTint){.texture = NULL};
+    if (!hit->look->plain) return;
+    leg.cone = *cone;
+    looks_of(&leg, hit, &looks);
+    const TexturePart *part = &looks.parts[0];
+    if (looks.count != 1 || !is_tinted(part->texture)) return;
+    Color c = texture_layer_color(part, part->texture, hit->normal);
+    *out = (SurfaceTint){.texture = part->texture, .color = rgb_of(c)};
+}
+
 /* ---- legs ---- */
 
 /* What is seen along the leg up to t, before `behind` shows: adds it and dims that. False when nothing more is seen. */
 static bool gather_before(SurfaceTracer *tracer, const Leg *leg, double t, Vec3f *sum, Vec3f *through) {
+    if (leg->gathers && !tracer->compiled->scene->settings.radiosity.media) return true;
     if (tracer->matter) {
         float transmittance = 1;
         Vec3f matter = tracer->matter(tracer->skins, &leg->cone, t, &transmittance);

@@ -14,7 +14,7 @@ typedef struct Enclosure {
     bool hollow;
     Affine to_interior;       /* as SurfaceHit's */
 } Enclosure;
-enum { MOST_ENCLOSURES = 12 }; /* of more, the outermost are forgotten */
+enum { MOST_ENCLOSURES = 24 }; /* of more, the outermost are forgotten */
 
 /* One leg of a line of sight: from the eye, a mirror, or glass. */
 typedef struct Leg {
@@ -24,10 +24,17 @@ typedef struct Leg {
     int level;          /* legs before it, and it once it was begun; going on straight through something clear does not count */
     float weight;       /* the most that its light makes in the eye */
     int wave;           /* which colour of a dispersed ray; -1: all */
+    int gathers;        /* so many directions from surfaces lead to it; 0: it comes from the eye */
     int enclosure_count;
     /* The last field: only those that count are set. */
     Enclosure enclosures[MOST_ENCLOSURES];
 } Leg;
+
+/* How a surface's light depends on the colour of its pigment: `lit` for each unit of it, beside what does not. */
+typedef struct SurfaceTint {
+    const Texture *texture; /* of one layer, which alone is seen; NULL: the light is no such sum */
+    Vec3f color, lit;
+} SurfaceTint;
 
 /* What one worker needs. */
 typedef struct SurfaceTracer {
@@ -40,9 +47,12 @@ typedef struct SurfaceTracer {
     Vec3f (*matter)(void *skins, const Cone *cone, double t_max, float *transmittance);
     /* The share of light that passes it, to a place that is seen from the direction `to_eye`. */
     float (*passing)(void *skins, const Cone *cone, double t_max, Vec3 to_eye);
+    double bumps;       /* how wide bumps are smoothed, against the cone; 0: as wide */
     bool exact;         /* of a ray without width, so that any number of them may be asked */
     void *skins;
     bool no_volumes;    /* whoever asks sees to what volumes take of light */
+    SurfaceTint *tint;  /* gets that of the surface that is asked for next; NULL: not wanted */
+    struct RadiosityAsk *asks; /* it is not light that is wanted, but the places that radiosity lights; else NULL */
     double media_slack; /* so much more than else may be wrong with what media take of light, for many ways count together; 0: 1 */
 } SurfaceTracer;
 
@@ -56,6 +66,9 @@ bool surface_in_air(const Enclosure *enclosures, int count);
 /* What comes from the surface that the leg has met back along it: its own light, and what it mirrors and lets through. Without the air
  * and matter before it. */
 Vec3f surface_radiance(SurfaceTracer *tracer, const Leg *leg, const SurfaceHit *hit);
+
+/* The texture and its colour alone, where light is such a sum; else its texture is NULL. */
+void surface_tint(const Cone *cone, const SurfaceHit *hit, SurfaceTint *out);
 
 /* Of it what the surface mirrors and lets through alone. */
 Vec3f surface_beyond(SurfaceTracer *tracer, const Leg *leg, const SurfaceHit *hit);
@@ -79,8 +92,8 @@ typedef struct SurfaceLayer {
 double surface_film(const Finish *finish, Vec3 point);
 
 /* What a layer sends along −view of light that comes from `to_light`, for each unit of it; `view` is the ray's direction.
- * `both_sides`: of `double_illuminate`. `place`: where, for grain and thickness. */
-Vec3f surface_layer_light(const SurfaceLayer *layer, Vec3 view, Vec3 to_light, bool both_sides, Vec3 wavelengths, uint64_t seed);
+ * `both_sides`: of `double_illuminate`. `place`: where, for grain and thickness. *diffuse gets the factor of the pigment's colour in it. */
+Vec3f surface_layer_light(const SurfaceLayer *layer, Vec3 view, Vec3 to_light, bool both_sides, Vec3 wavelengths, uint64_t seed, float *diffuse);
 
 /* ---- surface_bend.c: directions and shares of what is mirrored and bent; pure ---- */
 

@@ -48,17 +48,19 @@ static Vec3f thin_layer(const SurfaceLayer *layer, Vec3 view, double cosine, Vec
     return vec3f(in_step(f->irid, way, wavelengths.x), in_step(f->irid, way, wavelengths.y), in_step(f->irid, way, wavelengths.z));
 }
 
-Vec3f surface_layer_light(const SurfaceLayer *layer, Vec3 view, Vec3 to_light, bool both_sides, Vec3 wavelengths, uint64_t seed) {
+Vec3f surface_layer_light(const SurfaceLayer *layer, Vec3 view, Vec3 to_light, bool both_sides, Vec3 wavelengths, uint64_t seed, float *diffuse_out) {
     const Finish *f = layer->finish;
     double cosine = vec3_dot(layer->normal, to_light);
     bool back = cosine <= 0 && !both_sides;
     double amount = back ? f->transmission : f->diffuse;
+    *diffuse_out = 0;
     if (back && amount == 0) return vec3f(0, 0, 0);
     double lambert = f->brilliance == 1 ? fabs(cosine) : pow(fabs(cosine), f->brilliance);
     if (f->diffuse_albedo) amount *= (f->brilliance + 1) / 2;
     double diffuse = amount * lambert * (double)layer->opaque;
     if (f->crand > 0) diffuse -= f->crand * random_unit(seed);
-    Vec3f sum = vec3f_scale(layer->color, (float)diffuse);
+    *diffuse_out = (float)diffuse;
+    Vec3f sum = vec3f_scale(layer->color, *diffuse_out);
     if (!back && (f->phong > 0 || f->specular > 0)) {
         double bright = highlight(layer, view, to_light);
         if (bright > 0) sum = vec3f_madd(sum, highlight_color(f, layer->color, cosine), (float)bright);

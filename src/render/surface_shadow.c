@@ -61,7 +61,7 @@ static const double CAUSTICS = 45;
 
 static float focused(const TexturePart *part, const Ray *ray, const SurfaceHit *hit) {
     if (!hit->interior || hit->interior->caustics == 0) return 1;
-    Vec3 normal = texture_layer_normal(part, part->texture, hit->normal);
+    Vec3 normal = texture_layer_normal(part, part->texture, hit->normal, 1);
     return (float)(1 + pow(fabs(vec3_dot(normal, ray->direction)), CAUSTICS * hit->interior->caustics));
 }
 
@@ -94,7 +94,26 @@ static RayWidth width_at(const Leg *leg, Vec3 point) {
     return (RayWidth){cone_diameter(&leg->cone, vec3_length(vec3_sub(point, leg->cone.origin))), 0};
 }
 
-static Vec3f clear_surfaces(const SurfaceTracer *tracer, const Ray *ray, double from, double distance, const Leg *leg, bool media) {
+/* Where a ray goes through clear surfaces: the first of them, for what lies between. */
+enum { KEPT_CROSSINGS = 8 };
+typedef struct Crossings {
+    int count; /* of all; KEPT_CROSSINGS + 1: of more */
+    struct {
+        double t;
+        Enclosure side; /* what the surface bounds */
+    } kept[KEPT_CROSSINGS];
+} Crossings;
+
+static void keep_crossing(Crossings *crossings, const SurfaceHit *hit) {
+    if (crossings->count < KEPT_CROSSINGS) {
+        crossings->kept[crossings->count].t = hit->t;
+        enclose(&crossings->kept[crossings->count].side, hit->interior, hit->filled, hit->hollow, &hit->to_interior);
+    }
+    if (crossings->count <= KEPT_CROSSINGS) crossings->count++;
+}
+
+/* With `media`, what they take as well; else the crossings. */
+static Vec3f clear_surfaces(const SurfaceTracer *tracer, const Ray *ray, double from, double distance, const Leg *leg, bool media, Crossings *crossings) {
     const CompiledScene *compiled = tracer->compiled;
     Vec3f through = {1, 1, 1};
     Enclosure enclosures[MOST_ENCLOSURES];
@@ -112,16 +131,43 @@ static Vec3f clear_surfaces(const SurfaceTracer *tracer, const Ray *ray, double 
             through = vec3f_mul(through, surface_faded(hit.interior, hit.t - begun));
         surface_cross(enclosures, &count, &hit, compiled->solids_matter);
         if (most_of(through) < (float)bailout) break;
+        if (!media && compiled->scene->has_media) keep_crossing(crossings, &hit);
         begun = hit.t;
         from = hit.t * (1 + 1e-9) + leg->clear;
     }
     return vec3f(0, 0, 0);
 }
 
+/* What media take between the crossings. */
+static Vec3f clear_media(const SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, const Crossings *crossings) {
+    Vec3f through = {1, 1, 1};
+    Enclosure enclosures[MOST_ENCLOSURES];
+    int count = leg->enclosure_count;
+    double begun = 0;
+    if (count) memcpy(enclosures, leg->enclosures, (size_t)count * sizeof *enclosures);
+    for (int i = 0; i <= crossings->count; i++) {
+        const bool last = i == crossings->count;
+        const double end = last ? distance : crossings->kept[i].t;
+        if (count) through = vec3f_mul(through, media_passing(tracer->compiled, enclosures, count, ray, begun, end, tracer->media_slack));
+        if (last) break;
+        const Enclosure *side = &crossings->kept[i].side;
+        SurfaceHit hit;
+        hit.interior = side->interior, hit.filled = side->filled, hit.hollow = side->hollow;
+        if (side->interior && side->interior->media.count) hit.to_interior = side->to_interior;
+        surface_cross(enclosures, &count, &hit, tracer->compiled->solids_matter);
+        begun = end;
+    }
+    return through;
+}
+
 /* Media take long: they are asked only where something else lets light through. */
 static Vec3f clear_way(const SurfaceTracer *tracer, const Ray *ray, double from, double distance, const Leg *leg) {
-    Vec3f through = clear_surfaces(tracer, ray, from, distance, leg, false);
-    return tracer->compiled->scene->has_media && most_of(through) > 0 ? clear_surfaces(tracer, ray, from, distance, leg, true) : through;
+    Crossings crossings;
+    crossings.count = 0;
+    Vec3f through = clear_surfaces(tracer, ray, from, distance, leg, false, &crossings);
+    if (!tracer->compiled->scene->has_media || most_of(through) <= 0) return through;
+    if (crossings.count > KEPT_CROSSINGS) return clear_surfaces(tracer, ray, from, distance, leg, true, NULL);
+    return vec3f_mul(through, clear_media(tracer, ray, distance, leg, &crossings));
 }
 
 /* `air`: the scene's own media count, in solids as well (measured). */
@@ -142,6 +188,7 @@ Vec3f surface_open(SurfaceTracer *tracer, const Ray *ray, double distance, const
 static Vec3f one_way(SurfaceTracer *tracer, const Light *light, const Ray *ray, double distance, const Leg *leg, double clear, double width) {
     const CompiledScene *compiled = tracer->compiled;
     Vec3f through = open_way(tracer, ray, distance, leg, clear, light->through_air);
+    if (light->through_air && compiled->scene->fog_count) through = vec3f_mul(through, air_fog_passing(compiled->scene, ray, distance));
     if (!tracer->passing || most_of(through) <= 0) return through;
     double aperture = compiled->shadow_aperture;
     Cone cone = {ray->origin, ray->direction, width * aperture, leg->cone.spread * aperture};

@@ -1,6 +1,8 @@
 #include "render/terrain_view.h"
 
 #include "base/stopwatch.h"
+#include "render/lighting.h"
+#include "render/view_reach.h"
 #include "scene/scene_hash.h"
 #include "shape/tessellate.h"
 #include "terrain/ground_horizon.h"
@@ -12,6 +14,10 @@
  * in mirrors. */
 static const double PIXELS_OFF = 0.2, PIXELS_OFF_EXACT = 0.05, DEFAULT_MAX_ERROR = 1.0 / 255;
 static const double OUTSIDE = 8;
+/* What is out of the picture, and cannot cast a shadow into it, is seen in mirrors and hides the sky alone: as in a picture whose pixels are no narrower than this, in radians. */
+static const double UNSEEN_PIXEL = 1e-3;
+/* How far a lamp without a place is taken to be, against what can be seen. */
+static const double LAMP_DISTANCE = 1000;
 /* What stands on the ground is seen over it: a skin's height, and as much for functions that make it higher, wind and jitter. */
 static const double RISE = 2;
 /* Cells of skins: what changes along a skin changes over them. */
@@ -80,12 +86,22 @@ typedef struct Allowance {
     const Lowering *lowering;
     const Stand *stand;
     GroundHorizon *horizon; /* or NULL */
+    const ViewReach *reaches; /* of lamps that cast shadows; NULL: anything may shade the picture */
+    size_t reach_count;
     double stretch, pixels_off;
 } Allowance;
 
 static bool is_hidden(const Allowance *a, const GroundSpot *spot) {
     const double rise = a->stand->rise / a->stretch;
     return a->horizon && ground_horizon_hides(a->horizon, spot->centre, spot->radius + rise, spot->top + rise, a->lowering->spread);
+}
+
+/* Neither seen nor between the picture and a lamp. */
+static bool is_unseen(const Allowance *a, Box3 box) {
+    if (!a->reaches) return false;
+    for (size_t i = 0; i < a->reach_count; i++)
+        if (!view_reach_misses(&a->reaches[i], box)) return false;
+    return true;
 }
 
 static void allow(const void *context, const GroundSpot *spot, double *error, double *side) {
@@ -95,7 +111,8 @@ static void allow(const void *context, const GroundSpot *spot, double *error, do
     double reach = spot->radius * a->stretch, distance = fmax(0, vec3_length(vec3_sub(at, l->view->camera.location)) - reach);
     double pixel = (l->width + l->spread * distance) / a->stretch;
     const Box3 box = {vec3_sub(at, vec3_splat(reach)), vec3_add(at, vec3_splat(reach))};
-    if (!l->options->exact && (view_misses(l->view, box) || is_hidden(a, spot))) pixel *= OUTSIDE;
+    if (!l->options->exact && view_misses(l->view, box)) pixel = OUTSIDE * (is_unseen(a, box) ? fmax(pixel, UNSEEN_PIXEL * distance / a->stretch) : pixel);
+    else if (!l->options->exact && is_hidden(a, spot)) pixel *= OUTSIDE;
     *error = pixel * a->pixels_off;
     *side = isfinite(a->stand->longest_side) ? fmax(CELL_PIXELS * pixel, a->stand->longest_side / a->stretch) : HUGE_VAL;
 }
@@ -114,6 +131,32 @@ static GroundHorizon *horizon_of(const Lowering *l, const Stand *stand) {
     return ground_horizon_create(stand->terrain->ground, transform_point(&back, view->camera.location), l->scratch);
 }
 
+/* From the camera to the farthest corner of the ground. */
+static double farthest(const Lowering *l, const Stand *stand) {
+    const Box3 b = stand->terrain->ground->bounds;
+    double far = 0;
+    for (int k = 0; k < 8; k++) {
+        const Vec3 corner = vec3(k & 1 ? b.max.x : b.min.x, k & 2 ? b.max.y : b.min.y, k & 4 ? b.max.z : b.min.z);
+        far = fmax(far, vec3_length(vec3_sub(transform_point(&stand->to_world, corner), l->view->camera.location)));
+    }
+    return far;
+}
+
+/* Of flat pictures, whose lines of sight all lie in one pyramid. */
+static void find_reaches(const Lowering *l, const Stand *stand, Allowance *out) {
+    const View *view = l->view;
+    const double far = farthest(l, stand);
+    if (view->camera.kind != CAMERA_PERSPECTIVE || view->camera.normal || view_has_lens(view) || !isfinite(far)) return;
+    ViewReach *reaches = arena_new_array(l->scratch, ViewReach, l->scene->light_count + 1);
+    for (size_t i = 0; i < l->scene->light_count; i++) {
+        const Light *light = &l->scene->lights[i];
+        if (light->shadowless) continue;
+        const Vec3 away = vec3_madd(view->camera.location, light->to_light, LAMP_DISTANCE * far);
+        reaches[out->reach_count++] = view_reach(view, far, light_is_parallel(light) ? away : light->location);
+    }
+    out->reaches = reaches;
+}
+
 static void keep_account(Lowering *l, const Stand *stand, size_t needed, double seconds) {
     const Ground *ground = stand->terrain->ground;
     const MeshData *mesh = stand->mesh;
@@ -127,7 +170,8 @@ static const MeshData *mesh_of(Lowering *l, Stand *stand) {
     const Ground *ground = stand->terrain->ground;
     const double start = stopwatch_wall();
     ArenaMark mark = arena_mark(l->scratch);
-    const Allowance allowance = {l, stand, horizon_of(l, stand), tessellate_stretch(&stand->to_world.linear), pixels_off(l->options)};
+    Allowance allowance = {.lowering = l, .stand = stand, .horizon = horizon_of(l, stand), .stretch = tessellate_stretch(&stand->to_world.linear), .pixels_off = pixels_off(l->options)};
+    find_reaches(l, stand, &allowance);
     const GroundDetail detail = {.allow = allow, .context = &allowance, .every_post = stand->terrain->every_post, .most_vertices = l->options->most_vertices};
     MeshData *mesh = arena_new(l->arena, MeshData);
     GroundErrors errors;

@@ -25,3 +25,12 @@ VistaView tile_sight_view(const TileSight *sight, int x0, int y0, int x1, int y1
     lines_of(sight, x0, y0, x1, y1, corners);
     return vista_view(&sight->vista, corners, object);
 }
+
+bool tile_sight_thin(const CompiledScene *compiled, int x0, int y0, int columns, int rows) {
+    const TileSight sight = {.compiled = compiled, .x0 = x0, .y0 = y0};
+    if (!view_is_flat(&compiled->view)) return false;
+    Ray corners[4];
+    lines_of(&sight, -1, -1, columns, rows, corners);
+    Cone middle = view_cone(&compiled->view, x0 + columns / 2.0, y0 + rows / 2.0, 1);
+    return vista_has_thin(hierarchy_pieces(compiled->hierarchy), corners, middle.spread, middle.width);
+}

@@ -16,4 +16,7 @@ TileSight tile_sight(const CompiledScene *compiled, int x0, int y0, int columns,
 /* What can be seen between four of its pixels, which all see `object`, as Middle has it. */
 VistaView tile_sight_view(const TileSight *sight, int x0, int y0, int x1, int y1, uint32_t object);
 
+/* Whether anything narrower than a pixel may be seen in it, or near. */
+bool tile_sight_thin(const CompiledScene *compiled, int x0, int y0, int columns, int rows);
+
 #endif

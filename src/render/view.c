@@ -96,6 +96,7 @@ static bool straight_line_at(const Camera *c, double s, double t, Line *out) {
     case CAMERA_CYLINDER_2:
     case CAMERA_CYLINDER_3:
     case CAMERA_CYLINDER_4: *out = cylinder_line(c, &f, s, t); return true;
+    case CAMERA_MESH:
     case CAMERA_PERSPECTIVE: break;
     }
     out->direction = vec3_madd(vec3_madd(c->direction, c->right, s), c->up, t);
@@ -109,7 +110,8 @@ static bool line_at(const Camera *c, double s, double t, Line *out) {
     return shown;
 }
 
-void view_prepare(View *view) {
+void view_prepare(View *view, Arena *arena) {
+    if (arena) view_mesh_prepare(view, arena);
     const Vec3 across = vec3_cross(view->camera.right, view->camera.up);
     view->axis = vec3_normalize(across);
     view->pixel_area = vec3_length(across) / ((double)view->width * view->height);
@@ -118,7 +120,7 @@ void view_prepare(View *view) {
 static Cone flat_cone(const View *given, double s, double t, double width_px) {
     View prepared;
     const View *view = given;
-    if (!(view->pixel_area > 0)) prepared = *given, view_prepare(&prepared), view = &prepared;
+    if (!(view->pixel_area > 0)) prepared = *given, view_prepare(&prepared, NULL), view = &prepared;
     const Camera *c = &view->camera;
     const double pixel_area = view->pixel_area;
     Vec3 offset = vec3_madd(vec3_scale(c->right, s), c->up, t);
@@ -150,6 +152,8 @@ static Cone round_cone(const View *view, double s, double t, double width_px) {
 
 Cone view_cone(const View *view, double x, double y, double width_px) {
     double s = x / view->width - 0.5, t = 0.5 - y / view->height;
+    Cone seen;
+    if (view->camera.kind == CAMERA_MESH) return view_mesh_ray(view, x, y, 0, &seen) ? seen : (Cone){.width = 0};
     return view_is_flat(view) ? flat_cone(view, s, t, width_px) : round_cone(view, s, t, width_px);
 }
 
@@ -168,6 +172,7 @@ static double focus_of(const Camera *c, const Cone *cone) {
 
 /* POV-Ray's lens is a disc across the line of sight; its radius is a quarter of `aperture`. */
 bool view_ray(const View *view, double x, double y, double u, double v, double width_px, Cone *out) {
+    if (view->camera.kind == CAMERA_MESH) return view_mesh_ray(view, x, y, u, out);
     *out = view_cone(view, x, y, width_px);
     if (vec3_length_squared(out->direction) == 0) return false;
     if (!view_has_lens(view)) return true;

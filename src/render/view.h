@@ -12,10 +12,14 @@ typedef struct View {
     /* Of flat pictures, by view_prepare(); before it they are zero, and calculated with every cone. */
     Vec3 axis;         /* unit, across the picture */
     double pixel_area; /* on the picture's plane */
+    const struct BoxTree *mesh_tree; /* over the triangles in the plane of u and v, of a MESH_SPREAD_UV; by view_prepare() */
 } View;
 
-/* Once camera and size are known. */
-void view_prepare(View *view);
+/* Once camera and size are known; `arena` for what cameras of meshes need (NULL: it is no such camera, or one without u and v). */
+void view_prepare(View *view, Arena *arena);
+/* view_mesh.c: the same as view_ray() of cameras of meshes; `u` chooses among a pixel's rays. */
+bool view_mesh_ray(const View *view, double x, double y, double u, Cone *out);
+void view_mesh_prepare(View *view, Arena *arena);
 
 /* The cone through the picture's point (x, y), in pixels from the upper left corner, from the middle of the lens; `width_px` is its width
  * in pixels. Where the picture of a fisheye or omnimax camera shows nothing, its direction is zero. */
@@ -26,7 +30,7 @@ Cone view_cone(const View *view, double x, double y, double width_px);
 bool view_ray(const View *view, double x, double y, double u, double v, double width_px, Cone *out);
 
 /* Whether there is a lens: u and v matter. */
-static inline bool view_has_lens(const View *view) { return view->camera.aperture > 0 && view->camera.focal_distance > 0; }
+static inline bool view_has_lens(const View *view) { return view->camera.mesh ? view->camera.mesh->rays > 1 : view->camera.aperture > 0 && view->camera.focal_distance > 0; }
 /* Whether the picture is a plane seen from a point or along one direction. */
 static inline bool view_is_flat(const View *view) {
     if (view->camera.normal) return false;

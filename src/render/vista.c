@@ -68,3 +68,15 @@ VistaView vista_view(const Vista *vista, const Ray corners[4], uint32_t object) 
     }
     return others == 0 ? VISTA_EVEN : others == 1 ? VISTA_ONE : VISTA_OPEN;
 }
+
+static double distance_to(const Box3 *box, Vec3 p) { return vec3_length(vec3_sub(vec3_max(box->min, vec3_min(box->max, p)), p)); }
+
+bool vista_has_thin(const VistaPieces *pieces, const Ray corners[4], double spread, double width) {
+    Shaft shaft;
+    if (pieces->count > MOST_PIECES || !shaft_of(corners, &shaft)) return false;
+    for (size_t i = 0; i < pieces->count; i++) {
+        const VistaPiece *piece = &pieces->items[i];
+        if (piece->width < width + spread * distance_to(&piece->box, corners[0].origin) && may_touch(&shaft, &piece->box)) return true;
+    }
+    return false;
+}

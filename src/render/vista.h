@@ -9,6 +9,7 @@
 /* A thing that has an end. */
 typedef struct VistaPiece {
     Box3 box;
+    double width;    /* of its thinnest part, as far as it is known */
     uint32_t object; /* from 1; of what is not convex, or not known to be: 0 */
 } VistaPiece;
 
@@ -37,5 +38,9 @@ typedef enum VistaView {
 
 /* What may be seen between these lines, which are of the vista's part and all meet `object` first (0: nothing, or a plane). */
 VistaView vista_view(const Vista *vista, const Ray corners[4], uint32_t object);
+
+/* Whether something may be seen between the lines that is narrower there than `spread` times its distance from where they begin and `width` more, and so may lie between pixels' middles. Of
+ * too many pieces nothing is told. */
+bool vista_has_thin(const VistaPieces *pieces, const Ray corners[4], double spread, double width);
 
 #endif

@@ -3,7 +3,7 @@
 #include "render/volume_bins.h"
 #include "render/volume_shoot.h"
 
-enum { RINGS = 3, DIRECTIONS = 2 * RINGS * RINGS };
+enum { RINGS = 3, DIRECTIONS = VOLUME_LOOK_RAYS };
 /* The rest is as bright as where the ray is now. */
 static const float SEEN_THROUGH = 2e-3f;
 
@@ -14,6 +14,7 @@ typedef struct Around {
     BinWalk *walks; /* room for each worker */
     Vec3 directions[DIRECTIONS];
     double weights[DIRECTIONS];
+    uint64_t round;
 } Around;
 
 /* Gauss' and Legendre's rule over the height by equal steps around: exact for spherical harmonics up to degree 5. */
@@ -30,8 +31,8 @@ static void lay_directions(Around *a) {
 }
 
 /* A rotation of its own for each bin, so that what the rule misses is no pattern. */
-static Mat3 turn_of(size_t node) {
-    RandomStream random = {random_hash(node, 0x61726f75, 0, 0)};
+static Mat3 turn_of(size_t node, uint64_t round) {
+    RandomStream random = {random_hash(node, 0x61726f75, round, 0)};
     double z = 1 - 2 * random_next_unit(&random), around = 2 * VTS_PI * random_next_unit(&random),
            spin = 2 * VTS_PI * random_next_unit(&random);
     double r = sqrt(double_max(0, 1 - z * z));
@@ -98,13 +99,14 @@ typedef struct Matter {
     int at[3];
 } Matter;
 
+static Vec3 middle_of(const VolumeLight *light, const int at[3], int place) {
+    const double in[3] = {(place % ACROSS + 0.5) / ACROSS, (place / ACROSS % ACROSS + 0.5) / ACROSS, (place / ACROSS / ACROSS + 0.5) / ACROSS};
+    return volume_bin_place(light, at, in);
+}
+
 static bool find_matter(const CompiledVolume *v, Matter *out) {
     double sum = 0;
-    for (int i = 0; i < PLACES; i++) {
-        const double in[3] = {(i % ACROSS + 0.5) / ACROSS, (i / ACROSS % ACROSS + 0.5) / ACROSS,
-                              (i / ACROSS / ACROSS + 0.5) / ACROSS};
-        out->sums[i] = sum += volume_density(v, volume_bin_place(v->light, out->at, in));
-    }
+    for (int i = 0; i < PLACES; i++) out->sums[i] = sum += volume_density(v, middle_of(v->light, out->at, i));
     return sum > 0;
 }
 
@@ -120,8 +122,8 @@ static Vec3 draw_place(const CompiledVolume *v, const Matter *matter, double u, 
 static void look_from(const Around *a, BinWalk *walks, size_t bin, const int at[3]) {
     const CompiledVolume *v = a->volume;
     const VolumeLight *light = v->light;
-    const Mat3 turn = turn_of(bin);
-    RandomStream random = {random_hash(bin, 0x706c6163, 0, 0)};
+    const Mat3 turn = turn_of(bin, a->round);
+    RandomStream random = {random_hash(bin, 0x706c6163, a->round, 0)};
     Matter matter = {.at = {at[0], at[1], at[2]}};
     double sum[VOLUME_HARMONICS][3] = {{0}};
     if (!find_matter(v, &matter)) return;
@@ -157,16 +159,88 @@ static void look_row(void *context, size_t row, int worker) {
     }
 }
 
+/* ---- what is between the bins' middles ---- */
+
+enum { ROUNDS = 2 }; /* a ball of depth 4 is 0.9 % too bright without, 0.5 % after one, 0.15 % after two */
+
+typedef struct Evening {
+    const CompiledVolume *volume;
+    float (*factors)[3]; /* of each bin */
+} Evening;
+
+/* Bins at a border, whose matter is not about their middles, would be asked for more than they have: light falls towards the border, and what stands for all of a bin's matter is taken for
+ * that in its middle. So that the mean over matter of what is asked for is what was kept. */
+static void even_row(void *context, size_t row, int worker) {
+    static const double level[VOLUME_HARMONICS] = {1};
+    const Evening *e = context;
+    const CompiledVolume *v = e->volume;
+    const VolumeLight *light = v->light;
+    const int *n = light->bins;
+    (void)worker;
+    Matter matter = {.at = {0, (int)(row % (size_t)n[1]), (int)(row / (size_t)n[1])}};
+    for (; matter.at[0] < n[0]; matter.at[0]++) {
+        size_t bin = row * (size_t)n[0] + (size_t)matter.at[0];
+        float *factor = e->factors[bin];
+        factor[0] = factor[1] = factor[2] = 1;
+        if (!(light->density[bin] > 0) || volume_bin_is_even(light, matter.at) || !find_matter(v, &matter)) continue;
+        double sum[3] = {0, 0, 0};
+        for (int i = 0; i < PLACES; i++) {
+            double weight = (matter.sums[i] - (i ? matter.sums[i - 1] : 0)) / matter.sums[PLACES - 1];
+            if (!(weight > 0)) continue;
+            Vec3f here = volume_kept(v, middle_of(light, matter.at, i), level);
+            sum[0] += weight * (double)here.x, sum[1] += weight * (double)here.y, sum[2] += weight * (double)here.z;
+        }
+        const float *kept = light->kept[bin * (size_t)light->harmonics];
+        for (int c = 0; c < 3; c++)
+            if (sum[c] > 0 && kept[c] > 0) factor[c] = (float)double_clamp((double)kept[c] / sum[c], 0.5, 2);
+    }
+}
+
+static bool even_out(const Around *a) {
+    ArenaMark mark = arena_mark(&a->compiled->scratch);
+    const VolumeLight *light = a->volume->light;
+    size_t bins = volume_bins(light);
+    Evening e = {a->volume, arena_push_array_(&a->compiled->scratch, bins, sizeof *e.factors)};
+    bool done = pool_run(a->compiled->options->pool, (size_t)light->bins[1] * (size_t)light->bins[2], even_row, &e);
+    for (size_t i = 0; done && i < bins * (size_t)light->harmonics; i++)
+        for (int c = 0; c < 3; c++) light->kept[i][c] *= e.factors[i / (size_t)light->harmonics][c];
+    arena_reset_to(&a->compiled->scratch, mark);
+    return done;
+}
+
+static bool look_all(Around *a, CompiledVolume *v) {
+    const int *n = v->light->bins;
+    a->volume = v;
+    if (!pool_run(a->compiled->options->pool, (size_t)n[1] * (size_t)n[2], look_row, a)) return false;
+    for (int round = 0; round < ROUNDS; round++)
+        if (!even_out(a)) return false;
+    return true;
+}
+
+/* What bins were seen to get takes the place of what paths brought them. */
+static void send_on(const CompiledVolume *v) {
+    const VolumeLight *light = v->light;
+    size_t numbers = volume_bins(light) * (size_t)light->harmonics;
+    for (size_t i = 0; i < numbers; i++) {
+        float density = light->density[i / (size_t)light->harmonics];
+        for (int c = 0; c < 3; c++) {
+            float seen = density * light->kept[i][c];
+            light->source[i][c] += seen - light->again[i][c];
+            light->again[i][c] = seen;
+        }
+    }
+}
+
 bool volumes_look_around(CompiledScene *compiled, Tracer **tracers) {
     const VolumeSet *set = compiled->volumes;
     Around a = {.compiled = compiled, .tracers = tracers};
     a.walks = arena_new_array(&compiled->scratch, BinWalk,
                               (size_t)pool_threads(compiled->options->pool) * set->count);
     lay_directions(&a);
-    for (size_t i = 0; i < set->count; i++) {
-        a.volume = &set->items[i];
-        const int *n = a.volume->light->bins;
-        if (!pool_run(compiled->options->pool, (size_t)n[1] * (size_t)n[2], look_row, &a)) return false;
+    for (a.round = 0; a.round < (uint64_t)set->looks; a.round++) {
+        for (size_t i = 0; i < set->count && a.round > 0; i++) send_on(&set->items[i]);
+        for (size_t i = 0; i < set->count; i++)
+            if (!look_all(&a, &set->items[i])) return false;
     }
     return !(compiled->options->interrupted && *compiled->options->interrupted);
 }

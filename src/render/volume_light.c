@@ -51,12 +51,16 @@ static Corners corners_of(const int cells[3], Vec3 unit) {
     return out;
 }
 
+/* Then depths are asked for as fast as nodes are, without their error: where borders are round, depths between nodes are too small. */
+static bool is_even(const CompiledVolume *v) { return v->body && v->lattice.size[0] * v->lattice.size[1] * v->lattice.size[2] == 1; }
+
 Vec3f volume_lamp(const CompiledVolume *v, SurfaceTracer *tracer, size_t l, const LightRay *way, Vec3 unit,
                   Vec3 point) {
     const VolumeLight *light = v->light;
     const Corners c = corners_of(light->cells, unit);
     const uint8_t *states = light->states + l * light->nodes;
     const float(*depths)[3] = (const float(*)[3])light->depths + l * light->nodes;
+    const Light *lamp = &tracer->compiled->scene->lights[l];
     uint8_t state = states[c.at[0]];
     double depth[3] = {0, 0, 0};
     for (int i = 0; i < 8; i++) {
@@ -65,8 +69,8 @@ Vec3f volume_lamp(const CompiledVolume *v, SurfaceTracer *tracer, size_t l, cons
     }
     if (state == LIGHT_HIDDEN) return vec3f(0, 0, 0);
     Vec3f through = vec3f((float)exp(-depth[0]), (float)exp(-depth[1]), (float)exp(-depth[2]));
+    if (is_even(v) && !light_is_area(lamp) && !lamp->shadowless) through = volumes_passing_thinned(tracer->compiled->volumes, &(Ray){point, way->direction}, way->distance);
     if (state == LIGHT_SEEN) return through;
-    const Light *lamp = &tracer->compiled->scene->lights[l];
     Leg leg;
     surface_leg(&(Cone){point, way->direction, 0, 0}, &leg);
     SurfaceTracer past = *tracer;
@@ -180,6 +184,7 @@ static void make_bins(CompiledScene *compiled, CompiledVolume *v) {
     light->kept = arena_push_array_(compiled->arena, bins * (size_t)light->harmonics, sizeof *light->kept);
     light->source =
         arena_push_array_(&compiled->scratch, bins * (size_t)light->harmonics, sizeof *light->source);
+    light->again = arena_push_array_(&compiled->scratch, bins * (size_t)light->harmonics, sizeof *light->again);
     light->density = arena_new_array(compiled->arena, float, bins);
 }
 
@@ -202,14 +207,41 @@ static bool light_set(CompiledScene *compiled, VolumeSet *set) {
     return done;
 }
 
+/* Light that is kept in so few bins does not know finer cells than this, but would go through all of them: for the light pass great grids have fewer. */
+enum { LIGHT_CELLS = 96 };
+
+static void coarsen(CompiledVolume *v, Arena *arena) {
+    const Lattice fine = v->lattice;
+    int size[3];
+    double widths[3];
+    for (int k = 0; k < 3; k++) {
+        int cells = int_max(1, fine.size[k] / LIGHT_CELLS);
+        size[k] = (fine.size[k] + cells - 1) / cells;
+        widths[k] = (double)fine.size[k] / size[k];
+    }
+    if (size[0] == fine.size[0] && size[1] == fine.size[1] && size[2] == fine.size[2]) return;
+    lattice_coarsen(&v->lattice, &fine, size, arena);
+    Transform shift = transform_translate(vec3_splat(-0.5)), scale = transform_scale(vec3(1 / widths[0], 1 / widths[1], 1 / widths[2])), back = transform_translate(vec3_splat(0.5));
+    Transform all = transform_then(&shift, &scale);
+    all = transform_then(&all, &back);
+    v->to_cells.offset = transform_point(&all, v->to_cells.offset);
+    for (int k = 0; k < 3; k++) {
+        v->to_cells.linear.c[k] = transform_vector(&all, v->to_cells.linear.c[k]);
+        v->from_cells.c[k] = vec3_scale(v->from_cells.c[k], widths[k]);
+    }
+}
+
 bool volumes_light(CompiledScene *compiled) {
     VolumeSet *set = compiled->volumes;
     if (set->method == VOLUME_PATH) return true;
     if (set->method == VOLUME_PUBLISHED) return volumes_light_published(compiled);
     VolumeSet *smooth = volumes_without_peaks(set, compiled->arena);
+    ArenaMark mark = arena_mark(&compiled->scratch);
+    for (size_t i = 0; i < smooth->count; i++) coarsen(&smooth->items[i], &compiled->scratch);
     compiled->volumes = smooth;
     bool done = light_set(compiled, smooth);
     compiled->volumes = set;
+    arena_reset_to(&compiled->scratch, mark);
     for (size_t i = 0; i < set->count; i++) set->items[i].light = smooth->items[i].light;
     return done;
 }
@@ -244,6 +276,17 @@ static Corners bins_around(const VolumeLight *light, Vec3 unit) {
         }
     }
     return out;
+}
+
+bool volume_bin_is_even(const VolumeLight *light, const int at[3]) {
+    float least = INFINITY, most = 0;
+    for (int i = 0; i < 27; i++) {
+        const int step[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+        size_t index = 0;
+        for (int k = 2; k >= 0; k--) index = index * (size_t)light->bins[k] + (size_t)int_clamp(at[k] + step[k], 0, light->bins[k] - 1);
+        least = float_min(least, light->density[index]), most = float_max(most, light->density[index]);
+    }
+    return least > 0.5f * most;
 }
 
 Vec3f volume_kept(const CompiledVolume *v, Vec3 unit, const double shape[VOLUME_HARMONICS]) {

@@ -22,8 +22,8 @@ struct VolumeLight {
     int harmonics;    /* 1 or VOLUME_HARMONICS */
     float (*kept)[3]; /* [bin][harmonic]; NULL: none */
     float *density;
-    /* While the light pass runs: what each length of the way through a bin sends. */
-    float (*source)[3]; /* [bin][harmonic] */
+    /* While the light pass runs: what each length of the way through a bin sends, and what of it was not scattered once alone. */
+    float (*source)[3], (*again)[3]; /* [bin][harmonic] */
 };
 
 /* Fills the set's lights by the scene's lamps and sky. False when interrupted. */
@@ -41,6 +41,8 @@ static inline size_t volume_bins(const VolumeLight *light) {
 /* The share of a lamp that comes to a place of the volume, `unit` in its unit cube. */
 Vec3f volume_lamp(const CompiledVolume *volume, SurfaceTracer *tracer, size_t light, const LightRay *way,
                   Vec3 unit, Vec3 point);
+/* Whether there is about as much matter in the bins around as in this one. */
+bool volume_bin_is_even(const VolumeLight *light, const int at[3]);
 /* What a unit of density at the place sends along a direction of light that was kept, `shape` being the direction's harmonics. */
 Vec3f volume_kept(const CompiledVolume *volume, Vec3 unit, const double shape[VOLUME_HARMONICS]);
 

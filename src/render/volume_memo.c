@@ -2,6 +2,7 @@
 
 #include "render/volume_light.h"
 #include "scene/scene_hash.h"
+#include "tape/tape.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +14,7 @@ struct VolumeMemo {
     VolumeLight *lights;
 };
 
-enum { LIGHT_SIZE = 80 };
+enum { LIGHT_SIZE = 88 };
 _Static_assert(sizeof(void *) != 8 || sizeof(VolumeLight) == LIGHT_SIZE, "whoever adds an array to VolumeLight adds it to copy_arrays()");
 
 typedef void *Copy(void *context, const void *data, size_t size);
@@ -25,7 +26,7 @@ static void copy_arrays(VolumeLight *light, size_t lamps, Copy *copy, void *cont
     light->states = copy(context, light->states, nodes * sizeof *light->states);
     light->kept = copy(context, light->kept, bins * (size_t)light->harmonics * sizeof *light->kept);
     light->density = copy(context, light->density, bins * sizeof *light->density);
-    light->source = NULL;
+    light->source = light->again = NULL;
 }
 
 /* ---- what it depends on ---- */
@@ -41,6 +42,11 @@ static Hash128 key_of(const CompiledScene *compiled) {
     Hash128 key = hash_begin(scene->light_count);
     hash_add(&key, text.data, text.size);
     strbuf_free(&text);
+    for (size_t i = 0; i < scene->light_count; i++) {
+        const Light *light = &scene->lights[i];
+        if (light->goniometric) hash_add_hash(&key, tape_hash(light->goniometric));
+        if (light->projected_through) hash_add_hash(&key, object_hash(light->projected_through));
+    }
     for (size_t i = 0; i < scene->object_count; i++) hash_add_hash(&key, object_hash(scene->objects[i]));
     for (size_t i = 0; i < scene->sky_layer_count; i++) hash_add_hash(&key, scene->sky_layers[i]->hash);
     for (size_t i = 0; i < compiled->volumes->count; i++) {

@@ -79,17 +79,21 @@ bool volume_reach(const CompiledVolume *v, const Ray *ray, double t0, double t1,
     return false;
 }
 
-Vec3f volumes_passing(const VolumeSet *set, const Ray *ray, double t0, double t1, RayPurpose purpose) {
+static Vec3f share_passing(const VolumeSet *set, const Ray *ray, double t0, double t1, RayPurpose purpose, bool thinned) {
     double depth[3] = {0, 0, 0}, near = t0, far = t1;
     if (!box3_clip_ray(set->bounds, ray, &near, &far)) return vec3f(1, 1, 1);
     for (size_t i = 0; i < set->count; i++) {
         const CompiledVolume *v = &set->items[i];
         if (!volume_counts(v, purpose)) continue;
         double length = volume_length(v, ray, t0, t1);
-        for (int c = 0; c < 3; c++) depth[c] += length * v->extinction[c];
+        for (int c = 0; c < 3; c++) depth[c] += length * (thinned ? v->thinned : v->extinction)[c];
     }
     return vec3f((float)exp(-depth[0]), (float)exp(-depth[1]), (float)exp(-depth[2]));
 }
+
+Vec3f volumes_passing(const VolumeSet *set, const Ray *ray, double t0, double t1, RayPurpose purpose) { return share_passing(set, ray, t0, t1, purpose, false); }
+
+Vec3f volumes_passing_thinned(const VolumeSet *set, const Ray *ray, double t1) { return share_passing(set, ray, 0, t1, RAY_MIRRORS, true); }
 
 /* ---- making ready ---- */
 

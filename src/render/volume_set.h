@@ -38,6 +38,7 @@ typedef struct VolumeSet {
     bool rays_are_paths;      /* of a line of sight; else those of a light pass, which paths may do without */
     int orders;               /* 0: all */
     bool sky;                 /* light comes from the sky too */
+    int looks;                /* of bins at those around them, one after the other, see volumes_shoot() */
 } VolumeSet;
 
 /* The set as the two passes see light that was scattered before: forward peaks of phase functions, which harmonics of low degrees cannot have, turn nothing aside (Wiscombe
@@ -62,6 +63,8 @@ double volume_length(const CompiledVolume *volume, const Ray *ray, double t0, do
 bool volume_reach(const CompiledVolume *volume, const Ray *ray, double t0, double t1, double length, double *t);
 /* The share of light that passes all volumes that cast shadows; what is not seen is left out of sights. */
 Vec3f volumes_passing(const VolumeSet *set, const Ray *ray, double t0, double t1, RayPurpose purpose);
+/* The share that passes all volumes up to t1, or is turned aside by forward peaks alone. */
+Vec3f volumes_passing_thinned(const VolumeSet *set, const Ray *ray, double t1);
 static inline bool volume_counts(const CompiledVolume *v, RayPurpose purpose) { return purpose == RAY_SHADOWS ? v->casts : purpose == RAY_SEES ? v->seen : true; }
 
 /* ---- light ---- */

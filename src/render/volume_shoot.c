@@ -21,6 +21,8 @@ typedef struct Shooting {
     uint64_t begin, end;  /* rays of the round, in each batch */
     uint64_t *collisions; /* of each batch so far */
     double lamp_total;
+    bool looks_help; /* more than one; where orders are counted, each is a further order */
+    int looks;
     Vec3 middle;
     double radius;
 } Shooting;
@@ -273,12 +275,45 @@ static double error_of_bins(const Shooting *s, double rays) {
                 spread_sum += ((double)first[b * s->batch_size][1] - mean) *
                               ((double)first[b * s->batch_size][1] - mean);
             double scale = shine / size / (double)light->density[bin];
+            scale /= double_max(1, scale * mean * BATCHES); /* what is brighter than white is clamped */
             weight = double_min(weight, 1 / cbrt(volume_of(v) / (double)volume_bins(light)));
             sum += weight * scale * scale * spread_sum * BATCHES / (BATCHES - 1);
             weights += weight;
         }
     }
     return weights > 0 ? sqrt(sum / weights) : 0;
+}
+
+/* Each further look at other bins halves the error of what paths have brought, about, where bins see each other; it takes as long as so many free paths for each of its rays. */
+static const double LOOK_RAY_PATHS = 1.5;
+enum { MOST_LOOKS = 4 };
+
+static double look_cost(const Shooting *s) {
+    size_t filled = 0;
+    for (size_t n = 0; n < s->set->count; n++) {
+        const VolumeLight *light = s->set->items[n].light;
+        for (size_t bin = 0; bin < volume_bins(light); bin++) filled += light->density[bin] > 0;
+    }
+    return LOOK_RAY_PATHS * VOLUME_LOOK_RAYS * (double)filled;
+}
+
+/* Whether light goes from bin to bin, on the mean: in a flat slab, whose bins are wide, or in what is very dense, it does not. */
+static bool bins_see_each_other(const Shooting *s) {
+    for (size_t n = 0; n < s->set->count; n++) {
+        const CompiledVolume *v = &s->set->items[n];
+        double extinction = brightness(v->extinction) * lattice_mean(&v->lattice);
+        for (int k = 0; k < 3; k++)
+            if (vec3_length(v->from_cells.c[k]) * v->lattice.size[k] / v->light->bins[k] * extinction > 1) return false;
+    }
+    return true;
+}
+
+/* How often to look around when rays bring this multiple of the error that may remain after one look; 0 if more rays are cheaper. */
+static int enough_looks(const Shooting *s, double excess, double paths) {
+    if (!(excess > 1)) return 1;
+    double more = ceil(log2(excess));
+    if (!s->looks_help || more > MOST_LOOKS - 1) return 0;
+    return more * look_cost(s) < paths * (excess * excess - 1) ? 1 + (int)more : 0;
 }
 
 static double free_paths(const Shooting *s) {
@@ -293,15 +328,24 @@ static double shoot_rounds(Shooting *s) {
     for (size_t i = 0; i < s->set->count; i++) asked = double_max(asked, s->set->items[i].volume->rays);
     asked = double_min(asked, MOST_RAYS);
     double next = asked > 0 ? asked : FIRST_ROUND;
+    s->looks_help = !s->set->orders && bins_see_each_other(s);
     for (;;) {
         s->begin = s->end, s->end = (uint64_t)ceil(next / BATCHES);
         if (!pool_run(s->compiled->options->pool, BATCHES, shoot_batch, s)) return 0;
         rays = (double)s->end * BATCHES;
         next = 2 * rays;
-        if (asked > 0 || next > RAYS_AT_MOST || 2 * free_paths(s) > MOST_FREE_PATHS) return rays;
-        if (rays > 4 * FIRST_ROUND && error_of_bins(s, rays) < BIN_ERROR * s->compiled->max_error)
-            return rays;
+        double paths = free_paths(s);
+        s->looks = 1;
+        if (asked > 0) break;
+        if (rays <= 4 * FIRST_ROUND) continue;
+        s->looks = enough_looks(s, error_of_bins(s, rays) / (BIN_ERROR * s->compiled->max_error), paths);
+        if (s->looks > 0) break;
+        s->looks = s->looks_help ? MOST_LOOKS : 1;
+        if (next > RAYS_AT_MOST || 2 * paths > MOST_FREE_PATHS) break;
     }
+    s->compiled->volume_rays = rays;
+    s->compiled->volume_error = error_of_bins(s, rays) / BIN_ERROR / (double)(1 << (s->looks - 1));
+    return rays;
 }
 
 /* ---- what is kept ---- */
@@ -392,8 +436,9 @@ static void settle_row(void *context, size_t row, int worker) {
                     sum += (double)
                                s->batches[b * s->batch_size + s->first_bin[g->number] + place + (size_t)h][c];
                 double kept = g->rays > 0 ? sum / size : 0;
-                light->source[place + (size_t)h][c] =
-                    (float)((sent[h][c] * v->scattering[c] + kept) * v->moments[volume_harmonic_degree(h)]);
+                double moment = v->moments[volume_harmonic_degree(h)];
+                light->again[place + (size_t)h][c] = (float)(kept * moment);
+                light->source[place + (size_t)h][c] = (float)((sent[h][c] * v->scattering[c] + kept) * moment);
             }
     }
 }
@@ -429,6 +474,7 @@ bool volumes_shoot(CompiledScene *compiled, Tracer **tracers) {
     double rays = 0;
     bool done = for_rows(&s, 0, measure_row);
     if (done && volume_most_turns(set) >= (set->sky ? 0 : 1)) done = (rays = shoot_rounds(&s)) > 0;
+    compiled->volumes->looks = int_max(1, s.looks);
     done = done && for_rows(&s, rays, settle_row);
     arena_reset_to(scratch, mark);
     return done && !(compiled->options->interrupted && *compiled->options->interrupted);

@@ -5,9 +5,12 @@
 #include "render/integrate.h"
 #include "render/volume_light.h"
 
-/* Fills `density` and `source` of all volumes by paths. `tracers`: one for each worker. The same for any number of workers. False when interrupted. */
+/* Fills `density` and `source` of all volumes by paths, and tells by the set's `looks` how often bins are to look around. `tracers`: one for each worker. The same for any number of workers.
+ * False when interrupted. */
 bool volumes_shoot(CompiledScene *compiled, Tracer **tracers);
-/* Fills `kept` of all volumes: for each bin the light is asked for that comes there from the others all around, and from the sky. volume_around.c */
+enum { VOLUME_LOOK_RAYS = 18 }; /* of each bin */
+/* Fills `kept` of all volumes: for each bin the light is asked for that comes there from the others all around, and from the sky; what they get takes the place of what paths brought, and they
+ * look again, set->looks times. volume_around.c */
 bool volumes_look_around(CompiledScene *compiled, Tracer **tracers);
 /* How many turns the paths may have behind them when they come to where they are kept; the look around adds one, and the view another. */
 int volume_most_turns(const VolumeSet *set);

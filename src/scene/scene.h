@@ -144,7 +144,7 @@ typedef struct ColorMapEntry {
     const Pigment *pigment; /* of a pigment_map (or block pattern with pigments); else NULL and `color` counts */
 } ColorMapEntry;
 
-enum { TILING_MOST = 3 }; /* those after it are read, and have the middle of the map everywhere */
+enum { TILING_MOST = 24 }; /* those after it are read, and have the middle of the map everywhere */
 enum { PIGMENT_DEEPEST = 100 }; /* pigments within maps and functions of each other: whoever evaluates one may call itself that often */
 #define PIGMENT_MOST_WORK 1e8   /* steps of one evaluation */
 struct Pigment {
@@ -395,7 +395,7 @@ enum { OBJECT_DEEPEST = 1000 }; /* whoever walks a tree of objects may call itse
 struct Object {
     Span span;
     uint8_t kind; /* ObjectKind */
-    bool no_shadow : 1, no_image : 1, inverse : 1, no_reflection : 1, double_illuminate : 1;
+    bool no_shadow : 1, no_image : 1, inverse : 1, no_reflection : 1, no_radiosity : 1, double_illuminate : 1;
     bool cutaway : 1; /* surfaces in it without a texture have those of what holds the place */
     uint16_t depth; /* objects within each other, this one included; at most OBJECT_DEEPEST */
     const Affine *place;    /* object space → parent's space; NULL: the same */
@@ -617,8 +617,31 @@ typedef struct Skin {
 
 typedef enum CameraKind {
     CAMERA_PERSPECTIVE, CAMERA_ORTHOGRAPHIC, CAMERA_FISHEYE, CAMERA_ULTRA_WIDE, CAMERA_OMNIMAX, CAMERA_PANORAMIC, CAMERA_SPHERICAL,
-    CAMERA_CYLINDER_1, CAMERA_CYLINDER_2, CAMERA_CYLINDER_3, CAMERA_CYLINDER_4
+    CAMERA_CYLINDER_1, CAMERA_CYLINDER_2, CAMERA_CYLINDER_3, CAMERA_CYLINDER_4, CAMERA_MESH
 } CameraKind;
+
+/* mesh_camera: a ray along the normal of each triangle. */
+typedef struct CameraMesh {
+    const MeshData *mesh;
+    Transform place; /* → scene */
+} CameraMesh;
+
+typedef enum MeshSpread {
+    MESH_SPREAD_RAYS,  /* triangle n is pixel n's; each of a pixel's rays has a mesh of its own */
+    MESH_SPREAD_SUM,   /* the same of all meshes in a row, a picture's pixels for each ray */
+    MESH_SPREAD_ASIDE, /* as the first, the meshes' pictures side by side */
+    MESH_SPREAD_UV     /* the picture is the plane of the first mesh's u and v */
+} MeshSpread;
+
+typedef struct MeshCamera {
+    int rays; /* a pixel; 1 of the last two */
+    MeshSpread spread;
+    bool smooth;    /* of MESH_SPREAD_UV: along interpolated normals */
+    const CameraMesh *meshes;
+    size_t mesh_count;
+    double ahead;   /* so far along its normal before the triangle rays begin */
+    bool backwards; /* they go against the normal */
+} MeshCamera;
 
 /* As POV-Ray's after `look_at`, `angle` and transforms are applied: a ray of image position (s, t), both in [-1/2, 1/2] from
  * left to right and from bottom to top, starts at `location` (orthographic: + s·right + t·up) along
@@ -631,6 +654,7 @@ typedef struct Camera {
     double aperture;              /* of the lens: four times its radius; 0: a point */
     double focal_distance;        /* 0: none */
     int least_blur_samples, most_blur_samples; /* 0: not given */
+    const MeshCamera *mesh;       /* CAMERA_MESH; else NULL */
     const Normal *normal;         /* bends lines of sight, at the image position <s, t, 0>; or NULL */
     double confidence, variance;  /* when blur is smooth enough; 0: not given */
     const InertNote *inert;
@@ -662,11 +686,14 @@ struct Light {
     bool area_illumination; /* shading, too, is that by all of the area, not by its middle alone */
     const Object *looks_like, *projected_through; /* in the scene; or NULL */
     const LightGroup *group; /* shines on nothing else; NULL: on all */
+    bool aimed;              /* point_at was given */
+    const Tape *goniometric; /* (angle to the way from its place to point_at, radians) → factor of its colour, and what does not count; NULL: 1 */
     bool unscattered;        /* media do not scatter it */
     bool through_air;        /* media that are nowhere in particular weaken it */
     const InertNote *inert;
 };
 
+enum { LIGHT_GONIOMETRIC_OUTPUTS = 5 }; /* at most */
 static inline bool light_is_parallel(const Light *light) { return light->kind == LIGHT_PARALLEL || light->parallel; }
 
 typedef struct Fog {
@@ -699,6 +726,17 @@ typedef struct GeoOrigin {
     Vec3 place; /* latitude, longitude (degrees), height above the ellipsoid WGS84 */
 } GeoOrigin;
 
+/* Light that surfaces send each other. */
+typedef struct Radiosity {
+    bool on;
+    bool bumps;             /* by perturbed normals */
+    bool media;             /* and fogs are before what sends it */
+    bool with_ambient;      /* #version is below 3.7: finishes' ambient light is there, too */
+    double brightness, gray_threshold; /* 1, 0 */
+    double max_sample;      /* the most that comes from one direction; 0: any */
+    int bounces;            /* recursion_limit; 2 */
+} Radiosity;
+
 typedef struct GlobalSettings {
     double max_error;      /* 0: not given */
     Color ambient_light;   /* 1 */
@@ -714,6 +752,7 @@ typedef struct GlobalSettings {
     const char *filtering;     /* NULL: linear */
     const char *detail;        /* NULL: auto */
     bool sky_light;            /* ambient light comes from the sky that a place sees */
+    Radiosity radiosity;
     GeoOrigin geo_origin;      /* geo_origin, else the first terrain's */
 } GlobalSettings;
 

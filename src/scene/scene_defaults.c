@@ -36,7 +36,8 @@ Pigment pigment_default(void) {
 GlobalSettings global_settings_default(void) {
     return (GlobalSettings){
         .ambient_light = {1, 1, 1, 0, 0}, .assumed_gamma = 1, .max_trace_level = 5, .adc_bailout = 1.0 / 255,
-        .irid_wavelength = {0.70, 0.52, 0.48}, .shadow_aperture = 2};
+        .irid_wavelength = {0.70, 0.52, 0.48}, .shadow_aperture = 2,
+        .radiosity = {.brightness = 1, .bounces = 2}};
 }
 
 Interior interior_default(void) {

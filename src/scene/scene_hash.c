@@ -319,7 +319,7 @@ Hash128 object_hash(const Object *o) {
     hash_add_hash(&h, object_geometry_hash(o));
     add_texture(&h, o->texture);
     hash_add_u64(&h, (uint64_t)o->no_shadow | (uint64_t)o->no_image << 1 | (uint64_t)(o->rest && o->rest->hollow) << 2 |
-                         (uint64_t)o->no_reflection << 3 | (uint64_t)o->double_illuminate << 4 | (uint64_t)o->cutaway << 5);
+                         (uint64_t)o->no_reflection << 3 | (uint64_t)o->double_illuminate << 4 | (uint64_t)o->cutaway << 5 | (uint64_t)o->no_radiosity << 6);
     if (o->rest) add_texture(&h, o->rest->interior_texture);
     if (o->rest && o->rest->interior) hash_add_hash(&h, o->rest->interior->hash);
     if (object_has_group(o)) hash_add_hash(&h, hashed_group(o->as.group)->hash);

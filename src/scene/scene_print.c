@@ -313,6 +313,7 @@ static void print_object(Printer *p, const Object *o) {
     add_flag(p, "no_image", o->no_image);
     add_flag(p, "inverse", o->inverse);
     add_flag(p, "no_reflection", o->no_reflection);
+    add_flag(p, "no_radiosity", o->no_radiosity);
     add_flag(p, "double_illuminate", o->double_illuminate);
     add_flag(p, "cutaway_textures", o->cutaway);
     add_inert(p, object_inert(o));
@@ -503,7 +504,7 @@ static void print_skin(Printer *p, const Skin *skin) {
 static void print_camera(Printer *p, const Camera *c) {
     static const char *const names[] = {"",           " orthographic", " fisheye",    " ultra_wide_angle",
                                         " omnimax",   " panoramic",    " spherical",  " cylinder 1",
-                                        " cylinder 2", " cylinder 3",  " cylinder 4"};
+                                        " cylinder 2", " cylinder 3",  " cylinder 4", " mesh_camera"};
     begin_line(p, "camera");
     strbuf_adds(p->out, names[c->kind]);
     add_vector(p, "location", c->location);
@@ -512,6 +513,11 @@ static void print_camera(Printer *p, const Camera *c) {
     add_vector(p, "up", c->up);
     if (c->kind > CAMERA_ORTHOGRAPHIC) add_number(p, "angle", c->angle);
     if (c->kind == CAMERA_SPHERICAL) add_number(p, "angle_v", c->angle_v);
+    if (c->mesh) {
+        strbuf_addf(p->out, " rays %d spread %d meshes %zu ahead %g", c->mesh->rays, (int)c->mesh->spread, c->mesh->mesh_count, c->mesh->ahead);
+        add_flag(p, "smooth", c->mesh->smooth);
+        add_flag(p, "backwards", c->mesh->backwards);
+    }
     if (c->normal) strbuf_adds(p->out, " normal");
     if (c->aperture > 0) strbuf_addf(p->out, " aperture %g focus %g", c->aperture, c->focal_distance);
     end_line(p);
@@ -540,6 +546,8 @@ static void print_light(Printer *p, const Light *light) {
         add_flag(p, "area_illumination", light->area_illumination);
         add_flag(p, "orient", light->orient);
     }
+    add_flag(p, "goniometric function", light->goniometric != NULL);
+    if (light->goniometric && light->kind == LIGHT_POINT) add_vector(p, "point_at", light->point_at);
     add_flag(p, "media_interaction off", light->unscattered);
     add_flag(p, "media_attenuation", light->through_air);
     add_flag(p, "parallel", light->parallel && light->kind != LIGHT_PARALLEL);
@@ -548,6 +556,17 @@ static void print_light(Printer *p, const Light *light) {
     add_flag(p, "projected", light->projected_through != NULL);
     add_inert(p, light->inert);
     end_line(p);
+}
+
+static void add_radiosity(Printer *p, const Radiosity *r) {
+    if (!r->on) return;
+    strbuf_addf(p->out, " radiosity recursion_limit %d", r->bounces);
+    add_unless(p, "brightness", r->brightness, 1);
+    add_unless(p, "gray_threshold", r->gray_threshold, 0);
+    add_unless(p, "max_sample", r->max_sample, 0);
+    add_flag(p, "normal", r->bumps);
+    add_flag(p, "media", r->media);
+    add_flag(p, "with ambient", r->with_ambient);
 }
 
 static void print_settings(Printer *p, const GlobalSettings *s) {
@@ -566,6 +585,7 @@ static void print_settings(Printer *p, const GlobalSettings *s) {
     for (size_t i = 0; i < VTS_ARRAY_COUNT(texts); i++)
         if (texts[i][1]) strbuf_addf(p->out, " %s %s", texts[i][0], texts[i][1]);
     add_flag(p, "sky_light", s->sky_light);
+    add_radiosity(p, &s->radiosity);
     if (s->geo_origin.set) strbuf_addf(p->out, " geo_origin <%.10g,%.10g,%g>", s->geo_origin.place.x, s->geo_origin.place.y, s->geo_origin.place.z);
     add_flag(p, "flat", s->geo_origin.flat);
     end_line(p);

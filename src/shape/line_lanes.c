@@ -1,6 +1,7 @@
 /* First changes of sign by bounds of several pieces at once (tape_lanes.h): a piece is divided into as many as there are lanes, what
  * remains of each waits in order. As many bounds as halving takes on the same way, and a fraction of the time. */
 #include "shape/line_parts.h"
+#include "tape/tape_noise.h"
 
 #include <stdlib.h>
 
@@ -16,20 +17,30 @@ static const double SETTLES = 0x1p-7, STALE = 0x1p-5;
 /* Shorter sums gain nothing by it. */
 enum { SETTLING_TERMS = 8 };
 
+/* A zero is guessed in pieces that are shorter by this than the way over which the sum is straight. */
+static const double GUESSED = 2;
+
 /* The sum of the settled terms at middle + s·half. */
 typedef struct Settled {
     uint32_t terms; /* a bit for each */
     double middle, half, centre, slope, error, size;
 } Settled;
 
+/* Where the sum is 0 if it is straight, how it rises there, and the way over which it bends by as much as it rises; 0: nothing is known. */
+typedef struct Crossing {
+    double zero, rise, straight;
+} Crossing;
+
 typedef struct LanePiece {
     double a, b;
+    Crossing crossing;
     Settled settled;
 } LanePiece;
 
 typedef struct Lanes {
     LineSearch *search;
     AffineLanes *scratch;
+    TapeNoiseWay ways[TAPE_TERMS_MOST];
     LanePiece stack[LINE_MOST_PIECES];
     int count;
 } Lanes;
@@ -46,18 +57,21 @@ typedef struct Batch {
 static double middle_of(LinePiece p) { return p.a / 2 + p.b / 2; }
 static double half_of(LinePiece p) { return (p.b - p.a) / 2 * (1 + 0x1p-50); }
 
-static void place_lanes(const Line *line, const LinePiece *pieces, AffineLanes in[3], AffineLanes *width) {
+static void place_lanes(const Line *line, const double *restrict middles, const double *restrict halves, AffineLanes in[3]) {
     const double origin[3] = {line->origin.x, line->origin.y, line->origin.z},
                  along[3] = {line->direction.x, line->direction.y, line->direction.z};
     for (int k = 0; k < 3; k++) AFFINE_EACH_LANE {
-            double middle = pieces[l].a / 2 + pieces[l].b / 2,
-                   half = (pieces[l].b - pieces[l].a) / 2 * (1 + 0x1p-50);
+            double middle = middles[l], half = halves[l];
             double size = fabs(origin[k]) + (fabs(middle) + half) * fabs(along[k]);
             in[k].centre[l] = origin[k] + middle * along[k], in[k].slope[l] = half * along[k],
             in[k].error[l] = affine_lane_error(0, size);
         }
+}
+
+/* What looks. */
+static void widen_lanes(const Line *line, const double *restrict middles, const double *restrict halves, AffineLanes *width) {
     AFFINE_EACH_LANE {
-        double middle = pieces[l].a / 2 + pieces[l].b / 2, half = (pieces[l].b - pieces[l].a) / 2 * (1 + 0x1p-50);
+        double middle = middles[l], half = halves[l];
         double size = line->width.start + (fabs(middle) + half) * line->width.spread;
         width->centre[l] = line->width.start + middle * line->width.spread, width->slope[l] = half * line->width.spread;
         width->error[l] = affine_lane_error(0, size);
@@ -119,6 +133,13 @@ static void settle(const TapeSum *sum, const Batch *batch, uint64_t open, Settle
 
 /* ---- pieces ---- */
 
+/* Of a piece of which cutting has left a part. */
+static Crossing crossing_of(const AffineForm *f, LinePiece whole, LinePiece rest) {
+    double half = half_of(whole);
+    if (f->nan || !(rest.a > whole.a && rest.b < whole.b)) return (Crossing){0, 0, 0};
+    return (Crossing){middle_of(whole) - half * (f->centre / f->slope), f->slope / half, half * fabs(f->slope) / f->error};
+}
+
 /* What may hold a zero of the pieces, cut, goes onto the stack, the first on top. */
 static void push_rest(Lanes *lanes, const Batch *batch) {
     uint64_t open = open_lanes(&batch->bounds);
@@ -138,17 +159,33 @@ static void push_rest(Lanes *lanes, const Batch *batch) {
         if (!(piece.b >= piece.a) || lanes->count >= LINE_MOST_PIECES) continue;
         LanePiece *rest = &lanes->stack[lanes->count++];
         rest->a = piece.a, rest->b = piece.b, rest->settled.terms = 0;
+        rest->crossing = crossing_of(&f, batch->pieces[l], piece);
         /* Where cutting soon ends at a zero, only what settled terms are off would stand in its way. */
         if (settles && fabs(f.slope) <= f.error) rest->settled = settled[l];
     }
+}
+
+/* Bounds of the sum on the batch's pieces. */
+static void bound_batch(Lanes *lanes, Batch *batch) {
+    const Line *line = lanes->search->line;
+    double middles[AFFINE_LANES], halves[AFFINE_LANES];
+    AffineLanes width;
+    bool wide = line_is_wide(line), settles = line->sum->count >= SETTLING_TERMS;
+    AFFINE_EACH_LANE {
+        LinePiece piece = batch->pieces[l < batch->used ? l : 0];
+        middles[l] = middle_of(piece), halves[l] = half_of(piece);
+    }
+    place_lanes(line, middles, halves, lanes->scratch);
+    if (wide) widen_lanes(line, middles, halves, &width);
+    const TapePieces pieces = {middles, halves, lanes->ways};
+    tape_sum_rest(line->sum, line->level, wide ? &width : NULL, &batch->settled, &pieces, &batch->bounds, settles ? &batch->each : NULL, lanes->scratch, line->cells);
+    lanes->search->work.bounds += (uint64_t)batch->used;
 }
 
 /* The pieces that were the first of the stack, and stay where they were until others are pushed: each is divided into as many parts as there are
  * lanes for it. */
 static void divide(Lanes *lanes, const LanePiece *const *wholes, int count) {
     Batch batch;
-    AffineLanes width;
-    const Line *line = lanes->search->line;
     int shares = AFFINE_LANES / count;
     batch.used = 0, batch.settled.terms = wholes[0]->settled.terms;
     for (int k = 0; k < count; k++) {
@@ -159,10 +196,75 @@ static void divide(Lanes *lanes, const LanePiece *const *wholes, int count) {
             batch.pieces[batch.used++] = part;
         }
     }
-    place_lanes(line, batch.pieces, lanes->scratch, &width);
-    tape_sum_rest(line->sum, line->level, line_is_wide(line) ? &width : NULL, &batch.settled, &batch.bounds, &batch.each, lanes->scratch, line->cells);
-    lanes->search->work.bounds += (uint64_t)batch.used;
+    bound_batch(lanes, &batch);
     push_rest(lanes, &batch);
+}
+
+/* ---- zeros that are guessed first, and then proved to be the first ---- */
+
+enum { MOST_STEPS = 12 };
+
+/* Secants from where a straight line would have it, until they stand. False: they leave [a, b]. */
+static bool guess_zero(LineSearch *s, double a, double b, const Crossing *crossing, double *zero) {
+    double x = crossing->zero, at = line_value(s, x), step = -at / crossing->rise;
+    for (int i = 0; i < MOST_STEPS && at != 0 && fabs(step) > 0x1p-52 * fabs(x); i++) {
+        double next = x + step, there;
+        if (!(next >= a && next <= b)) return false;
+        there = line_value(s, next);
+        step = there == at ? 0 : -there * (step / (there - at));
+        x = next, at = there;
+    }
+    *zero = x;
+    return x >= a && x <= b;
+}
+
+static void push_plain(Lanes *lanes, double a, double b) {
+    if (b > a) lanes->stack[lanes->count++] = (LanePiece){.a = a, .b = b};
+}
+
+/* Pieces of [a, zero - near], the shorter the nearer they are: over each the sum is straight enough not to reach 0 at its end. The last
+ * may be missing: returns where they end. */
+static double approach(double a, double zero, double near, double straight, Batch *batch) {
+    double way = zero - a;
+    batch->used = 0, batch->settled.terms = 0;
+    while (way > near && batch->used < AFFINE_LANES) {
+        double next = bound_max(way / double_clamp(straight / (2 * way), 2, 0x1p16), near);
+        batch->pieces[batch->used] = (LinePiece){batch->used ? zero - way : a, zero - next};
+        batch->used++, way = next;
+    }
+    return zero - way;
+}
+
+/* Whether there is a zero on [a, b], and all there are one as far as places go. */
+static bool is_one_zero(LineSearch *s, double a, double b) {
+    AffineForm f = line_bounds(s, a, b);
+    double low = a, high = b;
+    if (f.nan) return false;
+    line_cut(&f, &low, &high);
+    return low > a && high < b && high - low <= line_shortest(s->line, b);
+}
+
+/* For a piece that is off the stack, which has room. False: its parts that may hold a zero are on the stack. */
+static bool guess(Lanes *lanes, double a, double b, Crossing crossing, double *t, bool *falling) {
+    LineSearch *s = lanes->search;
+    double zero, near = ALONE * line_shortest(s->line, b) / 4;
+    if (!guess_zero(s, a, b, &crossing, &zero)) {
+        push_plain(lanes, a, b);
+        return false;
+    }
+    double from = bound_max(zero - near, a), to = bound_min(zero + near, b);
+    Batch batch;
+    double reached = approach(a, zero, near, crossing.straight, &batch);
+    if (batch.used) bound_batch(lanes, &batch);
+    bool proved = (!batch.used || !open_lanes(&batch.bounds)) && reached >= from;
+    if (proved && is_one_zero(s, from, to)) {
+        *t = zero, *falling = crossing.rise < 0;
+        return true;
+    }
+    push_plain(lanes, to, b);
+    push_plain(lanes, bound_min(reached, from), to);
+    if (batch.used) push_rest(lanes, &batch);
+    return false;
 }
 
 static bool search(Lanes *lanes, double *t, bool *falling) {
@@ -173,14 +275,17 @@ static bool search(Lanes *lanes, double *t, bool *falling) {
         while (count < AHEAD && lanes->count > 0) {
             const LanePiece *piece = &lanes->stack[lanes->count - 1];
             double a = piece->a, b = piece->b;
-            bool full = lanes->count + AFFINE_LANES > LINE_MOST_PIECES || s->work.bounds > LINE_MOST_BOUNDS;
+            bool full = lanes->count + AFFINE_LANES + 2 > LINE_MOST_PIECES || s->work.bounds > LINE_MOST_BOUNDS;
             bool other = count > 0 && piece->settled.terms != wholes[0]->settled.terms;
-            if (count > 0 && (full || other || b - a < 0x1p-20 * (fabs(a) + fabs(b)))) break;
+            bool alone = piece->crossing.straight >= GUESSED * (b - a) || b - a < 0x1p-20 * (fabs(a) + fabs(b));
+            if (count > 0 && (full || other || alone)) break;
             lanes->count--;
             if (full) {
                 if (line_give_up(s, (LinePiece){a, b}, t, falling)) return true;
             } else if (b - a <= ALONE * line_shortest(s->line, b)) {
                 if (line_search_halves(s, a, b, t, falling)) return true;
+            } else if (count == 0 && piece->crossing.straight >= GUESSED * (b - a)) {
+                if (guess(lanes, a, b, piece->crossing, t, falling)) return true;
             } else {
                 wholes[count++] = piece;
             }
@@ -196,7 +301,8 @@ bool line_search_lanes(LineSearch *s, double from, double to, double *t, bool *f
     Lanes lanes; /* its stack is large: nothing is written to it in vain */
     lanes.search = s, lanes.scratch = slots > FEW_LANES ? malloc(slots * sizeof *few) : few;
     if (!lanes.scratch) return false;
-    lanes.count = 1, lanes.stack[0].a = from, lanes.stack[0].b = to, lanes.stack[0].settled.terms = 0;
+    tape_sum_begin(s->line->sum, s->line->origin, s->line->direction, lanes.ways);
+    lanes.count = 1, lanes.stack[0].a = from, lanes.stack[0].b = to, lanes.stack[0].crossing.straight = 0, lanes.stack[0].settled.terms = 0;
     bool found = search(&lanes, t, falling);
     if (lanes.scratch != few) free(lanes.scratch);
     return found;

@@ -3,6 +3,7 @@
 #define VTS_SHAPE_LINE_PARTS_H
 
 #include "shape/line_roots.h"
+#include "tape/standard.h"
 #include "tape/tape_affine.h"
 
 /* Halves of halves down to neighbouring doubles, with room. */
@@ -19,6 +20,7 @@ typedef struct LineSearch {
     AffineForm *forms;
     Interval *intervals;
     double *values;
+    StandardForm *standard; /* NULL but for LINE_STANDARD */
     LineWork work;
 } LineSearch;
 

@@ -31,6 +31,14 @@ AffineForm line_place(double origin, double direction, double middle, double hal
     return affine_rounded(centre, slope, 0, size, false);
 }
 
+static AffineForm standard_bounds(LineSearch *s, const AffineForm in[3]) {
+    uint32_t next = 1;
+    StandardForm forms[3], out;
+    for (int k = 0; k < 3; k++) forms[k] = standard_of_line(in[k], &next);
+    tape_eval_standard(s->line->tape, forms, &out, s->standard);
+    return standard_reduced(&out);
+}
+
 AffineForm line_bounds(LineSearch *s, double a, double b) {
     const Line *line = s->line;
     double middle = a / 2 + b / 2, half = round_up(fmax(b - middle, middle - a));
@@ -43,7 +51,10 @@ AffineForm line_bounds(LineSearch *s, double a, double b) {
         AffineForm width = line_place(line->width.start, line->width.spread, middle, half);
         return affine_SUB(tape_sum_form(line->sum, in, width, s->forms), affine_point(line->level));
     }
-    if (line->method != LINE_INTERVAL) tape_eval_affine(line->tape, in, &out, s->forms);
+    if (line->method == LINE_STANDARD)
+        out = standard_bounds(s, in);
+    else if (line->method != LINE_INTERVAL)
+        tape_eval_affine(line->tape, in, &out, s->forms);
     /* What may be no number may be none at all, which counts as above: intervals know. */
     if (line->method == LINE_INTERVAL || out.nan) {
         Interval spans[3], range;
@@ -145,17 +156,19 @@ bool line_first_root(const Line *line, double from, double to, double *t, bool *
     Interval few_intervals[FEW_SLOTS];
     double few_values[FEW_SLOTS];
     size_t slots = size_max(tape_scratch_size(line->tape), line->sum ? line->sum->scratch_size : 0);
-    LineSearch s = {line, few_forms, few_intervals, few_values, {0, 0, 0}};
-    bool more = slots > FEW_SLOTS, found = false;
+    LineSearch s = {line, few_forms, few_intervals, few_values, NULL, {0, 0, 0}};
+    bool more = slots > FEW_SLOTS, found = false, standard = line->method == LINE_STANDARD;
+    if (standard) s.standard = malloc((slots + 1) * sizeof *s.standard);
     if (more) {
         s.forms = malloc(slots * sizeof *s.forms);
         s.intervals = malloc(slots * sizeof *s.intervals);
         s.values = malloc(slots * sizeof *s.values);
     }
     to = fmin(to, FARTHEST);
-    if (s.forms && s.intervals && s.values)
+    if (s.forms && s.intervals && s.values && (s.standard || !standard))
         found = from < to && (line->sum ? line_search_lanes : line_search_halves)(&s, from, to, t, falling);
     if (work) work->bounds += s.work.bounds, work->values += s.work.values, work->unsettled += s.work.unsettled;
+    free(s.standard);
     if (more) {
         free(s.forms);
         free(s.intervals);

@@ -11,8 +11,8 @@
 
 struct NodeCache;
 
-/* How bounds are had: by intervals; by affine forms without and with the cut of equation 16. */
-typedef enum LineMethod { LINE_INTERVAL, LINE_AFFINE, LINE_AFFINE_OPTIMISED } LineMethod;
+/* How bounds are had: by intervals; by standard affine forms; by reduced ones without and with the cut of equation 16. */
+typedef enum LineMethod { LINE_INTERVAL, LINE_STANDARD, LINE_AFFINE, LINE_AFFINE_OPTIMISED } LineMethod;
 
 typedef struct Line {
     const Tape *tape;      /* of three inputs, the place, and one output */

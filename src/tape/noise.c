@@ -1,7 +1,7 @@
 /* Perlin, Improving noise, SIGGRAPH 2002. */
 #include "tape/noise.h"
 #include "tape/noise_interval.h"
-#include "tape/noise_taylor.h"
+#include "tape/noise_floats.h"
 #include "tape/tape_rows.h"
 
 #include "base/random.h"
@@ -32,16 +32,28 @@ static const double directions[16][4] = {{0, 1, 1, 0}, {0, -1, 1, 0}, {0, 1, -1,
                                          {0, 0, 1, 1}, {0, 0, -1, 1}, {0, 0, 1, -1}, {0, 0, -1, -1},
                                          {0, 1, 1, 0}, {0, 0, -1, 1}, {0, -1, 1, 0}, {0, 0, -1, -1}};
 
-static const double *direction(unsigned i) { return directions[hash(i) & 15]; }
+static const float float_directions[16][4] = {{0, 1, 1, 0}, {0, -1, 1, 0}, {0, 1, -1, 0}, {0, -1, -1, 0}, {0, 1, 0, 1}, {0, -1, 0, 1},
+                                              {0, 1, 0, -1}, {0, -1, 0, -1}, {0, 0, 1, 1}, {0, 0, -1, 1}, {0, 0, 1, -1}, {0, 0, -1, -1},
+                                              {0, 1, 1, 0}, {0, 0, -1, 1}, {0, -1, 1, 0}, {0, 0, -1, -1}};
 
-static void find_corners(const int32_t cell[3], LatticeCorners corners) {
+/* The directions of the eight corners, by their numbers. */
+static inline void hash_corners(const int32_t cell[3], unsigned corners[8]) {
     unsigned i = (unsigned)cell[0], j = (unsigned)cell[1], k = (unsigned)cell[2];
     unsigned near = hash(i) + j, far = hash(i + 1) + j;
     unsigned columns[4] = {hash(near) + k, hash(far) + k, hash(near + 1) + k, hash(far + 1) + k};
-    for (int c = 0; c < 4; c++) {
-        corners[c] = direction(columns[c]);
-        corners[c + 4] = direction(columns[c] + 1);
-    }
+    for (int c = 0; c < 4; c++) corners[c] = hash(columns[c]) & 15, corners[c + 4] = hash(columns[c] + 1) & 15;
+}
+
+static void find_corners(const int32_t cell[3], LatticeCorners corners) {
+    unsigned at[8];
+    hash_corners(cell, at);
+    for (int c = 0; c < 8; c++) corners[c] = directions[at[c]];
+}
+
+static inline void find_floats(const int32_t cell[3], FloatCorners corners) {
+    unsigned at[8];
+    hash_corners(cell, at);
+    for (int c = 0; c < 8; c++) corners[c] = float_directions[at[c]];
 }
 
 /* The lattice cell modulo 256, exact for doubles of any size; *fraction gets the place in the cell. */
@@ -78,6 +90,15 @@ static inline void fade_taylor(double t, double out[3]) {
 }
 
 void noise_perlin_taylor(const TaylorWay *way, TaylorTerms *out) { taylor_along(way, find_corners, fade_taylor, out); }
+
+static inline void fade_floats(const Floats *at, Floats out[3]) {
+    const Floats t = *at, back = 1 - t;
+    out[0] = t * t * t * (t * (t * 6 - 15) + 10);
+    out[1] = 30 * (t * t) * (back * back);
+    out[2] = 30 * t * back * (1 - 2 * t);
+}
+
+void noise_perlin_floats(const TaylorWay *way, FloatTerms *out) { floats_along(way, find_floats, fade_floats, out); }
 
 /* At a place of a cell each corner gives at most the sum of the two largest distances from it along the axes, times its weight.
  * The largest sum of the eight is 1.0363539 (test_tape_interval.c): NOISE_PERLIN_MOST. */

@@ -7,10 +7,16 @@
  *   random   the Mersenne twister MT19937 with its default seed 5489. */
 #include "tape/noise.h"
 #include "tape/noise_interval.h"
-#include "tape/noise_taylor.h"
+#include "tape/noise_floats.h"
 #include "tape/tape_rows.h"
 
 #include "tape/noise_pov_tables.inc"
+
+static const float float_weights[] = {
+#define WEIGHT(x) x##f
+#include "tape/noise_pov_weights.inc"
+#undef WEIGHT
+};
 
 enum { HASH_SIZE = 4096, LATTICE_ORIGIN = 10000 };
 
@@ -49,17 +55,23 @@ static inline Lattice lattice_at(Vec3 p) {
     return (Lattice){{i, j, k}, x, y, z, curve_at(x), curve_at(y), curve_at(z)};
 }
 
-/* The weights of the eight corners: hashed in x and y first, which the layers share. */
-static inline void find_corners(const unsigned cell[3], LatticeCorners corners) {
+/* Where the weights of the eight corners are: hashed in x and y first, which the layers share. */
+static inline void hash_corners(const unsigned cell[3], unsigned corners[8]) {
     unsigned mask = HASH_SIZE - 1, near = pov_hash[cell[0] & mask], far = pov_hash[(cell[0] + 1) & mask];
     unsigned y = cell[1] & mask, above = (cell[1] + 1) & mask, z = cell[2] & mask,
              behind = (cell[2] + 1) & mask;
     unsigned columns[4] = {pov_hash[near ^ y], pov_hash[far ^ y], pov_hash[near ^ above],
                            pov_hash[far ^ above]};
     for (int k = 0; k < 4; k++) {
-        corners[k] = &pov_weights[pov_hash[columns[k] ^ z] & 0xFF];
-        corners[k + 4] = &pov_weights[pov_hash[columns[k] ^ behind] & 0xFF];
+        corners[k] = pov_hash[columns[k] ^ z] & 0xFF;
+        corners[k + 4] = pov_hash[columns[k] ^ behind] & 0xFF;
     }
+}
+
+static inline void find_corners(const unsigned cell[3], LatticeCorners corners) {
+    unsigned at[8];
+    hash_corners(cell, at);
+    for (int k = 0; k < 8; k++) corners[k] = &pov_weights[at[k]];
 }
 
 /* The rows of another output are four numbers further. */
@@ -114,6 +126,27 @@ void noise_pov_taylor(const TaylorWay *way, TaylorTerms *out) {
         out->first[l] *= 0.48985582;
         out->second[l] *= 0.48985582;
     }
+}
+
+static inline void curve_floats(const Floats *at, Floats out[3]) {
+    const Floats t = *at;
+    out[0] = t * t * (3 - 2 * t);
+    out[1] = 6 * t * (1 - t);
+    out[2] = 3 - 6 * t;
+}
+
+static inline void find_floats(const int32_t cell[3], FloatCorners corners) {
+    unsigned moved[3], at[8];
+    for (int k = 0; k < 3; k++) moved[k] = (unsigned)cell[k] + LATTICE_ORIGIN;
+    hash_corners(moved, at);
+    for (int k = 0; k < 8; k++) corners[k] = &float_weights[at[k]];
+}
+
+void noise_pov_floats(const TaylorWay *way, FloatTerms *out) {
+    floats_along(way, find_floats, curve_floats, out);
+    out->value = (out->value + 1.05242f) * 0.48985582f;
+    out->first *= 0.48985582f;
+    out->second *= 0.48985582f;
 }
 
 void row_POV_NOISE(double *restrict out, const double *restrict a, const double *restrict b,

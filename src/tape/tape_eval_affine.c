@@ -17,20 +17,9 @@ static bool affine_call(const TapeCall *call_, const AffineForm *slots, AffineFo
 #define BOUND_NAMED(name) affine_##name
 #include "tape/tape_bounds.inc"
 
-AffineForm tape_apply_affine(TapeOp op, AffineForm a, AffineForm b, AffineForm c) {
-    AffineForm slots[4] = {a, b, c, affine_unknown(true)};
-    TapeStep step = {(uint32_t)op, 3, 0, 1, 2};
-    Tape tape = {.step_count = 1, .steps = &step};
-    walk(&tape, slots);
-    return slots[3];
-}
+AffineForm tape_apply_affine(TapeOp op, AffineForm a, AffineForm b, AffineForm c) { return apply(op, a, b, c); }
 
-void tape_eval_affine(const Tape *tape, const AffineForm *in, AffineForm *out, AffineForm *scratch) {
-    for (uint32_t k = 0; k < tape->input_count; k++) scratch[k] = in[k];
-    load_constants(tape, scratch);
-    walk(tape, scratch);
-    for (uint32_t k = 0; k < tape->output_count; k++) out[k] = scratch[tape->output_slots[k]];
-}
+void tape_eval_affine(const Tape *tape, const AffineForm *in, AffineForm *out, AffineForm *scratch) { evaluate(tape, in, out, scratch); }
 
 bool tape_has_forms(const Tape *tape) {
     for (size_t i = 0; i < tape->call_count; i++)

@@ -17,20 +17,9 @@ static bool interval_call(const TapeCall *call_, const Interval *slots, Interval
 #define BOUND_NAMED(name) interval_##name
 #include "tape/tape_bounds.inc"
 
-Interval tape_apply_interval(TapeOp op, Interval a, Interval b, Interval c) {
-    Interval slots[4] = {a, b, c, interval_never()};
-    TapeStep step = {(uint32_t)op, 3, 0, 1, 2};
-    Tape tape = {.step_count = 1, .steps = &step};
-    walk(&tape, slots);
-    return slots[3];
-}
+Interval tape_apply_interval(TapeOp op, Interval a, Interval b, Interval c) { return apply(op, a, b, c); }
 
-void tape_eval_interval(const Tape *tape, const Interval *in, Interval *out, Interval *scratch) {
-    for (uint32_t k = 0; k < tape->input_count; k++) scratch[k] = in[k];
-    load_constants(tape, scratch);
-    walk(tape, scratch);
-    for (uint32_t k = 0; k < tape->output_count; k++) out[k] = scratch[tape->output_slots[k]];
-}
+void tape_eval_interval(const Tape *tape, const Interval *in, Interval *out, Interval *scratch) { evaluate(tape, in, out, scratch); }
 
 bool tape_is_bounded(const Tape *tape) {
     for (size_t i = 0; i < tape->call_count; i++)

@@ -2,7 +2,7 @@
  * others go lane by lane through affine.h. */
 #include "tape/tape_lanes.h"
 
-#include "tape/noise.h"
+#include "tape/affine_noise.h"
 #include "tape/tape_affine.h"
 #include "tape/tape_program.h"
 
@@ -79,10 +79,6 @@ static void loop(const Tape *tape, const TapeLoop *loop_, const TapeStep *step, 
     }
 }
 
-static const NoiseBounds perlin = {-NOISE_PERLIN_MOST,     NOISE_PERLIN_MOST,  NOISE_PERLIN_STEEPEST,
-                                   NOISE_PERLIN_CURVATURE, NOISE_PERLIN_THIRD, 0, false};
-static const NoiseBounds pov = {0, 1, NOISE_POV_STEEPEST, NOISE_POV_CURVATURE, NOISE_POV_THIRD, NOISE_POV_JUMP, true};
-
 static void general(const Tape *tape, const TapeStep *step, AffineLanes *slots) {
     int arity = tape_op_arity((TapeOp)step->op);
     for (int l = 0; l < AFFINE_LANES; l++) {
@@ -128,13 +124,12 @@ static void divide(const Tape *tape, const TapeStep *step, AffineLanes *slots) {
         general(tape, step, slots);
 }
 
-static void noise(const Tape *tape, const TapeStep *step, AffineLanes *slots, NoiseTaylor *along,
-                  const NoiseBounds *known) {
+static void noise(const Tape *tape, const TapeStep *step, AffineLanes *slots, NoiseKind kind) {
     AffineLanes filled[3];
     const AffineLanes *p[3] = {operand(tape, slots, step->a, &filled[0]),
                                operand(tape, slots, step->b, &filled[1]),
                                operand(tape, slots, step->c, &filled[2])};
-    affine_noise_lanes(&slots[step->dst], p, along, known);
+    affine_noise_lanes(&slots[step->dst], p, kind);
 }
 
 static void walk(const Tape *tape, AffineLanes *slots, struct NodeCache *cells) {
@@ -147,8 +142,8 @@ static void walk(const Tape *tape, AffineLanes *slots, struct NodeCache *cells) 
         case TAPE_NEG: affine_neg_lanes(&slots[step->dst], &slots[step->a]); break;
         case TAPE_SQR: affine_sqr_lanes(&slots[step->dst], &slots[step->a]); break;
         case TAPE_SQRT: affine_sqrt_lanes(&slots[step->dst], &slots[step->a]); break;
-        case TAPE_PERLIN: noise(tape, step, slots, noise_perlin_taylor, &perlin); break;
-        case TAPE_POV_NOISE: noise(tape, step, slots, noise_pov_taylor, &pov); break;
+        case TAPE_PERLIN: noise(tape, step, slots, NOISE_IS_PERLIN); break;
+        case TAPE_POV_NOISE: noise(tape, step, slots, NOISE_IS_POV); break;
         case TAPE_CALL: call(tape, &tape->calls[step->c], slots, cells); break;
         case TAPE_SUM:
         case TAPE_PROD:

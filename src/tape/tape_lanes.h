@@ -2,9 +2,9 @@
 #ifndef VTS_TAPE_TAPE_LANES_H
 #define VTS_TAPE_TAPE_LANES_H
 
+#include "base/vec.h"
 #include "tape/affine_lanes.h"
 #include "tape/tape.h"
-
 
 /* As tape_eval_affine(), for every lane; lanes of which nothing is known have an error that is not below infinity. The tape has one
  * output. The scratch has tape_scratch_size() lanes. */
@@ -23,6 +23,7 @@ typedef struct TapeTerm {
     /* What stands for it where it is finer than the width of what looks (tape_detail.h): from one width on less of it, from the other
      * on only its mean. Infinite: it stays. */
     double mean, full, gone;
+    const struct TapeNoise *noise; /* it is one of a linear function of the place (tape_noise.h); or NULL */
 } TapeTerm;
 
 typedef struct TapeSum {
@@ -49,7 +50,7 @@ typedef struct TapeSettled {
     double size[AFFINE_LANES]; /* of what was added up to it */
 } TapeSettled;
 
-enum { TAPE_SETTLED_MOST = 24 };
+enum { TAPE_SETTLED_MOST = 24, TAPE_TERMS_MOST = 96 };
 
 /* Bounds of the terms one by one. */
 typedef struct TapeEach {
@@ -57,8 +58,18 @@ typedef struct TapeEach {
     AffineLanes of[TAPE_SETTLED_MOST];
 } TapeEach;
 
-/* The same where `settled` stands for some of the terms; *each gets the others that were evaluated. `cells` as above. */
-size_t tape_sum_rest(const TapeSum *sum, double level, const AffineLanes *width, const TapeSettled *settled, AffineLanes *restrict out,
-                     TapeEach *restrict each, AffineLanes *restrict scratch, struct NodeCache *cells);
+/* The pieces that the forms in the scratch are those of, for terms that need no more: middle ± half of a line from a place along a
+ * direction. */
+typedef struct TapePieces {
+    const double *middle, *half;
+    const struct TapeNoiseWay *ways; /* of the terms by their numbers, made by tape_sum_begin() */
+} TapePieces;
+
+/* ways[k] for the terms that are noises; there is room for sum->count. */
+void tape_sum_begin(const TapeSum *sum, Vec3 origin, Vec3 direction, struct TapeNoiseWay *ways);
+
+/* The same where `settled` stands for some of the terms; *each gets the others that were evaluated, unless it is NULL. `pieces`: or NULL. `cells` as above. */
+size_t tape_sum_rest(const TapeSum *sum, double level, const AffineLanes *width, const TapeSettled *settled, const TapePieces *pieces,
+                     AffineLanes *restrict out, TapeEach *restrict each, AffineLanes *restrict scratch, struct NodeCache *cells);
 
 #endif

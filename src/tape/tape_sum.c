@@ -3,10 +3,9 @@
 #include "tape/tape_detail.h"
 #include "tape/tape_interval.h"
 #include "tape/tape_lanes.h"
+#include "tape/tape_noise.h"
 
 #include <stdlib.h>
-
-enum { MOST_TERMS = 96 };
 
 typedef struct Part {
     TapeRef node;
@@ -15,7 +14,7 @@ typedef struct Part {
 
 typedef struct Split {
     const Tape *tape;
-    Part parts[MOST_TERMS];
+    Part parts[TAPE_TERMS_MOST];
     size_t count;
     double constant;
     bool failed;
@@ -46,7 +45,7 @@ static void split(Split *s, TapeRef ref, double scale, int depth) {
         split(s, node->a, scale / k, depth + 1);
     } else if (constant_of(s->tape, ref, &k)) {
         s->constant += scale * k;
-    } else if (s->count < MOST_TERMS) {
+    } else if (s->count < TAPE_TERMS_MOST) {
         s->parts[s->count++] = (Part){ref, scale};
     } else {
         s->failed = true;
@@ -126,7 +125,7 @@ static double most_of(const Tape *tape, const Interval *box, Arena *arena) {
 static double rounding_of(const Split *s, const size_t *group, size_t which, const Interval *box, Arena *arena) {
     ArenaMark mark = arena_mark(arena);
     double size = 0, scale;
-    size_t count = 0, alone[MOST_TERMS];
+    size_t count = 0, alone[TAPE_TERMS_MOST];
     for (size_t k = 0; k < s->count; k++) count += group[k] == which, alone[k] = k;
     for (size_t k = which; k < s->count && count > 1; k++)
         if (group[k] == which) size += fabs(s->parts[k].scale) * most_of(tape_of(s, alone, k, &scale, arena), box, arena);
@@ -176,7 +175,7 @@ TapeSum tape_sum_of(const Tape *tape, const Interval *box, Arena *arena) {
     split(&s, tape->outputs[0], 1, 0);
     TapeTerm *terms = arena_new_array(arena, TapeTerm, s.count + 1);
     double work = 0;
-    size_t group[MOST_TERMS], count = 0;
+    size_t group[TAPE_TERMS_MOST], count = 0;
     if (!s.failed) find_groups(&s, group, arena);
     for (size_t k = 0; k < s.count && !s.failed; k++) {
         if (group[k] != k) continue;
@@ -194,6 +193,7 @@ TapeSum tape_sum_of(const Tape *tape, const Interval *box, Arena *arena) {
     TapeSum sum = {.terms = terms, .count = s.count, .constant = s.constant, .scratch_size = (size_t)tape_input_count(tape)};
     for (size_t k = 0; k < s.count; k++) {
         find_range(&terms[k], box, arena);
+        terms[k].noise = tape_noise_of(terms[k].tape, arena);
         sum.scratch_size = size_max(sum.scratch_size, tape_scratch_size(terms[k].tape));
     }
     qsort(terms, s.count, sizeof *terms, wider_first);
@@ -207,7 +207,8 @@ typedef struct Total {
 } Total;
 
 static void begin(Total *restrict total, const TapeSettled *settled, double constant, double size) {
-    AFFINE_EACH_LANE total->centre[l] = constant, total->slope[l] = total->error[l] = 0, total->size[l] = size;
+    /* An error of 0 would make compilers fill it with the slopes, by an instruction that takes its time. */
+    AFFINE_EACH_LANE total->centre[l] = constant, total->slope[l] = 0, total->error[l] = 0x1p-1000, total->size[l] = size;
     if (!settled || settled->terms == 0) return;
     AFFINE_EACH_LANE {
         total->centre[l] += settled->centre[l], total->slope[l] = settled->slope[l], total->error[l] = settled->error[l];
@@ -252,14 +253,28 @@ static Look look_of(const AffineLanes *width) {
     return look;
 }
 
+void tape_sum_begin(const TapeSum *sum, Vec3 origin, Vec3 direction, TapeNoiseWay *ways) {
+    for (size_t k = 0; k < sum->count; k++)
+        if (sum->terms[k].noise) ways[k] = tape_noise_along(sum->terms[k].noise, origin, direction);
+}
+
+static const AffineLanes *whole_term(const TapeSum *sum, size_t k, const TapePieces *pieces, AffineLanes *scratch, AffineLanes *filled, struct NodeCache *cells) {
+    const TapeTerm *term = &sum->terms[k];
+    if (!pieces || !term->noise) return tape_eval_lanes_again(term->tape, scratch, filled, cells);
+    tape_noise_lanes(term->noise, &pieces->ways[k], pieces->middle, pieces->half, filled);
+    return filled;
+}
+
 /* What remains of a term, before its scale: mean + share·(term − mean). */
-static const AffineLanes *seen_term(const TapeTerm *term, const Look *look, AffineLanes *scratch, AffineLanes *filled, struct NodeCache *cells) {
-    if (!(look->widest > term->full)) return tape_eval_lanes_again(term->tape, scratch, filled, cells);
+static const AffineLanes *seen_term(const TapeSum *sum, size_t k, const Look *look, const TapePieces *pieces, AffineLanes *scratch,
+                                    AffineLanes *filled, struct NodeCache *cells) {
+    const TapeTerm *term = &sum->terms[k];
+    if (!(look->widest > term->full)) return whole_term(sum, k, pieces, scratch, filled, cells);
     AffineForm mean = affine_point(term->mean / term->scale);
     affine_fill_lanes(filled, mean.centre);
     if (look->narrowest >= term->gone) return filled;
     AffineLanes constant;
-    const AffineLanes *whole = tape_eval_lanes_again(term->tape, scratch, &constant, cells);
+    const AffineLanes *whole = whole_term(sum, k, pieces, scratch, &constant, cells);
     AFFINE_EACH_LANE {
         AffineForm part = affine_MUL(tape_term_share(term, affine_lane(look->width, l)), affine_SUB(affine_lane(whole, l), mean));
         affine_set_lane(filled, l, affine_ADD(mean, part));
@@ -269,7 +284,7 @@ static const AffineLanes *seen_term(const TapeTerm *term, const Look *look, Affi
 
 /* What terms from k on may add, those that are settled left out. */
 typedef struct Rest {
-    double middle[MOST_TERMS + 1], half[MOST_TERMS + 1];
+    double middle[TAPE_TERMS_MOST + 1], half[TAPE_TERMS_MOST + 1];
 } Rest;
 
 static bool is_settled(const TapeSettled *settled, size_t k) { return settled && k < TAPE_SETTLED_MOST && (settled->terms >> k & 1); }
@@ -283,8 +298,8 @@ static void find_rest(const TapeSum *sum, const TapeSettled *settled, Rest *rest
     }
 }
 
-size_t tape_sum_rest(const TapeSum *sum, double level, const AffineLanes *width, const TapeSettled *settled, AffineLanes *restrict out,
-                     TapeEach *restrict each, AffineLanes *restrict scratch, struct NodeCache *cells) {
+size_t tape_sum_rest(const TapeSum *sum, double level, const AffineLanes *width, const TapeSettled *settled, const TapePieces *pieces,
+                     AffineLanes *restrict out, TapeEach *restrict each, AffineLanes *restrict scratch, struct NodeCache *cells) {
     const Look look = look_of(width);
     Total total;
     Rest own;
@@ -293,13 +308,13 @@ size_t tape_sum_rest(const TapeSum *sum, double level, const AffineLanes *width,
     AffineLanes filled, spare;
     size_t k = 0;
     if (settled && settled->terms) find_rest(sum, settled, &own), middles = own.middle, halves = own.half;
-    each->terms = 0;
+    if (each) each->terms = 0;
     begin(&total, settled, sum->constant - level, fabs(sum->constant) + fabs(level));
     for (bool first = middles == sum->rest_middle; k < sum->count && (first || !all_decided(&total, middles[k], halves[k])); k++) {
         const TapeTerm *term = &sum->terms[k];
         if (is_settled(settled, k)) continue;
-        bool kept = k < TAPE_SETTLED_MOST;
-        add_scaled(&total, seen_term(term, &look, scratch, &filled, cells), term->scale, term->rounding, kept ? &each->of[k] : &spare);
+        bool kept = each && k < TAPE_SETTLED_MOST;
+        add_scaled(&total, seen_term(sum, k, &look, pieces, scratch, &filled, cells), term->scale, term->rounding, kept ? &each->of[k] : &spare);
         if (kept) each->terms |= (uint32_t)1 << k;
         first = false;
     }
@@ -314,6 +329,5 @@ size_t tape_sum_rest(const TapeSum *sum, double level, const AffineLanes *width,
 }
 
 size_t tape_sum_lanes(const TapeSum *sum, double level, const AffineLanes *width, AffineLanes *restrict out, AffineLanes *restrict scratch) {
-    TapeEach each;
-    return tape_sum_rest(sum, level, width, NULL, out, &each, scratch, NULL);
+    return tape_sum_rest(sum, level, width, NULL, NULL, out, NULL, scratch, NULL);
 }

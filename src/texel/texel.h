@@ -78,6 +78,7 @@ typedef struct TexelBuildOptions {
     const Progress *progress; /* may be NULL */
     const char *name;    /* for progress */
     const TexelField *field; /* besides the triangles, or instead of them; NULL */
+    struct LayerViews *views; /* of one of several layers: room for what voxel_layers_join() (voxel_trim.h) wants to know; NULL: the layer stands alone */
 } TexelBuildOptions;
 
 /* Builds a layer's pyramid down to one voxel along the longest side. Deterministic for any number of threads. NULL when
@@ -101,6 +102,9 @@ void voxel_layer_size(const VoxelLayer *layer, int level, int size[3]);
 bool voxel_layer_sample(const VoxelLayer *layer, int level, Vec3f p, VoxelSample *out);
 /* Between the levels around `lod` (0 = finest; clamped to the range of levels), quadrilinear. */
 bool voxel_layer_sample_lod(const VoxelLayer *layer, float lod, Vec3f p, VoxelSample *out);
+/* Of the stored voxels of a level around p that are read there the one that counts most: its number in the level, below voxel_layer_voxels(), and its
+ * middle. False where nothing is. */
+bool voxel_layer_nearest(const VoxelLayer *layer, int level, Vec3f p, uint32_t *voxel, Vec3f *middle);
 /* A length along the unit direction d from p (p inside the extent) over which voxel_layer_sample_lod(lod) is certainly
  * empty; 0 when it may not be. Never larger than `limit`. */
 float voxel_layer_skip(const VoxelLayer *layer, float lod, Vec3f p, Vec3f d, float limit);

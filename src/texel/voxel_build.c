@@ -1,7 +1,7 @@
 #include "texel/voxel_pyramid.h"
 
 #include "base/stopwatch.h"
-#include "texel/voxel_trim.h"
+#include "texel/layer_views.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -246,7 +246,10 @@ VoxelLayer *voxel_layer_build(const TexelMesh *mesh, const TexelBuildOptions *op
         voxel_layer_destroy(b.layer);
         return NULL;
     }
-    voxel_layer_trim(b.layer, mesh, options->extent, options->pool);
+    LayerViews *views = options->views ? options->views : malloc(sizeof *views); /* without room it is neither trimmed nor paired */
+    if (views) voxel_layer_trim(b.layer, mesh, options->extent, views, options->pool);
+    if (views && !options->views) voxel_layers_join(&b.layer, &views, 1, options->extent, options->pool);
+    if (!options->views) free(views);
     if (stats) fill_stats(b.layer, stopwatch_wall() - start, stats);
     return b.layer;
 }

@@ -8,8 +8,8 @@
 enum { BRICK_SIDE = 8, BRICK_VOXELS = 512 };
 /* Levels of up to 8 voxels, and directions each way, for which it is known how much they have to be trimmed. */
 enum { TRIM_LEVELS = 7, TRIM_NODES = 9 };
-/* Every other of those directions, in pairs. */
-enum { PAIR_SIDE = (TRIM_NODES + 1) / 2, PAIR_NODES = PAIR_SIDE * PAIR_SIDE };
+/* Directions that are looked along in pairs: the zenith, and rings of so many below it. */
+enum { PAIR_RINGS = 4, PAIR_RING = 8, PAIR_NODES = 1 + PAIR_RINGS * PAIR_RING };
 
 /* Voxel (x, y, z) is stored if bit 8·y + x of slice[z] is set; its code is then
  * codes[first[z] + number of lower bits set in the slice]. */
@@ -58,6 +58,7 @@ typedef struct VoxelPairs {
     float lit[PAIR_NODES * PAIR_NODES]; /* by direction to the eye, then to the light; below 0: not known */
     float spot;                         /* difference of slopes over which gaps forget each other; 0: not known */
     uint8_t matter[TRIM_LEVELS][PAIR_NODES * PAIR_NODES], ground[TRIM_LEVELS][PAIR_NODES * PAIR_NODES]; /* powers: voxel_lit.h */
+    uint8_t facing[2][TRIM_LEVELS][PAIR_NODES * PAIR_NODES]; /* factors: voxel_lit.h */
 } VoxelPairs;
 
 struct VoxelLayer {

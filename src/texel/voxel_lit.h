@@ -2,29 +2,42 @@
  *
  * Between a place that is seen and the light, voxels know how much matter there is on the mean; of the places in a voxel it is those that the eye
  * sees. At each coarse level the light on them is taken to a power, for pairs of directions to the eye and to the light, such that its mean over all
- * that is seen is what the triangles say (voxel_pairs.h). */
+ * that is seen is what the triangles say (voxel_pairs.h). Likewise the normals that voxels know are those of all matter that faces the eye, of which other
+ * matter hides some, not all alike: of a bough the eye sees the upper side and the tips. What light makes of either side of them gets a factor. */
 #ifndef VTS_TEXEL_VOXEL_LIT_H
 #define VTS_TEXEL_VOXEL_LIT_H
 
 #include "texel/voxel_pairs.h"
 
-/* What the triangles of a layer say. */
+/* What the triangles of all layers say. */
 typedef struct LitTruth {
     const PairView *views; /* PAIR_NODES, of which voxel_layer_pair() has made pairs.lit */
     int grid;
+    const PairShade *shades; /* what voxel_layer_pair() told */
     float lit_beside;      /* pair_lit_beside() */
     float open_beside;     /* pair_open_beside() */
     size_t triangles;
 } LitTruth;
 
-/* Sets the powers of layer->pairs for the `levels` coarsest levels. The layer is trimmed, and its pairs are known. False if the pool was cancelled. */
-bool voxel_layer_find_powers(VoxelLayer *layer, const LitTruth *truth, Vec3f extent, int levels, Pool *pool);
-/* 1 throughout. */
+/* Layers that stand among each other, of one size and resolution. */
+typedef struct LitLayers {
+    const VoxelLayer *const *layers;
+    size_t count;
+    Vec3f extent;
+} LitLayers;
+
+/* Sets the powers and factors of layer->pairs for the `levels` coarsest levels, by what the voxels of all layers hide. They are trimmed, and the pairs of `layer` are known.
+ * False if the pool was cancelled. */
+bool voxel_layer_find_powers(VoxelLayer *layer, const LitTruth *truth, const LitLayers *among, int levels, Pool *pool);
+/* All 1. */
 void voxel_layer_forget_powers(VoxelLayer *layer);
 
-/* Directions of texel space, of any length, to the eye and to the light: the powers for light on matter, found with voxels of the level `lod`, and for
- * that on the ground under the layer. > 0. */
+/* Directions of texel space, of any length, to the eye and to the light: the powers for light on matter, found with voxels of the level `lod`, which may be
+ * coarser than the coarsest, and for that on the ground under the layer. > 0. */
 float voxel_layer_matter_power(const VoxelLayer *layer, float lod, Vec3f to_eye, Vec3f to_light);
 float voxel_layer_ground_power(const VoxelLayer *layer, float lod, Vec3f to_eye, Vec3f to_light);
+/* How much more or less than by the normals of the voxels the light makes of matter that is seen with voxels of the level `lod`: on the side towards the
+ * eye, and on the other. > 0. */
+void voxel_layer_facing(const VoxelLayer *layer, float lod, Vec3f to_eye, Vec3f to_light, float factor[2]);
 
 #endif

@@ -2,10 +2,13 @@
 
 #include "texel/voxel_lit.h"
 
-/* A surface meets its own picture on the grid at heights that differ by some of the grid's sides. */
-static const float OWN_HEIGHT = 1, MOST_OWN_HEIGHT = 3;
+#include <stdlib.h>
+
+/* A surface meets its own picture on the grid beside the place that is asked for, up or down its slope by so many of the grid's sides at most; and its
+ * heights are known to a part of one. */
+static const float MOST_OWN = 3, LEAST_OWN = 0.05f;
 /* Every so many places, along both axes, matter is asked whether it is lit. */
-enum { LIT_STRIDE = 2 };
+enum { LIT_STRIDE = 3 };
 /* Widths of the spot are held below this. */
 static const float WIDEST_SPOT = 2;
 
@@ -52,76 +55,158 @@ static int wrapped(float place, int places) {
     return (whole - ((float)whole > middle)) & (places - 1);
 }
 
-/* The share of what `eye` sees that lies open to `light`: in its view nothing is higher at the same place. Of every `step`th place each way. */
-static float lit_share_of(const PairView *eye, const PairView *light, int grid, const float size[2], int step) {
-    float cell_x = (float)step * size[0] / (float)grid, cell_z = (float)step * size[1] / (float)grid,
-          flat = sqrtf(light->slope_x * light->slope_x + light->slope_z * light->slope_z);
-    float own = float_max(cell_x, cell_z) * float_min(OWN_HEIGHT * (1 + 1 / (flat + 1e-3f)), MOST_OWN_HEIGHT);
+/* What is seen, and what of it is lit; by sides as PairShade. */
+typedef struct LitSums {
+    int seen, lit;
+    float facing[2], lit_facing[2];
+} LitSums;
+
+/* A direction as (slope, 1, slope), times a normal. */
+static float along(const PairView *v, const ViewNormal *n) { return (float)n->x * v->slope_x + (float)n->y + (float)n->z * v->slope_z; }
+
+static void add_place(LitSums *sums, float to_eye, float to_light, bool is_lit) {
+    int side = (to_eye < 0) != (to_light < 0);
+    sums->seen++;
+    sums->lit += is_lit;
+    sums->facing[side] += fabsf(to_light);
+    sums->lit_facing[side] += is_lit ? fabsf(to_light) : 0;
+}
+
+/* By how much the height of a plane with normal n differs at a place that lies x and z beside another. */
+static float own_height(const ViewNormal *n, float to_light, float x, float z, float cell) {
+    float level = -((float)n->x * x + (float)n->z * z), most = MOST_OWN * cell;
+    return fabsf(level) < most * fabsf(to_light) ? level / to_light : most;
+}
+
+/* What `eye` sees lies open to `light` where in its view nothing is higher at the same place. */
+static LitSums lit_sums(const PairView *eye, const PairView *light, int grid, const float size[2]) {
+    float cell_x = size[0] / (float)grid, cell_z = size[1] / (float)grid, cell = float_max(cell_x, cell_z);
     float x_per = (eye->slope_x - light->slope_x) / cell_x, z_per = (eye->slope_z - light->slope_z) / cell_z;
-    int seen = 0, lit = 0, places = grid / step;
-    for (int row = 0; row < places; row += LIT_STRIDE)
-        for (int column = row / LIT_STRIDE % LIT_STRIDE; column < places; column += LIT_STRIDE) {
-            float height = eye->top[step * (row * grid + column)];
+    LitSums sums = {0};
+    for (int row = 0; row < grid; row += LIT_STRIDE)
+        for (int column = row / LIT_STRIDE % LIT_STRIDE; column < grid; column += LIT_STRIDE) {
+            int at = row * grid + column;
+            float height = eye->top[at];
             if (height < 0) continue;
-            int x = wrapped((float)column + height * x_per, places), z = wrapped((float)row + height * z_per, places);
-            seen++;
-            lit += light->top[step * (z * grid + x)] <= height + own;
+            float x = (float)column + height * x_per, z = (float)row + height * z_per;
+            const ViewNormal *n = &eye->normal[at];
+            float to_light = along(light, n), own = own_height(n, to_light, (floorf(x + 0.5f) - x) * cell_x, (floorf(z + 0.5f) - z) * cell_z, cell);
+            add_place(&sums, along(eye, n), to_light, light->top[wrapped(z, grid) * grid + wrapped(x, grid)] <= height + own + LEAST_OWN * cell);
         }
-    return seen ? (float)lit / (float)seen : 1;
+    return sums;
 }
 
-/* What lies within `own` of the surface shades nothing: the error falls as the cells do, and with every other place is twice as large. */
-static float lit_share(const PairView *eye, const PairView *light, int grid, const float size[2]) {
-    float fine = lit_share_of(eye, light, grid, size, 1), coarse = lit_share_of(eye, light, grid, size, 2);
-    return float_clamp(2 * fine - coarse, 0, 1);
+/* A bit for each of 64 places from `at` on where nothing is seen. */
+static uint64_t open_places(const PairView *v, int at) {
+    uint64_t bits = 0;
+    for (int i = 0; i < 64; i++) bits |= (uint64_t)(v->top[at + i] < 0) << i;
+    return bits;
 }
 
-float pair_open(const PairView *eye, const PairView *light, int grid) {
-    int seen = 0, lit = 0;
-    for (int i = 0; i < grid * grid; i++) {
-        seen += eye->top[i] < 0;
-        lit += eye->top[i] < 0 && light->top[i] < 0;
+bool pair_opens(const PairView *views, int count, int grid, float *open) {
+    int words = grid * grid / 64;
+    uint64_t *bits = malloc((size_t)(count * words) * sizeof *bits);
+    for (int i = 0; bits && i < count * words; i++) bits[i] = open_places(&views[i / words], i % words * 64);
+    for (int pair = 0; bits && pair < count * count; pair++) {
+        const uint64_t *eye = bits + (size_t)(pair / count * words), *light = bits + (size_t)(pair % count * words);
+        uint32_t seen = 0, both = 0;
+        for (int i = 0; i < words; i++) seen += count_bits(eye[i]), both += count_bits(eye[i] & light[i]);
+        open[pair] = seen ? (float)both / (float)seen : -1;
     }
-    return seen ? (float)lit / (float)seen : -1;
+    free(bits);
+    return bits != NULL;
+}
+
+static float share_of(float part, float whole) { return whole > 0 ? part / whole : 1; }
+
+static PairShade pair_shade(const PairView *eye, const PairView *light, int grid, const float size[2]) {
+    LitSums sums = lit_sums(eye, light, grid, size);
+    float unit = 127 * sqrtf(1 + light->slope_x * light->slope_x + light->slope_z * light->slope_z) * (float)int_max(sums.seen, 1);
+    PairShade out = {.all = share_of((float)sums.lit, (float)sums.seen)};
+    for (int side = 0; side < 2; side++) {
+        out.facing[side] = sums.facing[side] / unit;
+        out.lit[side] = share_of(sums.lit_facing[side], sums.facing[side]);
+    }
+    return out;
+}
+
+float pair_lit_beside(const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid, const float size[2]) {
+    float sum = 0;
+    for (int i = 0; i < SPOT_GROUPS * SPOT_VIEWS; i++)
+        if (i % SPOT_VIEWS) sum += pair_shade(&views[i - i % SPOT_VIEWS], &views[i], grid, size).all + pair_shade(&views[i], &views[i - i % SPOT_VIEWS], grid, size).all;
+    return sum / (2 * SPOT_GROUPS * (SPOT_VIEWS - 1));
+}
+
+float pair_open_beside(const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid) {
+    float open[SPOT_VIEWS * SPOT_VIEWS], sum = 0;
+    int count = 0;
+    for (int i = 0; i < SPOT_GROUPS; i++) {
+        if (!pair_opens(views + i * SPOT_VIEWS, SPOT_VIEWS, grid, open)) return -1;
+        for (int k = 1; k < SPOT_VIEWS; k++)
+            if (open[k] >= 0) sum += open[k], count++;
+    }
+    return count ? sum / (float)count : -1;
+}
+
+/* ---- directions ---- */
+
+/* Of the rings, heights above the horizon, degrees. */
+static const float RING_HEIGHT[1 + PAIR_RINGS] = {90, 55, 32, 17, 8};
+
+static float radians_of(float degrees) { return degrees * (float)(VTS_PI / 180); }
+
+Vec3f pair_direction(int node) {
+    float up = radians_of(RING_HEIGHT[(node + PAIR_RING - 1) / PAIR_RING]), around = (float)(2 * VTS_PI / PAIR_RING) * (float)((node + PAIR_RING - 1) % PAIR_RING);
+    return vec3f(cosf(up) * cosf(around), sinf(up), cosf(up) * sinf(around));
+}
+
+static int node_of(int ring, int around) { return ring > 0 ? 1 + (ring - 1) * PAIR_RING + (around & (PAIR_RING - 1)) : 0; }
+
+int pair_neighbours(int node, int out[PAIR_MOST_NEIGHBOURS]) {
+    int ring = (node + PAIR_RING - 1) / PAIR_RING, around = (node + PAIR_RING - 1) % PAIR_RING, count = 0;
+    for (int i = 0; i < PAIR_RING && ring == 0; i++) out[count++] = node_of(1, i);
+    if (ring == 0) return count;
+    out[count++] = node_of(ring, around + 1);
+    out[count++] = node_of(ring, around - 1);
+    out[count++] = node_of(ring - 1, around);
+    if (ring < PAIR_RINGS) out[count++] = node_of(ring + 1, around);
+    return count;
 }
 
 /* Where eye and light look along one line all that is seen is lit; but a few degrees beside it that is over, far less than the way to the next node: the
  * entry gets the mean of those around it. */
 static void flatten_peak(float *table) {
     for (int node = 0; node < PAIR_NODES; node++) {
-        int column = node % PAIR_SIDE, row = node / PAIR_SIDE, count = 0;
+        int around[PAIR_MOST_NEIGHBOURS], count = pair_neighbours(node, around);
         float sum = 0;
-        for (int i = 0; i < 4; i++) {
-            int x = column + (i == 0) - (i == 1), z = row + (i == 2) - (i == 3), other = z * PAIR_SIDE + x;
-            if (x < 0 || x >= PAIR_SIDE || z < 0 || z >= PAIR_SIDE) continue;
-            sum += table[node * PAIR_NODES + other] + table[other * PAIR_NODES + node];
-            count += 2;
-        }
-        table[node * PAIR_NODES + node] = sum / (float)count;
+        for (int i = 0; i < count; i++) sum += table[node * PAIR_NODES + around[i]] + table[around[i] * PAIR_NODES + node];
+        table[node * PAIR_NODES + node] = sum / (float)(2 * count);
     }
 }
 
-float pair_lit_beside(const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid, const float size[2]) {
-    float sum = 0;
-    for (int i = 0; i < SPOT_GROUPS * SPOT_VIEWS; i++)
-        if (i % SPOT_VIEWS) sum += lit_share(&views[i - i % SPOT_VIEWS], &views[i], grid, size) + lit_share(&views[i], &views[i - i % SPOT_VIEWS], grid, size);
-    return sum / (2 * SPOT_GROUPS * (SPOT_VIEWS - 1));
-}
+typedef struct PairWork {
+    VoxelLayer *layer;
+    const PairView *views;
+    int grid;
+    const float *size;
+    PairShade *shades;
+} PairWork;
 
-float pair_open_beside(const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid) {
-    float sum = 0;
-    int count = 0;
-    for (int i = 0; i < SPOT_GROUPS * SPOT_VIEWS; i++) {
-        float open = i % SPOT_VIEWS ? pair_open(&views[i - i % SPOT_VIEWS], &views[i], grid) : -1;
-        if (open >= 0) sum += open, count++;
+static void pair_with_all(void *context, size_t eye, int worker) {
+    const PairWork *work = context;
+    (void)worker;
+    for (size_t light = 0; light < PAIR_NODES; light++) {
+        PairShade *shade = &work->shades[eye * PAIR_NODES + light];
+        *shade = pair_shade(&work->views[eye], &work->views[light], work->grid, work->size);
+        work->layer->pairs.lit[eye * PAIR_NODES + light] = shade->all;
     }
-    return count ? sum / (float)count : -1;
 }
 
-void voxel_layer_pair(VoxelLayer *layer, const PairView views[PAIR_NODES], int grid, const float size[2]) {
-    for (int a = 0; a < PAIR_NODES; a++)
-        for (int b = 0; b < PAIR_NODES; b++) layer->pairs.lit[a * PAIR_NODES + b] = lit_share(&views[a], &views[b], grid, size);
-    flatten_peak(layer->pairs.lit);
+bool voxel_layer_pair(VoxelLayer *layer, const PairView views[PAIR_NODES], int grid, const float size[2], PairShade shades[PAIR_NODES * PAIR_NODES], Pool *pool) {
+    PairWork work = {layer, views, grid, size, shades};
+    bool done = pool_run(pool, PAIR_NODES, pair_with_all, &work);
+    if (done) flatten_peak(layer->pairs.lit);
+    return done;
 }
 
 /* ---- reading ---- */
@@ -132,20 +217,16 @@ typedef struct NodesAround {
     float weight[4];
 } NodesAround;
 
-/* How far from the zenith, 0 to 1, as the nodes have it: the last of them are not on the horizon, but a little above. */
-static const float LAST_NODES = 0.8f;
-static float ring_of(float r) { return r <= 0.5f ? r : float_min(1, 0.5f + 0.5f * (r - 0.5f) / (LAST_NODES - 0.5f)); }
-
-/* The upper hemisphere as an octahedron's upper half, unfolded to a square. False below the horizon. */
+/* False below the horizon. Lower than the last ring all is as on it. */
 static bool nodes_around(Vec3f d, NodesAround *out) {
-    float sum = fabsf(d.x) + fabsf(d.y) + fabsf(d.z);
-    if (!(sum > 0 && sum < INFINITY) || !(d.y > 0)) return false;
-    float r = (fabsf(d.x) + fabsf(d.z)) / sum, stretch = r > 0 ? ring_of(r) / (r * sum) : 0;
-    float x = d.x * stretch, z = d.z * stretch, a = (x + z + 1) * 0.5f * (PAIR_SIDE - 1), b = (x - z + 1) * 0.5f * (PAIR_SIDE - 1);
-    int column = int_clamp((int)a, 0, PAIR_SIDE - 2), row = int_clamp((int)b, 0, PAIR_SIDE - 2);
-    a -= (float)column, b -= (float)row;
+    float length = vec3f_length(d);
+    if (!(length > 0 && length < INFINITY) || !(d.y > 0)) return false;
+    float up = asinf(float_min(1, d.y / length)) * (float)(180 / VTS_PI), turns = atan2f(d.z, d.x) * (float)(PAIR_RING / (2 * VTS_PI)) + PAIR_RING;
+    int ring = 0, around = (int)turns;
+    while (ring + 1 < PAIR_RINGS && up < RING_HEIGHT[ring + 1]) ring++;
+    float b = float_clamp((RING_HEIGHT[ring] - up) / (RING_HEIGHT[ring] - RING_HEIGHT[ring + 1]), 0, 1), a = turns - (float)around;
     for (int i = 0; i < 4; i++) {
-        out->node[i] = (row + (i >> 1)) * PAIR_SIDE + column + (i & 1);
+        out->node[i] = node_of(ring + (i >> 1), around + (i & 1));
         out->weight[i] = (i & 1 ? a : 1 - a) * (i >> 1 ? b : 1 - b);
     }
     return true;

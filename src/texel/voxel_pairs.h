@@ -2,24 +2,38 @@
  *
  * Voxels tell how much of a light comes through a layer, not how much of it falls on what is seen: where the eye looks through a gap, along nearly the
  * same line the light does, too (the hot spot of remote sensing). How nearly, the gaps' correlation tells between directions a little apart. And of
- * matter in a layer that repeats along x and z the triangles tell which share of what is seen is lit, for pairs of 25 directions of the upper
+ * matter in a layer that repeats along x and z the triangles tell which share of what is seen is lit, for pairs of 33 directions of the upper
  * hemisphere. */
 #ifndef VTS_TEXEL_VOXEL_PAIRS_H
 #define VTS_TEXEL_VOXEL_PAIRS_H
 
 #include "texel/voxel_layer.h"
+#include "texel/voxel_view.h"
+
+/* The direction of a node, unit; and the nodes beside it: returns how many. */
+enum { PAIR_MOST_NEIGHBOURS = PAIR_RING };
+Vec3f pair_direction(int node);
+int pair_neighbours(int node, int out[PAIR_MOST_NEIGHBOURS]);
 
 /* The layer seen along a direction d, d.y > 0, over the plane y = 0. */
 typedef struct PairView {
     float slope_x, slope_z; /* d / d.y */
+    const ViewNormal *normal; /* of what is seen, or NULL */
     const float *top;       /* [grid × grid], along x first: height of what is met first from above; below 0 nothing */
 } PairView;
 
-/* Sets layer->pairs.lit from views along the directions of even nodes. `grid`: a power of two; `size`: of the period along x and z; the middle of the first place is the
- * same in all views. */
-void voxel_layer_pair(VoxelLayer *layer, const PairView views[PAIR_NODES], int grid, const float size[2]);
-/* The share of the ground seen by `eye` that `light` falls on; below 0 where none is seen. */
-float pair_open(const PairView *eye, const PairView *light, int grid);
+/* What falls on the two sides of the matter that is seen: the side towards the eye, and the other. */
+typedef struct PairShade {
+    float facing[2]; /* |n · light| where the light falls on this side, else 0: its mean over all that is seen, were nothing in the light's way */
+    float lit[2];    /* which share of that comes there */
+    float all;       /* the share that is lit of all that is seen, however it is turned */
+} PairShade;
+/* Sets layer->pairs.lit, and `shades` by direction to the eye, then to the light, from views along the directions of the nodes, with normals. `grid`: a power of two;
+ * `size`: of the period along x and z; the middle of the first place is the same in all views. False if the pool was cancelled. */
+bool voxel_layer_pair(VoxelLayer *layer, const PairView views[PAIR_NODES], int grid, const float size[2], PairShade shades[PAIR_NODES * PAIR_NODES], Pool *pool);
+/* The share of the ground seen along a view that the light along another falls on, below 0 where none is seen: open[count × count], by eye, then by light.
+ * `grid`: 8 at least. False without memory. */
+bool pair_opens(const PairView *views, int count, int grid, float *open);
 /* Sets layer->pairs.spot from groups of SPOT_VIEWS views: one along a direction, the others with slopes that differ by SPOT_OFFSET from its. */
 enum { SPOT_VIEWS = 3, SPOT_GROUPS = 4 };
 #define SPOT_OFFSET 0.15f

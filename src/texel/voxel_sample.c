@@ -187,3 +187,26 @@ bool voxel_layer_sample_lod(const VoxelLayer *layer, float lod, Vec3f p, VoxelSa
     if (t > 0) add_level(layer, level + 1, p, t, sums);
     return finish(sums, out);
 }
+
+bool voxel_layer_nearest(const VoxelLayer *layer, int number, Vec3f p, uint32_t *voxel, Vec3f *middle) {
+    const VoxelLevel *level = &layer->level[int_clamp(number, 0, layer->levels - 1)];
+    const float at[3] = {p.x, p.y, p.z};
+    AxisPair axes[3];
+    float most = 0;
+    for (int k = 0; k < 3; k++)
+        if (!pair_on_axis(at[k] * level->per_side[k], level->size[k], layer->cyclic[k], &axes[k])) return false;
+    for (int i = 0; i < 8; i++) {
+        int x = i & 1, y = i >> 1 & 1, z = i >> 2;
+        float weight = axes[0].weight[x] * axes[1].weight[y] * axes[2].weight[z];
+        if (!(weight > most)) continue;
+        const VoxelCode *code;
+        int32_t brick = level->index[voxel_level_brick_at(level, (int)axes[0].brick[x], (int)axes[1].brick[y], (int)axes[2].brick[z])];
+        if (!(find_row(level, brick, axes[2].place[z], axes[1].place[y] * BRICK_SIDE + axes[0].place[x], &code) & 1)) continue;
+        most = weight;
+        *voxel = (uint32_t)(code - level->codes);
+        *middle = vec3f(((float)(axes[0].brick[x] * BRICK_SIDE + axes[0].place[x]) + 0.5f) * level->sides[0],
+                        ((float)(axes[1].brick[y] * BRICK_SIDE + axes[1].place[y]) + 0.5f) * level->sides[1],
+                        ((float)(axes[2].brick[z] * BRICK_SIDE + axes[2].place[z]) + 0.5f) * level->sides[2]);
+    }
+    return most > 0;
+}

@@ -1,14 +1,13 @@
 #include "texel/voxel_trim.h"
 
 #include "base/random.h"
+#include "texel/layer_views.h"
 #include "texel/opacity.h"
 #include "texel/voxel_lit.h"
-#include "texel/voxel_pairs.h"
-#include "texel/voxel_view.h"
 
 #include <stdlib.h>
 
-enum { TRIM_MOST_TRIANGLES = 12000000, TRIM_DIRECTIONS = TRIM_NODES * TRIM_NODES };
+enum { TRIM_MOST_TRIANGLES = 12000000 };
 /* Of many triangles every other direction is enough: it is much matter. */
 enum { TRIM_MANY_TRIANGLES = 10000 };
 /* And for finer voxels than those of so many levels, whose factors change less. */
@@ -27,15 +26,21 @@ static const double TRIM_INERTIA = 0.005;
 typedef struct TrimWork {
     VoxelLayer *layer;
     const TexelMesh *mesh;
-    Vec3f extent, low, high; /* low, high: the least and the most coordinates of the mesh */
+    Vec3f extent;
     bool contained;    /* nothing of it lies beyond the extent, but along cyclic axes */
     bool coarse;       /* many triangles */
-    int levels;        /* that are trimmed */
     bool known[TRIM_DIRECTIONS];
-    bool paired;       /* what even nodes see is kept: of the layer, repeated along x and z */
-    PairView pairs[PAIR_NODES], spots[SPOT_GROUPS * SPOT_VIEWS];
-    float *tops;       /* for all of these; NULL: nothing is kept */
+    LayerViews *views;
 } TrimWork;
+
+/* Layers whose triangles stand among each other. */
+typedef struct JoinWork {
+    VoxelLayer *const *layers;
+    LayerViews *const *views; /* those of the first become those of all */
+    size_t count;
+    Vec3f extent;
+    float (*factor)[TRIM_DIRECTIONS]; /* by level */
+} JoinWork;
 
 /* The upper hemisphere as an octahedron's upper half, unfolded to a square: node (i, j) of TRIM_NODES each way. */
 static Vec3f trim_direction(int node) {
@@ -48,12 +53,21 @@ static Vec3f trim_direction(int node) {
 
 static bool is_period(const VoxelLayer *layer) { return layer->cyclic[0] && layer->cyclic[2]; }
 
+/* Of an even node, its number among those. */
+static int even_number(int node) { return node / TRIM_NODES / 2 * TRIM_EVEN_SIDE + node % TRIM_NODES / 2; }
+
 static bool is_even(int node) { return node % TRIM_NODES % 2 == 0 && node / TRIM_NODES % 2 == 0; }
 
-/* Of an even node, its number among those. */
-static int pair_node(int node) { return node / TRIM_NODES / 2 * PAIR_SIDE + node % TRIM_NODES / 2; }
+/* What a view of a layer hangs on. */
+typedef struct Seen {
+    const VoxelLayer *layer;
+    Vec3f extent, low; /* low: the least coordinates of the triangles */
+    bool contained;
+} Seen;
 
-static LayerView look_along(const TrimWork *work, Vec3f d, uint64_t number, bool cyclic) {
+static Seen seen_of(const TrimWork *work) { return (Seen){work->layer, work->extent, work->views->low, work->contained}; }
+
+static LayerView look_along(const Seen *work, Vec3f d, uint64_t number, bool cyclic) {
     uint64_t bits = random_hash(number, 0, 0, 0);
     LayerView v = {.d = d,
                    .extent = work->extent,
@@ -73,12 +87,12 @@ static LayerView look_along(const TrimWork *work, Vec3f d, uint64_t number, bool
 }
 
 /* Of a node; of a period place by place as of all others. */
-static LayerView look_along_node(const TrimWork *work, int node) {
+static LayerView look_along_node(const Seen *work, int node) {
     return look_along(work, trim_direction(node), is_period(work->layer) ? 0 : (uint64_t)node, false);
 }
 
 /* Once around at a steep slope, and a little beside that, along it and across. */
-static LayerView look_along_spot(const TrimWork *work, int spot) {
+static LayerView look_along_spot(const Seen *work, int spot) {
     static const float slope[SPOT_GROUPS][2] = {{0.8f, 0.3f}, {-0.3f, 0.8f}, {-0.8f, -0.3f}, {0.3f, -0.8f}};
     const float *at = slope[spot / SPOT_VIEWS];
     int beside = spot % SPOT_VIEWS;
@@ -102,22 +116,21 @@ static void clip_range(float from, float slope, float least, float most, float r
 }
 
 /* The heights between which a ray may meet voxels: as far as interpolation reaches around the triangles. */
-static void find_heights(const TrimWork *work, int level, const LayerView *v, float x, float z, float range[2]) {
+static void find_heights(const VoxelLayer *layer, const LayerViews *views, int level, const LayerView *v, float x, float z, float range[2]) {
     static const float REACH = 1.5f;
-    const float *sides = work->layer->level[level].sides;
-    range[0] = float_max(0, work->low.y - REACH * sides[1]);
-    range[1] = float_min(v->extent.y, work->high.y + REACH * sides[1]);
-    if (!v->cyclic[0]) clip_range(x, v->slope_x, work->low.x - REACH * sides[0], work->high.x + REACH * sides[0], range);
-    if (!v->cyclic[1]) clip_range(z, v->slope_z, work->low.z - REACH * sides[2], work->high.z + REACH * sides[2], range);
+    const float *sides = layer->level[level].sides;
+    range[0] = float_max(0, views->low.y - REACH * sides[1]);
+    range[1] = float_min(v->extent.y, views->high.y + REACH * sides[1]);
+    if (!v->cyclic[0]) clip_range(x, v->slope_x, views->low.x - REACH * sides[0], views->high.x + REACH * sides[0], range);
+    if (!v->cyclic[1]) clip_range(z, v->slope_z, views->low.z - REACH * sides[2], views->high.z + REACH * sides[2], range);
 }
 
-static float ray_depth(const TrimWork *work, int level, const LayerView *v, float x, float z) {
-    const VoxelLayer *layer = work->layer;
+static float ray_depth(const VoxelLayer *layer, const LayerViews *views, int level, const LayerView *v, float x, float z) {
     float h = 1 / layer->level[level].density_unit, step = TRIM_STEP * h * v->d.y, range[2];
     int steps = int_max(1, (int)ceilf(v->extent.y / step));
     float height = v->extent.y / (float)steps, depth = 0;
     Vec3f along = vec3f_scale(v->d, height / v->d.y);
-    find_heights(work, level, v, x, z, range);
+    find_heights(layer, views, level, v, x, z, range);
     int first = int_max(0, (int)(range[0] / height - 0.5f)), end = range[1] < range[0] ? first : int_min(steps, (int)(range[1] / height + 1.5f));
     for (int i = first; i < end; i++) {
         float y = ((float)i + 0.5f) * height;
@@ -166,63 +179,63 @@ static float find_factor(const TrimDepths *d, double hidden) {
     return (float)(1 + (factor - 1) * rate / (rate + TRIM_INERTIA)); /* of what is opaque in any case nothing is known */
 }
 
-static float trim_level(const TrimWork *work, int level, const LayerView *v, double hidden) {
-    const VoxelLayer *layer = work->layer;
-    int side =
-        int_clamp(TRIM_RAYS_A_VOXEL * (int)layer->level[level].density_unit, TRIM_LEAST_RAYS, TRIM_MOST_RAYS);
-    if (is_period(layer)) side /= 2;
+/* The factor on the depths of all layers by which they hide the share `hidden` of the view. */
+static float trim_level(const JoinWork *work, int level, int node, const LayerView *v, double hidden) {
+    const VoxelLayer *first = work->layers[0];
+    int side = int_clamp(TRIM_RAYS_A_VOXEL * (int)first->level[level].density_unit, TRIM_LEAST_RAYS, TRIM_MOST_RAYS);
+    if (is_period(first)) side /= 2;
     TrimDepths depths = {.rays = side * side};
     for (int i = 0; i < side * side; i++) {
         uint64_t bits = random_hash((uint64_t)i, (uint64_t)level, 0, 0);
         float a = ((float)(i % side) + random_unitf(bits)) / (float)side,
-              b = ((float)(i / side) + random_unitf(random_mix(bits))) / (float)side;
-        float depth = ray_depth(work, level, v, v->origin[0] + a * v->size[0], v->origin[1] + b * v->size[1]);
+              b = ((float)(i / side) + random_unitf(random_mix(bits))) / (float)side, depth = 0;
+        for (size_t k = 0; k < work->count; k++)
+            depth += ray_depth(work->layers[k], work->views[k], level, v, v->origin[0] + a * v->size[0], v->origin[1] + b * v->size[1]) *
+                     work->layers[k]->trim[first->levels - 1 - level][node];
         if (depth > 0) depths.depth[depths.count++] = depth;
     }
     return find_factor(&depths, hidden);
 }
 
-/* Room for what a view sees: kept with the pair, or to be freed. */
-static float *room_for_view(const TrimWork *work, int kept) {
-    return kept >= 0 && work->tops ? work->tops + (size_t)kept * VIEW_PLACES : malloc(VIEW_PLACES * sizeof(float));
+static void look_and_keep(const TrimWork *work, const LayerView *view, int kept) {
+    LayerViews *views = work->views;
+    bool known = layer_view_hidden(view, work->mesh, views->tops[kept], views->normals[kept]) >= 0;
+    views->views[kept] = (PairView){view->slope_x, view->slope_z, views->normals[kept], known ? views->tops[kept] : NULL};
 }
 
-static void look_at_spot(TrimWork *work, int spot) {
-    if (!work->tops) return;
-    LayerView view = look_along_spot(work, spot);
-    float *top = room_for_view(work, PAIR_NODES + spot);
-    work->spots[spot] = (PairView){view.slope_x, view.slope_z, layer_view_hidden(&view, work->mesh, top) >= 0 ? top : NULL};
-}
-
-/* Of what does not repeat the view is wider than what is kept. */
-static bool is_kept_as_seen(const TrimWork *work, int kept) { return kept >= 0 && is_period(work->layer); }
-
-static void keep_view(TrimWork *work, int kept, const LayerView *v, float *top) {
-    float *repeated = room_for_view(work, kept);
-    work->pairs[kept] = (PairView){v->slope_x, v->slope_z, repeated};
-    if (!is_kept_as_seen(work, kept) && top) layer_view_repeat(v, top, repeated);
+static void keep_hidden(uint64_t hidden[VIEW_PLACES / 64], const float *top) {
+    for (int i = 0; i < VIEW_PLACES / 64; i++) hidden[i] = 0;
+    for (int i = 0; i < VIEW_PLACES; i++) hidden[i / 64] |= (uint64_t)(top[i] >= 0) << i % 64;
 }
 
 static void look_at_node(TrimWork *work, int node) {
     VoxelLayer *layer = work->layer;
+    const Seen of = seen_of(work);
+    const JoinWork alone = {.layers = &work->layer, .views = &work->views, .count = 1, .extent = work->extent};
     work->known[node] = true;
     if (work->coarse && !is_even(node)) return; /* between others */
-    LayerView view = look_along_node(work, node);
-    int kept = work->paired && is_even(node) ? pair_node(node) : -1;
-    float *top = room_for_view(work, is_kept_as_seen(work, kept) ? kept : -1);
-    double hidden = top ? layer_view_hidden(&view, work->mesh, top) : -1;
+    LayerView view = look_along_node(&of, node);
+    float *top = malloc(VIEW_PLACES * sizeof *top);
+    double hidden = top ? layer_view_hidden(&view, work->mesh, top, NULL) : -1;
     work->known[node] = hidden >= 0;
-    if (kept >= 0) keep_view(work, kept, &view, top);
-    if (!is_kept_as_seen(work, kept)) free(top);
-    int levels = is_even(node) ? work->levels : int_min(work->levels, OFTEN_TRIMMED);
+    if (top && is_even(node)) keep_hidden(work->views->hidden[even_number(node)], top);
+    free(top);
+    int levels = is_even(node) ? work->views->levels : int_min(work->views->levels, OFTEN_TRIMMED);
     for (int i = 0; work->known[node] && i < levels; i++)
-        layer->trim[i][node] = trim_level(work, layer->levels - 1 - i, &view, hidden);
+        layer->trim[i][node] = trim_level(&alone, layer->levels - 1 - i, node, &view, hidden);
 }
 
 static void look_through(void *context, size_t number, int worker) {
+    TrimWork *work = context;
+    const Seen of = seen_of(work);
     (void)worker;
-    if (number < TRIM_DIRECTIONS) look_at_node(context, (int)number);
-    else look_at_spot(context, (int)number - TRIM_DIRECTIONS);
+    if (number < TRIM_DIRECTIONS) {
+        look_at_node(work, (int)number);
+        return;
+    }
+    int kept = (int)number - TRIM_DIRECTIONS;
+    LayerView view = kept < PAIR_NODES ? look_along(&of, pair_direction(kept), 0, true) : look_along_spot(&of, kept - PAIR_NODES); /* copies side by side */
+    look_and_keep(work, &view, kept);
 }
 
 void voxel_layer_forget_trim(VoxelLayer *layer) {
@@ -247,10 +260,10 @@ static void fill_row(float *f, int stride) {
 }
 
 /* Directions between those that were looked along. */
-static void fill_between(VoxelLayer *layer, int first) {
+static void fill_between(float (*trim)[TRIM_DIRECTIONS], int first) {
     for (int i = first; i < TRIM_LEVELS; i++) {
-        for (int row = 0; row < TRIM_NODES; row += 2) fill_row(layer->trim[i] + row * TRIM_NODES, 1);
-        for (int column = 0; column < TRIM_NODES; column++) fill_row(layer->trim[i] + column, TRIM_NODES);
+        for (int row = 0; row < TRIM_NODES; row += 2) fill_row(trim[i] + row * TRIM_NODES, 1);
+        for (int column = 0; column < TRIM_NODES; column++) fill_row(trim[i] + column, TRIM_NODES);
     }
 }
 
@@ -262,12 +275,12 @@ bool voxel_layer_is_trimmed(const VoxelLayer *layer) {
 }
 
 /* The nodes on the rim are horizontal: opposite ones are one direction. */
-static void join_horizon(VoxelLayer *layer) {
+static void join_horizon(float (*trim)[TRIM_DIRECTIONS]) {
     for (int node = 0; node < TRIM_DIRECTIONS / 2; node++) {
         int column = node % TRIM_NODES, row = node / TRIM_NODES, other = TRIM_DIRECTIONS - 1 - node;
         if (column > 0 && column < TRIM_NODES - 1 && row > 0) continue;
         for (int i = 0; i < TRIM_LEVELS; i++)
-            layer->trim[i][node] = layer->trim[i][other] = (layer->trim[i][node] + layer->trim[i][other]) / 2;
+            trim[i][node] = trim[i][other] = (trim[i][node] + trim[i][other]) / 2;
     }
 }
 
@@ -283,27 +296,10 @@ static bool find_bounds(TrimWork *work) {
             high = vec3f(float_max(high.x, q.x), float_max(high.y, q.y), float_max(high.z, q.z));
         }
     const bool *cyclic = work->layer->cyclic;
-    work->low = low, work->high = high;
+    work->views->low = low, work->views->high = high;
     work->contained = low.y >= 0 && high.y <= work->extent.y && (cyclic[0] || (low.x >= 0 && high.x <= work->extent.x)) &&
                       (cyclic[2] || (low.z >= 0 && high.z <= work->extent.z));
     return true;
-}
-
-/* Without room pairs stay unknown. */
-static void keep_views(TrimWork *work) {
-    work->tops = malloc((PAIR_NODES + SPOT_GROUPS * SPOT_VIEWS) * (size_t)VIEW_PLACES * sizeof *work->tops);
-    work->paired = work->tops != NULL;
-}
-
-static void compare_views(const TrimWork *work, Pool *pool) {
-    bool seen = work->tops != NULL;
-    for (int i = 0; i < SPOT_GROUPS * SPOT_VIEWS; i++) seen &= work->spots[i].top != NULL;
-    if (seen) voxel_layer_find_spot(work->layer, work->spots, VIEW_GRID);
-    if (!seen) return;
-    const float size[2] = {work->extent.x, work->extent.z};
-    voxel_layer_pair(work->layer, work->pairs, VIEW_GRID, size);
-    const LitTruth truth = {work->pairs, VIEW_GRID, pair_lit_beside(work->spots, VIEW_GRID, size), pair_open_beside(work->spots, VIEW_GRID), work->mesh->triangle_count};
-    voxel_layer_find_powers(work->layer, &truth, work->extent, work->levels, pool);
 }
 
 /* Voxels that are not much larger than triangles need no factors; of N triangles in a layer they are about so many levels below the coarsest. */
@@ -312,22 +308,107 @@ static int levels_to_trim(const VoxelLayer *layer, size_t triangles) {
     return int_min(layer->levels, int_clamp(levels, LEAST_TRIM_LEVELS, TRIM_LEVELS));
 }
 
-void voxel_layer_trim(VoxelLayer *layer, const TexelMesh *mesh, Vec3f extent, Pool *pool) {
+void voxel_layer_trim(VoxelLayer *layer, const TexelMesh *mesh, Vec3f extent, LayerViews *views, Pool *pool) {
     voxel_layer_forget_trim(layer);
     voxel_layer_forget_pairs(layer);
+    views->known = false;
     if (layer->cyclic[1] || layer->scattered || !mesh->triangle_count ||
         mesh->triangle_count > TRIM_MOST_TRIANGLES || voxel_layer_is_empty(layer))
         return;
-    TrimWork work = {
-        .layer = layer, .mesh = mesh, .extent = extent, .coarse = mesh->triangle_count > TRIM_MANY_TRIANGLES, .levels = levels_to_trim(layer, mesh->triangle_count)};
-    keep_views(&work);
-    bool known = find_bounds(&work) && pool_run(pool, TRIM_DIRECTIONS + SPOT_GROUPS * SPOT_VIEWS, look_through, &work);
+    TrimWork work = {.layer = layer, .mesh = mesh, .extent = extent, .coarse = mesh->triangle_count > TRIM_MANY_TRIANGLES, .views = views};
+    views->triangles = mesh->triangle_count;
+    views->levels = levels_to_trim(layer, mesh->triangle_count);
+    bool known = find_bounds(&work) && pool_run(pool, TRIM_DIRECTIONS + VIEWS_KEPT, look_through, &work);
     for (int node = 0; node < TRIM_DIRECTIONS; node++) known &= work.known[node];
-    if (known) fill_between(layer, work.coarse ? 0 : OFTEN_TRIMMED);
-    if (known) join_horizon(layer);
+    if (known) fill_between(layer->trim, work.coarse ? 0 : OFTEN_TRIMMED);
+    if (known) join_horizon(layer->trim);
     else voxel_layer_forget_trim(layer);
-    if (known) compare_views(&work, pool);
-    free(work.tops);
+    views->known = known;
+}
+
+/* ---- layers among each other ---- */
+
+static double hidden_by_all(const JoinWork *work, int even) {
+    size_t hidden = 0;
+    for (int i = 0; i < VIEW_PLACES / 64; i++) {
+        uint64_t any = 0;
+        for (size_t k = 0; k < work->count; k++) any |= work->views[k]->hidden[even][i];
+        hidden += count_bits(any);
+    }
+    return (double)hidden / VIEW_PLACES;
+}
+
+static void join_node(void *context, size_t even, int worker) {
+    const JoinWork *work = context;
+    int node = (int)even / TRIM_EVEN_SIDE * 2 * TRIM_NODES + (int)even % TRIM_EVEN_SIDE * 2;
+    const Seen of = {work->layers[0], work->extent, work->views[0]->low, false};
+    LayerView view = look_along_node(&of, node);
+    double hidden = hidden_by_all(work, (int)even);
+    (void)worker;
+    for (int i = 0; i < work->views[0]->levels; i++)
+        work->factor[i][node] = trim_level(work, work->layers[0]->levels - 1 - i, node, &view, hidden);
+}
+
+/* Each hides what it hides alone; what stands behind the other is then hidden twice. */
+static bool trim_all(const JoinWork *work, Pool *pool) {
+    float factor[TRIM_LEVELS][TRIM_DIRECTIONS];
+    JoinWork all = *work;
+    all.factor = factor;
+    for (int i = 0; i < TRIM_LEVELS; i++)
+        for (int node = 0; node < TRIM_DIRECTIONS; node++) factor[i][node] = 1;
+    if (!pool_run(pool, TRIM_EVEN, join_node, &all)) return false;
+    fill_between(factor, 0);
+    join_horizon(factor);
+    for (size_t k = 0; k < work->count; k++)
+        for (int i = 0; i < TRIM_LEVELS; i++)
+            for (int node = 0; node < TRIM_DIRECTIONS; node++)
+                work->layers[k]->trim[i][node] = float_clamp(work->layers[k]->trim[i][node] * factor[i][node], TRIM_LEAST, TRIM_MOST);
+    return true;
+}
+
+/* What is met first of all layers, into the views of the first. */
+static void see_all(const JoinWork *work) {
+    LayerViews *all = work->views[0];
+    for (size_t k = 1; k < work->count; k++)
+        for (int kept = 0; kept < VIEWS_KEPT; kept++) {
+            const LayerViews *other = work->views[k];
+            if (!other->views[kept].top) all->views[kept].top = NULL;
+            for (int i = 0; i < VIEW_PLACES; i++) {
+                if (!(other->tops[kept][i] > all->tops[kept][i])) continue;
+                all->tops[kept][i] = other->tops[kept][i];
+                all->normals[kept][i] = other->normals[kept][i];
+            }
+        }
+    for (size_t k = 1; k < work->count; k++) all->triangles += work->views[k]->triangles;
+}
+
+static void compare_views(const JoinWork *work, VoxelLayer *layer, Pool *pool) {
+    const LayerViews *all = work->views[0];
+    const PairView *spots = all->views + PAIR_NODES;
+    const float size[2] = {work->extent.x, work->extent.z};
+    for (int i = 0; i < VIEWS_KEPT; i++)
+        if (!all->views[i].top) return;
+    voxel_layer_find_spot(layer, spots, VIEW_GRID);
+    PairShade *shades = malloc(PAIR_NODES * PAIR_NODES * sizeof *shades);
+    if (shades && voxel_layer_pair(layer, all->views, VIEW_GRID, size, shades, pool)) {
+        const LitTruth truth = {all->views, VIEW_GRID, shades, pair_lit_beside(spots, VIEW_GRID, size), pair_open_beside(spots, VIEW_GRID), all->triangles};
+        const LitLayers among = {(const VoxelLayer *const *)work->layers, work->count, work->extent};
+        voxel_layer_find_powers(layer, &truth, &among, all->levels, pool);
+    }
+    free(shades);
+}
+
+void voxel_layers_join(VoxelLayer *const *layers, LayerViews *const *views, size_t count, Vec3f extent, Pool *pool) {
+    const JoinWork work = {.layers = layers, .views = views, .count = count, .extent = extent};
+    VoxelLayer *most = layers[0];
+    for (size_t k = 0; k < count; k++) {
+        if (!views[k]->known) return;
+        if (layers[k]->level[0].code_count > most->level[0].code_count) most = layers[k];
+        views[0]->levels = int_max(views[0]->levels, views[k]->levels);
+    }
+    if (count > 1 && !trim_all(&work, pool)) return;
+    see_all(&work);
+    compare_views(&work, most, pool);
 }
 
 /* ---- reading ---- */

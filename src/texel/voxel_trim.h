@@ -14,8 +14,13 @@
 #define TRIM_MOST  2.0f
 
 /* Sets layer->trim, of OPACITY_CORRELATED, from the triangles. 1 throughout where there is nothing to compare: cyclic along y, more triangles
- * than are worth it, or out of all proportion, no memory. The same for any number of threads. */
-void voxel_layer_trim(VoxelLayer *layer, const TexelMesh *mesh, Vec3f extent, Pool *pool);
+ * than are worth it, or out of all proportion, no memory. `views` gets what the triangles show. The same for any number of threads. */
+typedef struct LayerViews LayerViews; /* layer_views.h */
+void voxel_layer_trim(VoxelLayer *layer, const TexelMesh *mesh, Vec3f extent, LayerViews *views, Pool *pool);
+/* All layers of a texel, or the one it has, each trimmed, and what its triangles showed then: multiplies their factors so that together they hide what
+ * the triangles of all hide, and sets what eye and light have in common (voxel_pairs.h) in the layer of most voxels. Nothing where some of it is not
+ * known. The views are used up. */
+void voxel_layers_join(VoxelLayer *const *layers, LayerViews *const *views, size_t count, Vec3f extent, Pool *pool);
 /* Whether any factor is not 1. */
 bool voxel_layer_is_trimmed(const VoxelLayer *layer);
 /* 1 throughout. */

@@ -27,10 +27,12 @@ typedef struct ViewBatch {
     float per_column[BATCH], per_row[BATCH]; /* heights, from the first corner */
     float least[BATCH], most[BATCH];         /* heights of corners */
     int from[GROUP][BATCH], places[GROUP][BATCH]; /* of the lines of a group: the first place, and how many */
+    ViewNormal normal[BATCH]; /* where they are wanted */
 } ViewBatch;
 
+/* Of lines nearly along a triangle's edge the place may be anything: it is cut off later. */
 static int least_not_below(float x) {
-    int whole = (int)x;
+    int whole = (int)float_clamp(x, -1e9f, 1e9f);
     return whole + ((float)whole < x);
 }
 
@@ -41,10 +43,11 @@ static float most_of(float v[3][BATCH], int i) { return float_max(v[0][i], float
 
 /* Where the vertices are seen. False if some are too far off. */
 static bool project(const LayerView *v, const TexelMesh *mesh, ViewCorner *corners) {
-    float per_column = VIEW_GRID / v->size[0], per_row = VIEW_GRID / v->size[1], left = v->origin[0] + v->turned[0], front = v->origin[1] + v->turned[1];
+    float per_column = VIEW_GRID / v->size[0], per_row = VIEW_GRID / v->size[1], left = v->origin[0], front = v->origin[1];
     bool known = true;
     for (size_t i = 0; i < mesh->vertex_count; i++) {
         Vec3f q = mesh->vertices[i];
+        q.x -= v->turned[0], q.z -= v->turned[1]; /* first, so that rounding does not tell in which period the content was made */
         float column = (q.x - q.y * v->slope_x - left) * per_column - v->shift[0], row = (q.z - q.y * v->slope_z - front) * per_row - v->shift[1];
         corners[i] = (ViewCorner){column, row, q.y};
         known &= fabsf(column) < FAR_GRIDS * VIEW_GRID && fabsf(row) < FAR_GRIDS * VIEW_GRID;
@@ -133,7 +136,27 @@ static void set_up(ViewBatch *b) {
     find_edge(b, 2, 1, 2);
 }
 
+static int8_t of_unit(float x) { return (int8_t)lrintf(127 * float_clamp(x, -1, 1)); }
+
+/* On the grid a triangle is height = a + b·column + c·row, and columns and rows are what the view's slopes leave of x and z. */
+static void find_normals(const LayerView *v, ViewBatch *b) {
+    float columns = VIEW_GRID / v->size[0], rows = VIEW_GRID / v->size[1];
+    for (int i = 0; i < b->count; i++) {
+        float x = b->per_column[i] * columns, z = b->per_row[i] * rows;
+        Vec3f n = {-x, 1 + x * v->slope_x + z * v->slope_z, -z};
+        float length = vec3f_length(n);
+        n = length > 0 && length < INFINITY ? vec3f_scale(n, 1 / length) : vec3f(0, 1, 0); /* seen from the edge */
+        b->normal[i] = (ViewNormal){of_unit(n.x), of_unit(n.y), of_unit(n.z)};
+    }
+}
+
 /* ---- marking ---- */
+
+/* What is seen, of all places. */
+typedef struct ViewSeen {
+    float *top;
+    ViewNormal *normal; /* or NULL */
+} ViewSeen;
 
 /* What of two edges a line meets that are joined at the middle corner. */
 static void take_edge(const ViewBatch *b, int number, const float *restrict lower, const float *restrict upper, float *restrict out) {
@@ -171,19 +194,21 @@ static bool within(const LayerView *v, int place, float height, int k) {
     return v->cyclic[k] || (at >= 0 && at <= (k ? v->extent.z : v->extent.x));
 }
 
-static void mark_place(const LayerView *v, const ViewBatch *b, int i, int line, int place, float *top) {
+static void mark_place(const LayerView *v, const ViewBatch *b, int i, int line, int place, const ViewSeen *out) {
     int column = b->by_columns[i] ? line : place, row = b->by_columns[i] ? place : line, x = wrapped_place(column, v->cyclic[0]),
         z = wrapped_place(row, v->cyclic[1]);
     if (x < 0 || z < 0) return;
     float height = b->height[0][i] + ((float)column - b->column[0][i]) * b->per_column[i] + ((float)row - b->row[0][i]) * b->per_row[i];
     height = float_clamp(height, b->least[i], b->most[i]);
     if (!v->contained && !(height >= 0 && height <= v->extent.y && within(v, column, height, 0) && within(v, row, height, 1))) return;
-    float *seen = &top[z * VIEW_GRID + x];
-    *seen = float_max(*seen, float_max(height, 0));
+    float *seen = &out->top[z * VIEW_GRID + x];
+    height = float_max(height, 0);
+    if (height > *seen && out->normal) out->normal[z * VIEW_GRID + x] = b->normal[i];
+    *seen = float_max(*seen, height);
 }
 
 /* A triangle's lines of the group that begins at `number`. Most triangles have few places there: a bit for each, so that there is one loop. */
-static int64_t mark_lines(const LayerView *v, const ViewBatch *b, int i, int number, float *top) {
+static int64_t mark_lines(const LayerView *v, const ViewBatch *b, int i, int number, const ViewSeen *out) {
     int all = 0;
     for (int l = 0; l < GROUP; l++) all |= b->places[l][i];
     if (all < GROUP) {
@@ -191,66 +216,46 @@ static int64_t mark_lines(const LayerView *v, const ViewBatch *b, int i, int num
         for (int l = 0; l < GROUP; l++) bits |= (uint64_t)((1u << b->places[l][i]) - 1) << (GROUP * l);
         for (; bits; bits &= bits - 1) {
             int bit = (int)count_bits((bits & (~bits + 1)) - 1), l = bit / GROUP;
-            mark_place(v, b, i, b->first[i] + number + l, b->from[l][i] + bit % GROUP, top);
+            mark_place(v, b, i, b->first[i] + number + l, b->from[l][i] + bit % GROUP, out);
         }
         return GROUP;
     }
     int64_t places = 0;
     for (int l = 0; l < GROUP; l++) {
-        for (int k = 0; k < b->places[l][i]; k++) mark_place(v, b, i, b->first[i] + number + l, b->from[l][i] + k, top);
+        for (int k = 0; k < b->places[l][i]; k++) mark_place(v, b, i, b->first[i] + number + l, b->from[l][i] + k, out);
         places += b->places[l][i];
     }
     return places;
 }
 
 /* Returns how much work that was. */
-static int64_t mark_batch(const LayerView *v, ViewBatch *b, float *top) {
+static int64_t mark_batch(const LayerView *v, ViewBatch *b, const ViewSeen *out) {
     int most = 0;
     int64_t work = b->count;
     for (int i = 0; i < b->count; i++) most = int_max(most, b->lines[i]);
     for (int number = 0; number < most && work < MOST_WORK; number += GROUP) {
         for (int l = 0; l < GROUP; l++) cut_lines(b, number + l);
         for (int i = 0; i < b->count; i++)
-            if (number < b->lines[i]) work += mark_lines(v, b, i, number, top);
+            if (number < b->lines[i]) work += mark_lines(v, b, i, number, out);
     }
     return work;
 }
 
-double layer_view_hidden(const LayerView *view, const TexelMesh *mesh, float *top) {
+double layer_view_hidden(const LayerView *view, const TexelMesh *mesh, float *top, ViewNormal *normal) {
     size_t hidden = 0;
     int64_t work = 0;
     ViewCorner *corners = malloc(mesh->vertex_count * sizeof *corners);
     ViewBatch batch;
+    const ViewSeen seen = {top, normal};
     bool known = corners && project(view, mesh, corners);
     for (size_t i = 0; i < VIEW_PLACES; i++) top[i] = -1;
     for (size_t t = 0; known && t < mesh->triangle_count && work < MOST_WORK; t += BATCH) {
         fill_batch(&batch, mesh, corners, t);
         set_up(&batch);
-        work += mark_batch(view, &batch, top);
+        if (normal) find_normals(view, &batch);
+        work += mark_batch(view, &batch, &seen);
     }
     for (size_t i = 0; i < VIEW_PLACES; i++) hidden += top[i] >= 0;
     free(corners);
     return known && work < MOST_WORK ? (double)hidden / VIEW_PLACES : -1;
-}
-
-/* Of copies that are so narrow beside their height that more of them lie over one place, the first. */
-enum { MOST_COPIES = 8 };
-
-static float highest_of_copies(const LayerView *v, const float *top, float x, float z) {
-    float highest = -1, cell_x = v->size[0] / (float)VIEW_GRID, cell_z = v->size[1] / (float)VIEW_GRID;
-    x -= v->extent.x * floorf((x - v->origin[0]) / v->extent.x);
-    z -= v->extent.z * floorf((z - v->origin[1]) / v->extent.z);
-    for (int j = 0; j < MOST_COPIES && z + (float)j * v->extent.z < v->origin[1] + v->size[1]; j++)
-        for (int i = 0; i < MOST_COPIES && x + (float)i * v->extent.x < v->origin[0] + v->size[0]; i++) {
-            float a = x + (float)i * v->extent.x - v->origin[0], b = z + (float)j * v->extent.z - v->origin[1];
-            int column = wrapped_place((int)lrintf(a / cell_x - v->shift[0]), v->cyclic[0]), row = wrapped_place((int)lrintf(b / cell_z - v->shift[1]), v->cyclic[1]);
-            if (column >= 0 && row >= 0) highest = float_max(highest, top[row * VIEW_GRID + column]);
-        }
-    return highest;
-}
-
-void layer_view_repeat(const LayerView *v, const float *top, float *repeated) {
-    float cell_x = v->extent.x / VIEW_GRID, cell_z = v->extent.z / VIEW_GRID;
-    for (int i = 0; i < VIEW_PLACES; i++)
-        repeated[i] = highest_of_copies(v, top, ((float)(i % VIEW_GRID) + 0.5f) * cell_x, ((float)(i / VIEW_GRID) + 0.5f) * cell_z);
 }

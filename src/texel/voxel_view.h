@@ -18,10 +18,13 @@ typedef struct LayerView {
     float shift[2];  /* of a place's middle, in places */
 } LayerView;
 
+/* Of unit length are 127; to which side is all the same. */
+typedef struct ViewNormal {
+    int8_t x, y, z;
+} ViewNormal;
+
 /* The share of the view that the triangles hide; < 0 where that is not known: no memory, or triangles that are so large that no texel has them.
- * top[VIEW_PLACES], x first, gets the heights, below 0 where nothing is. Each triangle's vertices are within the mesh. */
-double layer_view_hidden(const LayerView *view, const TexelMesh *mesh, float *top);
-/* The same of copies side by side along x and z: what `top` holds of one, over the places of a period, whose middles are the same for all views. */
-void layer_view_repeat(const LayerView *view, const float *top, float *repeated);
+ * top[VIEW_PLACES], x first, gets the heights, below 0 where nothing is, and `normal`, if it is not NULL, of what is there the normals. Each triangle's vertices are within the mesh. */
+double layer_view_hidden(const LayerView *view, const TexelMesh *mesh, float *top, ViewNormal *normal);
 
 #endif

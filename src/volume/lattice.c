@@ -52,6 +52,30 @@ void lattice_finish(Lattice *l) {
             }
 }
 
+/* The mean over the cells of `from` whose middles lie in this one. */
+static float mean_of_block(const Lattice *l, const Lattice *from, const int at[3]) {
+    int low[3], high[3];
+    double sum = 0, count = 0;
+    for (int k = 0; k < 3; k++) {
+        double width = (double)from->size[k] / l->size[k];
+        low[k] = int_clamp((int)ceil(at[k] * width - 0.5), 0, from->size[k] - 1);
+        high[k] = int_clamp((int)ceil((at[k] + 1) * width - 0.5), low[k] + 1, from->size[k]);
+    }
+    for (int z = low[2]; z < high[2]; z++)
+        for (int y = low[1]; y < high[1]; y++)
+            for (int x = low[0]; x < high[0]; x++) sum += (double)from->values[node_index(from, x + 1, y + 1, z + 1)], count++;
+    return (float)(sum / count);
+}
+
+void lattice_coarsen(Lattice *l, const Lattice *from, const int size[3], Arena *arena) {
+    int at[3];
+    lattice_init(l, size, arena);
+    for (at[2] = 0; at[2] < size[2]; at[2]++)
+        for (at[1] = 0; at[1] < size[1]; at[1]++)
+            for (at[0] = 0; at[0] < size[0]; at[0]++) lattice_set(l, at[0], at[1], at[2], mean_of_block(l, from, at));
+    lattice_finish(l);
+}
+
 double lattice_mean(const Lattice *l) {
     double sum = 0;
     for (int z = 1; z <= l->size[2]; z++)

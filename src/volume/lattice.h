@@ -23,6 +23,8 @@ void lattice_finish(Lattice *lattice);
 
 /* The number at a place, which is moved to the rim when it lies outside. */
 double lattice_value(const Lattice *lattice, Vec3 place);
+/* A lattice over the same place with at most as many cells along each axis: means over those of `from`. */
+void lattice_coarsen(Lattice *lattice, const Lattice *from, const int size[3], Arena *arena);
 /* The mean over all cells. */
 double lattice_mean(const Lattice *lattice);
 

@@ -69,6 +69,51 @@ static void errors_are_what_is_said(void **state) {
     check_error(*state, lens, 1.5 / 255);
 }
 
+/* Slats of a tenth of a pixel between the middles of rows, whose shares of pixels are known. */
+static const char slats[] = "camera { orthographic location <0, 0, -6> look_at 0 right 48*x up 36*y }\n"
+                            "background { rgb 0.9 }\n"
+                            "#declare I = -17;\n"
+                            "#while (I < 18)\n"
+                            "  box { <-30, I - 0.05, 0>, <30, I + 0.05, 0.1> pigment { rgb 0 } }\n"
+                            "  #declare I = I + 3;\n"
+                            "#end\n";
+
+static void what_middles_miss_is_found(void **state) {
+    VtsOptions o = options_of_size(48, 36);
+    bench_write(*state, slats);
+    double said = reported_error(*state, &o), sum = 0;
+    Picture p = picture_read(((const Bench *)*state)->output);
+    for (int y = 0; y < 36; y++)
+        for (int x = 0; x < 48; x++) {
+            double off = (double)pixel_at(&p, x, y)[0] - (y % 3 == 0 ? 0.9 : 0.9 * 0.95);
+            sum += off * off / (48 * 36);
+        }
+    picture_free(&p);
+    print_message("found %.4f said %.4f\n", sqrt(sum), said);
+    assert_true(sqrt(sum) < 2.0 / 255); /* 0.037 if none is seen */
+    assert_true(said > sqrt(sum) / 2);
+}
+
+/* Bumps far finer than a pixel that mirror a lamp. */
+static const char ripples[] = "camera { location <0, 1.2, -6> look_at <0, 0.8, 4> right x*image_width/image_height angle 55 }\n"
+                              "light_source { <100, 60, 300> rgb <1, 0.8, 0.6> }\n"
+                              "sky_sphere { pigment { gradient y color_map { [0 rgb <1, 0.6, 0.3>] [0.3 rgb <0.4, 0.5, 0.8>] [1 rgb <0.1, 0.2, 0.5>] } } }\n"
+                              "plane { y, 0 pigment { rgb <0.02, 0.05, 0.08> } normal { bumps 0.3 scale <0.3, 0.3, 0.15> }\n"
+                              "  finish { reflection 0.6 specular 0.8 roughness 0.003 diffuse 0.2 } }\n";
+
+static void bumps_are_not_smoothed_away(void **state) {
+    VtsOptions o = options_of_size(48, 36);
+    o.reference_samples = 100;
+    Picture truth = bench_see(*state, &o, ripples, true);
+    double said = reported_error(*state, &o);
+    Picture p = picture_read(((const Bench *)*state)->output);
+    double error = clamped_rms(&p, &truth);
+    print_message("found %.4f said %.4f\n", error, said);
+    assert_true(error < 2.5 / 255);
+    picture_free(&p);
+    picture_free(&truth);
+}
+
 static void threads_and_regions_do_not_change(void **state) {
     VtsOptions o = options_of_size(70, 50);
     o.threads = 1;
@@ -125,6 +170,8 @@ static void fine_checkers_in_mirrors_are_grey(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_are_what_is_said),
+        cmocka_unit_test(what_middles_miss_is_found),
+        cmocka_unit_test(bumps_are_not_smoothed_away),
         cmocka_unit_test(threads_and_regions_do_not_change),
         cmocka_unit_test(fine_checkers_are_grey),
         cmocka_unit_test(fine_checkers_in_mirrors_are_grey),

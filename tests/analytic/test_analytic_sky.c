@@ -1,5 +1,6 @@
 /* `sky_light on` on explicit objects: white things under an even sky, against closed forms. */
 #include "analytic.h"
+#include "open_sky.h"
 
 #define WHITE "texture { pigment { rgb 1 } finish { ambient 0.8 diffuse 0 } }"
 /* From above; what is in the way of the sky is not seen itself. */
@@ -19,35 +20,7 @@ static Picture picture_of(const Bench *b, const char *setting, const char *objec
 
 static double x_of(int px) { return (px + 0.5) / 4 - 4; }
 
-typedef double (*OpenSky)(double x, double z);
-
-/* A wall without end, two high, whose face is at z = -4. */
-static double beside_low_wall(double x, double z) { return (void)x, (1 + (z + 4) / hypot(z + 4, 2)) / 2; }
-static double beside_high_wall(double x, double z) { return (void)x, (void)z, 0.5; }
-/* A groove two wide along x, one deep, with the plane for its floor: at a of its width the mean of the sines to both rims. */
-static double in_groove(double x, double z) {
-    return (void)x, fabs(z) > 1 ? (double)NAN : ((1 - z) / hypot(1 - z, 1) + (1 + z) / hypot(1 + z, 1)) / 2;
-}
-static double under_disc(double x, double z) { return hypot(x, z) > 0.3 ? (double)NAN : 1 - 4.0 / (4 + 1); }
-static double beside_sphere(double x, double z) {
-    double r = hypot(x, z);
-    return r < 0.5 || r > 3.5 ? (double)NAN : 1 - pow(1 / hypot(r, 1), 3);
-}
-static double open_plain(double x, double z) { return (void)x, (void)z, 1; }
-
-typedef struct SkyCase {
-    const char *name, *objects;
-    OpenSky truth;
-} SkyCase;
-
-static const SkyCase CASES[] = {
-    {"open", "", open_plain},
-    {"low wall", "box { <-5000, -1, -5>, <5000, 2, -4> " WHITE " }", beside_low_wall},
-    {"high wall", "box { <-3000, -1, -5>, <3000, 3000, -4.1> no_image " WHITE " }", beside_high_wall},
-    {"groove", "box { <-5000, -1, 1>, <5000, 1, 5> no_image " WHITE " } box { <-5000, -1, -5>, <5000, 1, -1> no_image " WHITE " }", in_groove},
-    {"disc", "disc { y, y, 2 no_image " WHITE " }", under_disc},
-    {"sphere", "sphere { y, 1 no_image " WHITE " }", beside_sphere},
-};
+static const SkyCase CASES[] = {OPEN_SKY_CASES(WHITE)};
 
 static double rms_error(const Picture *p, OpenSky truth, double *bias) {
     double squares = 0, sum = 0;

@@ -64,7 +64,7 @@ static void voxels_have_the_light_of_woods(void **state) {
         double truth = light_of_wood(*state, true, false, views[k].distance, views[k].up, views[k].sun);
         for (size_t i = 0; i < 2; i++) {
             double ratio = light_of_wood(*state, false, i > 0, views[k].distance, views[k].up, views[k].sun) / truth;
-            bool good = ratio > 0.72 && ratio < 1.15;
+            bool good = ratio > 0.8 && ratio < 1.1;
             failed += !good;
             printf("%s, from %s at %s degrees, sun %s: %.4f, voxels %.3f of it%s\n", i ? "wang" : "plain", views[k].distance, views[k].up, views[k].sun, truth, ratio, good ? "" : "  <--");
         }

@@ -112,6 +112,21 @@ case_empty_scene() {
   run render empty.vts -s 8x6 -o empty.ppm; want_status 0; want_in err warning; want_file empty.ppm
 }
 
+case_verdict() { # what voxels make of a checkered fence is told against the error that is accepted
+  cat >fence.vts <<'SCENE'
+camera { location <0, 2, -6> look_at 0 angle 40 }
+light_source { <-3, 9, -6>, rgb 1 }
+#declare Post = texel { bounds <0, 0, 0>, <1, 1, 1> resolution 8 layer { box { <0.2, 0, 0.2>, <0.8, 1, 0.5> } pigment { rgb 1 } } }
+skin { surface { patch_grid 1, 1 function(u, v) { <4*(u - 0.5), 0, 4*(v - 0.5)> } } texel { Post } mapping { tile 1 height 1 } }
+SCENE
+  run render fence.vts -s 32x24 -o fence.ppm --set detail=voxels --report fence.json --max-error 1/255; want_status 0; want_in err "from the truth where max_error accepts 0.0039: voxels are seen"
+  run render fence.vts -s 32x24 -o fence.ppm --set detail=voxels --report fence.json --max-error 1/255 --quiet; want_status 0; want_empty err
+  run render fence.vts -s 32x24 -o fence.ppm --set detail=voxels --report fence.json; want_status 0; want_empty err
+  run render fence.vts -s 32x24 -o fence.ppm --set detail=voxels --report fence.json --max-error 0.9; want_status 0; want_empty err
+  run render fence.vts -s 32x24 -o fence.ppm --report fence.json; want_status 0; want_empty err
+  run check --quiet /dev/null; want_empty err
+}
+
 case_binary_scene() {
   printf '\177ELF\0\1\2\377\376 sphere' >binary.vts
   local command
@@ -435,6 +450,7 @@ case_report() {
   scene
   run render scene.vts -s 16x12 --report report.json; want_status 0; want_empty out
   "$json_check" scene version frames output wall_s cpu_s render_s peak_rss_bytes rays <report.json || fail "report.json"
+  grep -q '"errors":\[{"stage":"samples","allowed":0.003922,"made":0.00[0-9]*,"unit":"lines of sight a pixel","count":[0-9.]*}' report.json || fail "errors of stages: $(grep -o '"errors":[^]]*' report.json)"
   run render scene.vts -s 16x12 --report -; want_status 0
   "$json_check" frames <out || fail "report on stdout"
   # A name that JSON must escape.

@@ -15,6 +15,7 @@
  *   run       as `vts run` does it, else as `vts check`
  *   compiled  and prepared for rendering
  *   all       without the limit of 20 errors
+ *   library   with the standard library, else without any
  *   --cycle SECONDS, of a film that goes round
  *   --limit NAME=N, --set KNOB=VALUE, --declare NAME=VALUE, --allow-read DIR, --allow-write DIR */
 #include "vts.c" /* for its list of diagnostics, whose formats the public interface does not show */
@@ -51,6 +52,7 @@ static void read_how(How *how, char *words) {
         how->run |= strcmp(w, "run") == 0;
         how->compiled |= strcmp(w, "compiled") == 0;
         how->all |= strcmp(w, "all") == 0;
+        if (strcmp(w, "library") == 0) o->stdlib_dir = "../../stdlib"; /* programs are run in their folder */
         if (w[0] != '-') continue;
         char *value = strtok_r(NULL, " \n", &rest);
         if (!value) return;

@@ -248,6 +248,54 @@ static void feet_stand_on_the_ground(void **state) {
     }
 }
 
+static double gentle(int column, int row) { return 14 * sin(0.45 * column) * cos(0.37 * row) + 0.3 * column; }
+
+/* Blue marks over the ground, from terrain_height() + `foot` to `tip`, seen from a place of a flight: with a skin, or bare. */
+static Picture marks(const Bench *b, int frame, const char *skin, double foot, double tip) {
+    char scene[2500];
+    snprintf(scene, sizeof scene,
+             "background { rgb 0 }\n#declare Land = terrain { heightmap \"" MAP "\" curvature off }\n"
+             "camera { location <%d, %d, %d> look_at <20, 0, 10> angle 50 }\n"
+             "#declare Slab = texel { cyclic x + z resolution 16 layer { box { <-1, 0, -1>, <2, 1, 2> } texture { " GLOWING("y") " } } }\n"
+             "object { Land " GLOWING("x") " }\n"
+             "#for (I, -4, 4) #for (J, -4, 4) #declare P = <I*53, 0, J*47>; #declare P = <P.x, terrain_height(Land, P), P.z>;\n"
+             "cylinder { P + %g*y, P + %g*y, 4.5 " GLOWING("z") " }\n#end #end\n%s",
+             -280 + 60 * frame, 330 + 20 * (frame % 3), -260 - 10 * frame, foot, tip, skin);
+    const VtsPair detail = {"detail", frame % 2 ? "voxels" : "exact"};
+    VtsOptions o = options_of_size(SIDE, SIDE);
+    o.settings = &detail, o.setting_count = 1;
+    Picture p = bench_render(b, &o, scene);
+    assert_true(is_sound(&p));
+    return p;
+}
+
+/* Of the pixels that are all mark without the skin, the share of blue that is left with it; *count of them. */
+static double marks_left(const Bench *b, int frame, double foot, double tip, int *count) {
+    static const char skin[] = "skin { surface { terrain { Land } } texel { Slab } mapping { tile 30 height 12 } }\n";
+    Picture bare = marks(b, frame, "", foot, tip), grown = marks(b, frame, skin, foot, tip);
+    double left = 0;
+    *count = 0;
+    for (int i = 0; i < SIDE * SIDE; i++)
+        if (bare.pixels[3 * i + 2] > 0.99f) left += (double)grown.pixels[3 * i + 2], ++*count;
+    picture_free(&bare);
+    picture_free(&grown);
+    return left / *count;
+}
+
+/* What stands on the ground is as high above terrain_height() as it should be, however coarse the drawn ground is from there: discs a little under the top of a slab of 12
+ * metres are hidden, those above what slopes make of it are seen. */
+static void trees_neither_float_nor_sink(void **state) {
+    const Bench *b = *state;
+    asc(b, gentle);
+    for (int frame = 0; frame < 6; frame++) {
+        int below, above;
+        double sunk = marks_left(b, frame, 8.5, 9, &below), flying = 1 - marks_left(b, frame, 15, 15.5, &above);
+        printf("frame %d: of %d pixels of discs below the top %.3f are seen, of %d above it %.3f are hidden\n", frame, below, sunk, above, flying);
+        assert_true(below > 15 && above > 15);
+        assert_true(sunk < 0.02 && flying < 0.02);
+    }
+}
+
 #define FLIGHT "#declare Land = terrain { heightmap \"" MAP "\" curvature off }\n" \
                     "camera { location <-300 + 2*clock, 420, -340> look_at <0, 0, 0> angle 60 }\nbackground { rgb <0, 0, 1> }\n" \
                     "light_source { <-3e6, 4e6, -1e6>, rgb 1.2 parallel point_at 0 }\nobject { Land pigment { rgb <1, 0.8, 0.6> } }\n"
@@ -310,6 +358,6 @@ static void panoramas_need_no_more(void **state) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, bench_set_up, tear_down)
 
 int main(void) {
-    const struct CMUnitTest tests[] = {TEST(silhouettes), TEST(drop_at_100_km), TEST(antimeridian), TEST(pole), TEST(single_rows), TEST(voids), TEST(feet_stand_on_the_ground), TEST(flights_do_not_flicker), TEST(panoramas_need_no_more)};
+    const struct CMUnitTest tests[] = {TEST(silhouettes), TEST(drop_at_100_km), TEST(antimeridian), TEST(pole), TEST(single_rows), TEST(voids), TEST(feet_stand_on_the_ground), TEST(trees_neither_float_nor_sink), TEST(flights_do_not_flicker), TEST(panoramas_need_no_more)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

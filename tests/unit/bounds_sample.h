@@ -1,9 +1,17 @@
-/* Random spans and places in them, the nasty ones among them, for tests of bounds. */
+/* Random spans and places in them, the nasty ones among them, for tests of bounds. VTS_SPANS in the environment: how many of each operation. */
 #ifndef VTS_TESTS_BOUNDS_SAMPLE_H
 #define VTS_TESTS_BOUNDS_SAMPLE_H
 
 #include "base/random.h"
 #include "tape/tape_interval.h"
+
+#include <stdlib.h>
+
+/* How many spans a test takes of each operation. */
+static inline uint64_t span_count(uint64_t usual) {
+    const char *asked = getenv("VTS_SPANS");
+    return asked ? strtoull(asked, NULL, 10) : usual;
+}
 
 static inline uint64_t bits(uint64_t i, uint32_t k) { return random_hash(0x696E7476, i, k, 0); }
 static inline double unit(uint64_t i, uint32_t k) { return random_unit(bits(i, k)); }

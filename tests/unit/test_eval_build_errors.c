@@ -137,8 +137,8 @@ static const Case warnings[] = {
      "1:35: 'image_map' is not modelled yet: it has no effect", NULL},
     {"lsystem { axiom \"A\" }", "1:1: this L-system draws nothing: its word has no F and no symbol with an object", NULL},
     {"fog { rgb 1 }", "1:1: this fog has no distance greater than 0: it has no effect", NULL},
-    {"global_settings { radiosity { count 3 } }",
-     "1:19: 'radiosity' is not modelled yet: it has no effect", NULL},
+    {"global_settings { photons { count 3 } }",
+     "1:19: 'photons' is not modelled yet: it has no effect", NULL},
     {"global_settings { }", "0:0: the scene holds nothing to draw: the picture is its background", NULL},
 };
 

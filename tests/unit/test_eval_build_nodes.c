@@ -236,6 +236,21 @@ static void test_layer_hash_ignores_looks(void **state) {
     assert_false(hash_equal(a->hash, b->hash));
 }
 
+static const TexelDef *texel_of(BlockText *t, const char *text) { return block_text_value(t, text).as.texel; }
+
+static void test_layers_take_their_objects_texture(void **state) {
+    BlockText *t = *state;
+    const Texture *own = texel_of(t, "texel { layer { sphere { 0.5, 0.2 } texture { pigment { rgb <1, 0, 0> } } } }")->layers[0].texture;
+    const Texture *taken = texel_of(t, "texel { layer { sphere { 0.5, 0.2 pigment { rgb <1, 0, 0> } } sphere { 0.2, 0.1 } } }")->layers[0].texture;
+    const Texture *kept = texel_of(t, "texel { layer { sphere { 0.5, 0.2 pigment { rgb <0, 0, 1> } } texture { pigment { rgb <1, 0, 0> } } } }")->layers[0].texture;
+    assert_true(hash_equal(own->hash, taken->hash));
+    assert_true(hash_equal(own->hash, kept->hash));
+    /* A pattern lies where the object was moved to. */
+    const Texture *moved = texel_of(t, "texel { layer { sphere { 0.5, 0.2 pigment { gradient <1, 0, 0> } translate <0.1, 0, 0> } } }")->layers[0].texture;
+    const Texture *laid = texel_of(t, "texel { layer { sphere { 0.6, 0.2 } texture { pigment { gradient <1, 0, 0> } translate <0.1, 0, 0> } } }")->layers[0].texture;
+    assert_true(hash_equal(moved->hash, laid->hash));
+}
+
 /* ---- bounds: every point of the solid inside, and the box is tight ---- */
 
 static void test_bounds_of_turned_solids(void **state) {
@@ -521,7 +536,7 @@ int main(void) {
         TEST(test_maps_are_sorted_and_promoted),
         TEST(test_block_patterns_take_colours_and_pigments),
         TEST(test_hashes_follow_content_not_place),
-        TEST(test_layer_hash_ignores_looks),
+        TEST(test_layer_hash_ignores_looks), TEST(test_layers_take_their_objects_texture),
         TEST(test_bounds_of_turned_solids),
         TEST(test_patch_grid_from_function),
         TEST(test_texel_bounds_of_object),

@@ -22,7 +22,7 @@ static Vec3 bent(const Texture *texture, Vec3 point, double footprint) {
     SurfacePlace place = {.point = point, .normal = up, .footprint = footprint};
     TexturePart part;
     assert_int_equal(texture_parts(texture, &place, &part, 1), 1);
-    return texture_layer_normal(&part, part.texture, up);
+    return texture_layer_normal(&part, part.texture, up, 1);
 }
 
 static void assert_vec(Vec3 a, Vec3 b, double tolerance) {

@@ -33,27 +33,27 @@ static void test_what_is_beside_does_not_count(void **state) {
     (void)state;
     Ray corners[4];
     corners_at(0, 0, 0.1, 0.1, corners);
-    assert_true(even_with((VistaPiece){box_at(5, 0, 10, 1), 0}, corners, 7));
-    assert_true(even_with((VistaPiece){box_at(0.5, -3, 10, 2.9), 0}, corners, 0));
-    assert_true(even_with((VistaPiece){box_at(0, 0, -10, 1), 0}, corners, 0)); /* behind the eye */
-    assert_false(even_with((VistaPiece){box_at(0.5, 0.5, 10, 0.01), 0}, corners, 7));
-    assert_false(even_with((VistaPiece){box_at(1.1, 0.5, 10, 0.2), 0}, corners, 7));
+    assert_true(even_with((VistaPiece){.box = box_at(5, 0, 10, 1), .object = 0}, corners, 7));
+    assert_true(even_with((VistaPiece){.box = box_at(0.5, -3, 10, 2.9), .object = 0}, corners, 0));
+    assert_true(even_with((VistaPiece){.box = box_at(0, 0, -10, 1), .object = 0}, corners, 0)); /* behind the eye */
+    assert_false(even_with((VistaPiece){.box = box_at(0.5, 0.5, 10, 0.01), .object = 0}, corners, 7));
+    assert_false(even_with((VistaPiece){.box = box_at(1.1, 0.5, 10, 0.2), .object = 0}, corners, 7));
 }
 
 static void test_what_is_convex_hides_what_is_behind(void **state) {
     (void)state;
     Ray corners[4];
     corners_at(0, 0, 0.1, 0.1, corners);
-    assert_true(even_with((VistaPiece){box_at(0.5, 0.5, 10, 2), 7}, corners, 7));
-    assert_false(even_with((VistaPiece){box_at(0.5, 0.5, 10, 2), 8}, corners, 7));
-    assert_false(even_with((VistaPiece){box_at(0.5, 0.5, 10, 2), 0}, corners, 7));
-    assert_false(even_with((VistaPiece){box_at(0, 0, 0, 2), 7}, corners, 7)); /* seen from within */
+    assert_true(even_with((VistaPiece){.box = box_at(0.5, 0.5, 10, 2), .object = 7}, corners, 7));
+    assert_false(even_with((VistaPiece){.box = box_at(0.5, 0.5, 10, 2), .object = 8}, corners, 7));
+    assert_false(even_with((VistaPiece){.box = box_at(0.5, 0.5, 10, 2), .object = 0}, corners, 7));
+    assert_false(even_with((VistaPiece){.box = box_at(0, 0, 0, 2), .object = 7}, corners, 7)); /* seen from within */
 }
 
 static void test_one_thing_alone_is_told(void **state) {
     (void)state;
     Ray corners[4];
-    VistaPiece two[] = {{box_at(0.5, 0.5, 10, 2), 0}, {box_at(0.5, 0.5, 20, 2), 8}};
+    VistaPiece two[] = {{.box = box_at(0.5, 0.5, 10, 2), .object = 0}, {.box = box_at(0.5, 0.5, 20, 2), .object = 8}};
     corners_at(0, 0, 0.1, 0.1, corners);
     VistaPieces pieces = {two, 1, false};
     Vista vista = vista_of(&pieces, corners);
@@ -79,7 +79,7 @@ static void test_nothing_that_can_be_met_is_left_out(void **state) {
             corners[k] = (Ray){vec3(k & 1 ? x + w : x, k & 2 ? y + w : y, 0), vec3(0, 0, 1)};
         Box3 box = box_at(2 * random_next_unit(&s) - 1, 2 * random_next_unit(&s) - 1,
                           4 * random_next_unit(&s) - 1, random_next_unit(&s));
-        const VistaPiece piece = {box, 0};
+        const VistaPiece piece = {.box = box, .object = 0};
         const VistaPieces pieces = {(VistaPiece *)&piece, 1, false};
         Vista vista = vista_of(&pieces, corners);
         bool even = vista_view(&vista, corners, 0) == VISTA_EVEN;
@@ -103,7 +103,7 @@ static void test_what_cannot_be_told(void **state) {
     VistaPieces pieces = {many, 0, true};
     Vista vista = vista_of(&pieces, corners);
     assert_int_equal(vista_view(&vista, corners, 0), VISTA_OPEN); /* something has no end */
-    for (int i = 0; i <= VISTA_MOST; i++) many[i] = (VistaPiece){box_at(0.5, 0.5, 10 + i, 0.1), 0};
+    for (int i = 0; i <= VISTA_MOST; i++) many[i] = (VistaPiece){.box = box_at(0.5, 0.5, 10 + i, 0.1), .object = 0};
     pieces = (VistaPieces){many, VISTA_MOST + 1, false};
     vista = vista_of(&pieces, corners);
     assert_int_equal(vista_view(&vista, corners, 0), VISTA_OPEN);
@@ -112,14 +112,30 @@ static void test_what_cannot_be_told(void **state) {
     assert_int_equal(vista_view(&vista, corners, 0), VISTA_EVEN);
     for (int k = 0; k < 4; k++) corners[k].direction = vec3(0, 0, 1); /* no width */
     assert_int_equal(vista_view(&vista, corners, 0), VISTA_OPEN);
-    corners[1].direction = vec3(NAN, 0, 1);
+    corners[1].direction = vec3((double)NAN, 0, 1);
     assert_int_equal(vista_view(&vista, corners, 0), VISTA_OPEN);
+}
+
+static void test_thin_things_are_told(void **state) {
+    (void)state;
+    Ray corners[4];
+    corners_at(0, 0, 1, 1, corners);
+    const double spread = 0.01;
+    VistaPiece piece = {.box = box_at(1, 1, 10, 2), .width = 0.05};
+    VistaPieces pieces = {&piece, 1, false};
+    assert_true(vista_has_thin(&pieces, corners, spread, 0)); /* 8 off, where a pixel is 0.08 wide */
+    piece.width = 0.2;
+    assert_false(vista_has_thin(&pieces, corners, spread, 0));
+    assert_true(vista_has_thin(&pieces, corners, spread, 0.2));
+    piece = (VistaPiece){.box = box_at(-20, 1, 10, 2), .width = 0.05};
+    assert_false(vista_has_thin(&pieces, corners, spread, 0));
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_is_beside_does_not_count),
                                        cmocka_unit_test(test_what_is_convex_hides_what_is_behind),
                                        cmocka_unit_test(test_nothing_that_can_be_met_is_left_out),
-                                       cmocka_unit_test(test_what_cannot_be_told), cmocka_unit_test(test_one_thing_alone_is_told)};
+                                       cmocka_unit_test(test_what_cannot_be_told), cmocka_unit_test(test_one_thing_alone_is_told),
+                                       cmocka_unit_test(test_thin_things_are_told)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

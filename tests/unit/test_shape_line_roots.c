@@ -96,6 +96,7 @@ static void first_roots_are_not_missed(void **state) {
     compare(1, TAPE_PERLIN, LINE_AFFINE_OPTIMISED, MANY, 0, 2000, 4000);
     compare(1, TAPE_PERLIN, LINE_AFFINE, ONE, 0.1, 300, 2000);
     compare(1, TAPE_PERLIN, LINE_INTERVAL, ONE, 0, 200, 2000);
+    compare(1, TAPE_PERLIN, LINE_STANDARD, ONE, 0, 200, 2000);
     compare(1, TAPE_POV_NOISE, LINE_AFFINE_OPTIMISED, ONE, 1, 300, 2000);
     compare(1, TAPE_POV_NOISE, LINE_AFFINE_OPTIMISED, MANY, 1, 1000, 3000);
 }

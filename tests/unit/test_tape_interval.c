@@ -14,7 +14,7 @@ static void every_operation_holds_its_values(void **state) {
     (void)state;
     int failures = 0;
     for (size_t o = 0; o < VTS_ARRAY_COUNT(operations); o++) {
-        for (uint64_t i = 0; i < 20000; i++) {
+        for (uint64_t i = 0, count = span_count(20000); i < count; i++) {
             uint64_t n = i * 1000 + o;
             Interval in[3] = {some_interval(n, 0), some_interval(n, 10), some_interval(n, 20)};
             Interval out = tape_apply_interval(operations[o].op, in[0], in[1], in[2]);
@@ -36,7 +36,7 @@ static void places_without_a_number_are_held(void **state) {
     (void)state;
     int failures = 0;
     for (size_t o = 0; o < VTS_ARRAY_COUNT(operations); o++) {
-        for (uint64_t i = 0; i < 4000; i++) {
+        for (uint64_t i = 0, count = span_count(4000); i < count; i++) {
             uint64_t n = i * 1000 + o;
             Interval in[3];
             double x[3];
@@ -67,13 +67,13 @@ static void exact_values_are_held(void **state) {
                      {TAPE_TAN, tanl}, {TAPE_ASIN, asinl}, {TAPE_ACOS, acosl}, {TAPE_ATAN, atanl}, {TAPE_SINH, sinhl}, {TAPE_COSH, coshl},
                      {TAPE_TANH, tanhl}, {TAPE_ASINH, asinhl}, {TAPE_ACOSH, acoshl}, {TAPE_ATANH, atanhl}};
     for (size_t f = 0; f < VTS_ARRAY_COUNT(functions); f++)
-        for (uint64_t i = 0; i < 20000; i++) {
+        for (uint64_t i = 0, count = span_count(20000); i < count; i++) {
             Interval a = some_interval(i, 0), out = tape_apply_interval(functions[f].op, a, a, a);
             double x = some_place(a, i, 50);
             long double exact = functions[f].exact((long double)x);
             assert_true(isnan(exact) ? out.nan : (long double)out.low <= exact && exact <= (long double)out.high);
         }
-    for (uint64_t i = 0; i < 200000; i++) {
+    for (uint64_t i = 0, count = span_count(200000); i < count; i++) {
         Interval a = some_interval(i, 0), b = some_interval(i, 10);
         long double x = (long double)some_place(a, i, 50), y = (long double)some_place(b, i, 60);
         const long double exact[4] = {x + y, x - y, x * y, x / y};

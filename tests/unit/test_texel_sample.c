@@ -258,11 +258,68 @@ static void test_march_with_skipping(void **state) {
     scene_free(&mesh);
 }
 
+/* The weight with which interpolation at x, in voxels, reads the voxel. */
+static double tent(double x, int voxel, int n, bool cyclic) {
+    if (!cyclic) x = fmin(fmax(x, .5), n - .5);
+    double away = fabs(x - .5 - voxel);
+    return fmax(0, 1 - (cyclic ? fmin(away, n - away) : away));
+}
+
+static void test_nearest_is_what_counts_most(void **state) {
+    (void)state;
+    TestMesh mesh = scene_leaves(40, .06, 8);
+    RandomStream random = {8};
+    VoxelLayer *layer = build(&mesh, 32, TEXEL_CYCLIC_X, vec3f(1, .5f, 1));
+    int found = 0;
+    for (int i = 0; i < 4000; i++) {
+        int level = i % layer->levels;
+        const VoxelLevel *l = &layer->level[level];
+        Vec3f p = vec3f((float)random_next_unit(&random), .5f * (float)random_next_unit(&random), (float)random_next_unit(&random)), middle;
+        const float at[3] = {p.x, p.y, p.z};
+        uint32_t voxel = UINT32_MAX, best = UINT32_MAX;
+        double most = 0;
+        int place[3] = {0, 0, 0};
+        for (size_t b = 0; b < voxel_level_bricks(l); b++)
+            for (int z = 0; l->index[b] >= 0 && z < 8; z++) {
+                const VoxelBrick *brick = &l->bricks[l->index[b]];
+                uint32_t number = brick->first[z];
+                for (int bit = 0; bit < 64; bit++) {
+                    if (!(brick->slice[z] >> bit & 1)) continue;
+                    int nx = l->brick_size[0], ny = l->brick_size[1];
+                    const int v[3] = {(int)b % nx * 8 + bit % 8, (int)b / nx % ny * 8 + bit / 8, (int)b / nx / ny * 8 + z};
+                    double weight = 1;
+                    for (int k = 0; k < 3; k++) weight *= tent((double)(at[k] * l->per_side[k]), v[k], l->size[k], layer->cyclic[k]);
+                    if (weight > most) most = weight, best = number, memcpy(place, v, sizeof v);
+                    number++;
+                }
+            }
+        bool any = voxel_layer_nearest(layer, level, p, &voxel, &middle);
+        if (fabs(most) < 1e-5) continue; /* a hair's weight is rounding */
+        assert_true(any);
+        found++;
+        const float m[3] = {middle.x, middle.y, middle.z};
+        double weight = 1;
+        for (int k = 0; k < 3; k++) {
+            int v = (int)(m[k] * l->per_side[k]);
+            assert_true(fabsf(m[k] * l->per_side[k] - (float)v - .5f) < 1e-3f);
+            weight *= tent((double)(at[k] * l->per_side[k]), v, l->size[k], layer->cyclic[k]);
+        }
+        assert_true(weight > most - 1e-4);
+        assert_true(voxel < l->code_count);
+        if (voxel == best)
+            for (int k = 0; k < 3; k++) assert_int_equal((int)(m[k] * l->per_side[k]), place[k]);
+        else assert_true(weight < most + 1e-4); /* two count the same */
+    }
+    assert_true(found > 400);
+    voxel_layer_destroy(layer);
+    scene_free(&mesh);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_interpolation),        cmocka_unit_test(test_clamped_levels_and_strange_points),
         cmocka_unit_test(test_wrapping_is_seamless), cmocka_unit_test(test_skipping_is_conservative),
-        cmocka_unit_test(test_march_with_skipping),
+        cmocka_unit_test(test_march_with_skipping), cmocka_unit_test(test_nearest_is_what_counts_most),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

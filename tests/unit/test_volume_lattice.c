@@ -149,8 +149,22 @@ static void rays_through_edges_of_empty_blocks_end(void **state) {
     alarm(0);
 }
 
+/* Cells that go into each other evenly keep all that is in them, and each is the mean of its block. */
+static void coarser_ones_hold_as_much(void **state) {
+    (void)state;
+    Lattice fine = make(12, 6, 9, 0.7, 5), coarse;
+    lattice_coarsen(&coarse, &fine, (int[3]){4, 3, 9}, &arena);
+    assert_near(lattice_mean(&coarse), lattice_mean(&fine), 1e-7);
+    double sum = 0;
+    for (int j = 3; j <= 4; j++)
+        for (int i = 4; i <= 6; i++) sum += lattice_value(&fine, vec3(i, j, 7));
+    assert_near(lattice_value(&coarse, vec3(2, 2, 7)), sum / 6, 1e-6);
+    lattice_coarsen(&coarse, &fine, (int[3]){5, 4, 7}, &arena); /* unevenly: no cell is left out, none beyond the ends is asked for */
+    for (int k = 1; k <= 7; k++) assert_true(isfinite(lattice_value(&coarse, vec3(5, 4, k))));
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(integrals_are_exact), cmocka_unit_test(one_cell_is_even), cmocka_unit_test(empty_has_no_pieces),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(integrals_are_exact), cmocka_unit_test(one_cell_is_even), cmocka_unit_test(empty_has_no_pieces), cmocka_unit_test(coarser_ones_hold_as_much),
                                        cmocka_unit_test(inversion_is_exact), cmocka_unit_test(rays_through_edges_of_empty_blocks_end)};
     arena_init(&arena, NULL, 0);
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

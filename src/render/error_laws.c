@@ -1,0 +1,74 @@
+#include "render/error_laws.h"
+
+#include <string.h>
+
+/* Against random samples, of which n leave 1/n of the variance: what n of a straight edge leave (measured: 0.40 at 5, falling as 1/√n). */
+static const double EDGE_GAIN = 0.4;
+/* Whoever stops where errors seem to be small stops more often where they only seem so: what was found true of the sum of squares. */
+static const double CAUTION = 1.8;
+/* Of that, what is not true of tiles that end for want of samples. */
+static const double UNSTOPPED = 1.2;
+/* What is known of a law by itself counts as much as so many pixels. */
+static const double KNOWN = 4, KNOWN_OF_PATTERNS = 0.5;
+/* Quiet is what is thought to have so much of the squared error that is accepted; a contrast of half that makes no difference. */
+static const double QUIET = 0.25;
+/* The squared error of a mean, against the squared difference from that of twice as many samples. */
+static const double DOUBLING_TO_ERROR = 2;
+/* What is missed by some samples is missed by twice as many, too: about so much of its square. */
+static const double MISSED_AGAIN = 0.5;
+
+/* Of what is expected of a contrast the part that was found where it was as large, or next larger. What was missed of quiet pixels; before
+ * much was found, about what was of those with half as many samples. */
+static void tell(ErrorLaws *laws) {
+    double ratio = 1, missed = 0;
+    for (int k = 0; k < ERROR_CLASSES; k++)
+        laws->ratios[k] = ratio = learned_ratio(&laws->contrasts[k], k % ERROR_OF_PATTERNS ? ratio : 1, k < ERROR_OF_PATTERNS ? KNOWN : KNOWN_OF_PATTERNS);
+    for (int k = 0; k < QUIET_CLASSES; k++) laws->missed[k] = missed = learned_mean(&laws->quiet[k], MISSED_AGAIN * missed);
+}
+
+void error_laws_begin(ErrorLaws *laws, double accepted) {
+    *laws = (ErrorLaws){.accepted = accepted};
+    tell(laws);
+}
+
+bool error_counts(const ErrorLaws *laws, float contrast) { return CAUTION * (double)contrast > QUIET / 2 * laws->accepted; }
+
+static double variance(const Cell *cell) {
+    double n = cell_count(cell);
+    return cell_variance(cell) + (double)cell->contrast / (n * n);
+}
+
+static double error_of_many(const ErrorLaws *laws, const Cell *cell) {
+    int count = cell_count(cell);
+    double ratio = learned_ratio(&laws->levels[learned_level(count)], EDGE_GAIN * sqrt(5.0 / count), KNOWN);
+    return CAUTION * variance(cell) * ratio / count;
+}
+
+double error_alone(const ErrorLaws *laws, const Cell *cell) {
+    if (!cell->refinable) return 0;
+    return cell->net && cell_count(cell) > 1 ? error_of_many(laws, cell) : CAUTION * (double)cell->contrast * laws->ratios[cell->class] + (double)cell->doubt;
+}
+
+int error_quiet_class(const Cell *cell) { return cell->net ? 1 + learned_level(cell_count(cell)) : 0; }
+
+bool error_is_quiet(const ErrorLaws *laws, const Cell *cell, double alone) {
+    double seen = cell->net ? CAUTION * cell_variance(cell) / cell_count(cell) : alone;
+    return cell->refinable && seen < QUIET * laws->accepted;
+}
+
+double error_expected(const ErrorLaws *laws, const Cell *cell, double alone) {
+    return error_is_quiet(laws, cell, alone) ? fmax(alone, laws->missed[error_quiet_class(cell)]) : alone;
+}
+
+void error_learn(ErrorLaws *laws, const Cell *before, const Cell *cell) {
+    const int count = cell_count(cell);
+    if (error_is_quiet(laws, before, error_alone(laws, before)))
+        learn(&laws->quiet[error_quiet_class(before)], 0, (before->net ? DOUBLING_TO_ERROR : 1) * (double)light_mean_square(vec3f_sub(before->mean, cell->mean)));
+    if (before->net == 0 && cell->centred)
+        learn(&laws->contrasts[cell->class], (double)cell->contrast, (double)light_mean_square(vec3f_sub(cell->first, cell->mean)));
+    learn(&laws->levels[learned_level(count)], variance(cell) / count, cell_halves_error(cell));
+    tell(laws);
+}
+
+double error_of_all(double sum) { return sum / CAUTION; }
+double error_of_stopped(double sum) { return sum / UNSTOPPED; }

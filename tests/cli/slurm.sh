@@ -70,7 +70,7 @@ S
 # Until a job, with all of its tasks, is no longer in the queue.
 wait_for() {
   local tries
-  for ((tries = 0; tries < 300; tries++)); do
+  for ((tries = 0; tries < 900; tries++)); do
     [ -z "$(squeue -h -j "$1" 2>/dev/null)" ] && return
     sleep 0.1
   done
@@ -94,16 +94,18 @@ S
   wait_for "$array"; wait_for "$stitch"
   for n in 1 2 3; do cmp -s w$n.ppm a$n.ppm || fail "frame $n: $(cat slurm-*.out)"; done
 
-  # A task is killed in the middle: what depends on it does not run, and the next array has that task alone.
+  # A task is killed in the middle: what depends on it does not run, and the next array has that task alone. Both tasks of
+  # frame 2 go in circles until the file is there that says that one of them was killed, however fast or slow the machine.
   rm -f a?.ppm a?.r*.ppm
   cp film.vts slow.vts
   cat >>slow.vts <<'S'
-#if (frame_number = 2) #declare I = 0; #while (I < 2000000) #declare I = I + 1; #end #end
+#if (frame_number = 2) #declare I = 0; #while (I < 1e8 & !file_exists("killed")) #declare I = I + 1; #end #end
 S
   run farm slurm slow.vts -s 40x30 -o a.ppm --regions 1x2 --at-once 2
   array=$(sed -n 's/submitted as job //p' out) stitch=$(sed -n 's/its parts will be joined by job //p' out)
   for ((n = 0; n < 200; n++)); do squeue -h -t R -j "${array}_2" 2>/dev/null | grep -q . && break; sleep 0.1; done
   scancel "${array}_2"
+  wait_for "${array}_2"; touch killed
   wait_for "$array"; wait_for "$stitch"
   [ ! -e a2.r0c0.ppm ] || fail "the killed task has made its picture"
   [ -s a2.r1c0.ppm ] && [ -s a3.r1c0.ppm ] || fail "the other tasks have not: $(ls)"

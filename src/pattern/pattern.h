@@ -20,6 +20,8 @@ double pigment_turbulence(const Pigment *pigment, Vec3 point);
 double pigment_value(const Pigment *pigment, Vec3 point, Vec3 normal);
 /* Whether the pigment has one colour everywhere, which *color gets. */
 bool pigment_is_uniform(const Pigment *pigment, Color *color);
+/* Whether the normal decides on its colour (`slope` somewhere in it); true where that takes too long to find out. */
+bool pigment_follows_slope(const Pigment *pigment);
 
 typedef struct SurfaceLook {
     Color color;          /* of all layers together; filter and transmit: what passes the lowest */

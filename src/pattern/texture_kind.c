@@ -1,4 +1,4 @@
-/* What a texture may do with light, told from its text. */
+/* What a texture may do with light, and what it asks of the surface, told from its text. */
 #include "image/picture.h"
 #include "pattern/pattern.h"
 
@@ -20,6 +20,19 @@ static bool pigment_is_opaque(const Pigment *pigment, int *budget) {
         if (entry->pigment ? !pigment_is_opaque(entry->pigment, budget) : !color_is_opaque(entry->color)) return false;
     }
     return true; /* the patterns' own maps are */
+}
+
+static bool follows_slope(const Pigment *pigment, int *budget) {
+    if (--*budget < 0 || pigment->kind == PATTERN_SLOPE) return true;
+    if (pigment->source && follows_slope(pigment->source, budget)) return true;
+    for (size_t i = 0; i < pigment->entry_count; i++)
+        if (pigment->entries[i].pigment && follows_slope(pigment->entries[i].pigment, budget)) return true;
+    return false;
+}
+
+bool pigment_follows_slope(const Pigment *pigment) {
+    int budget = MOST_LOOKED_AT;
+    return follows_slope(pigment, &budget);
 }
 
 static bool is_opaque(const Texture *texture, int *budget) {

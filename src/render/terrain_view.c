@@ -1,6 +1,7 @@
 #include "render/terrain_view.h"
 
 #include "base/stopwatch.h"
+#include "pattern/pattern.h"
 #include "render/lighting.h"
 #include "render/view_reach.h"
 #include "scene/scene_hash.h"
@@ -30,6 +31,7 @@ typedef struct Stand {
     Transform to_world;
     double longest_side; /* of cells, scene units; HUGE_VAL: no skin on it */
     double rise;         /* of its skins, scene units */
+    bool slope_grows;    /* a skin is as high as the slope of its ground says */
     const MeshData *mesh;
 } Stand;
 
@@ -117,8 +119,9 @@ static void allow(const void *context, const GroundSpot *spot, double *error, do
     *side = isfinite(a->stand->longest_side) ? fmax(CELL_PIXELS * pixel, a->stand->longest_side / a->stretch) : HUGE_VAL;
 }
 
-static double pixels_off(const TerrainViewOptions *options) {
-    if (options->exact) return PIXELS_OFF_EXACT;
+/* Slopes that tell how high a skin is show by more than their light: a little error moves the border of a wood by many pixels, where the ground bends slowly. */
+static double pixels_off(const TerrainViewOptions *options, const Stand *stand) {
+    if (options->exact || stand->slope_grows) return PIXELS_OFF_EXACT;
     return double_clamp(PIXELS_OFF * options->max_error / DEFAULT_MAX_ERROR, PIXELS_OFF_EXACT, 2);
 }
 
@@ -170,7 +173,7 @@ static const MeshData *mesh_of(Lowering *l, Stand *stand) {
     const Ground *ground = stand->terrain->ground;
     const double start = stopwatch_wall();
     ArenaMark mark = arena_mark(l->scratch);
-    Allowance allowance = {.lowering = l, .stand = stand, .horizon = horizon_of(l, stand), .stretch = tessellate_stretch(&stand->to_world.linear), .pixels_off = pixels_off(l->options)};
+    Allowance allowance = {.lowering = l, .stand = stand, .horizon = horizon_of(l, stand), .stretch = tessellate_stretch(&stand->to_world.linear), .pixels_off = pixels_off(l->options, stand)};
     find_reaches(l, stand, &allowance);
     const GroundDetail detail = {.allow = allow, .context = &allowance, .every_post = stand->terrain->every_post, .most_vertices = l->options->most_vertices};
     MeshData *mesh = arena_new(l->arena, MeshData);
@@ -202,7 +205,7 @@ static Stand *stand_of(Lowering *l, const Terrain *terrain, const Transform *to_
         if (stand->terrain == terrain && same_transform(&stand->to_world, to_world)) return stand;
     }
     Stand *stand = list_push(l->arena, &l->stands);
-    *stand = (Stand){terrain, *to_world, HUGE_VAL, 0, NULL};
+    *stand = (Stand){.terrain = terrain, .to_world = *to_world, .longest_side = HUGE_VAL};
     return stand;
 }
 
@@ -292,6 +295,7 @@ static void ask_for_cells(Lowering *l, const Skin *skin) {
     Stand *stand = stand_of(l, s->terrain, &s->transform);
     stand->longest_side = fmin(stand->longest_side, l->options->skin_side(skin));
     stand->rise = fmax(stand->rise, RISE * fabs(skin->mapping.height));
+    stand->slope_grows |= skin->mapping.height_pigment && pigment_follows_slope(skin->mapping.height_pigment);
 }
 
 static const Skin *lower_skin(Lowering *l, const Skin *skin) {

@@ -138,6 +138,7 @@ void vts_session_destroy(VtsSession *session) {
     session_trim_nets(session, true);
     volume_memo_destroy(session->volume_memo);
     exact_memo_destroy(session->exact_memo);
+    free(session->film_pilot.texels);
     free(session->last_error);
     texel_cache_destroy(session->texels);
     pool_destroy(session->pool);

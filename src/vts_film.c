@@ -6,6 +6,7 @@
 #include "render/volume_memo.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static bool mentions_film(VtsSession *session, const char *path);
@@ -65,13 +66,13 @@ VtsStatus session_film(VtsSession *session, const char *scene_path, VtsFilm *out
     return VTS_OK;
 }
 
-/* ---- trial pixels ---- */
+/* ---- what one frame tells of others ---- */
 
-/* So many frames in a row are drawn by the trial pixels of the first of them: each for itself would differ by chance, and take longer than all
- * else that is built. Whichever of them are drawn, and by whom, it is the same frame. */
+/* So many frames in a row are drawn by the trial pixels of the first of them, and their texels are no coarser than its: each for itself would differ
+ * by chance, and take longer than all else that is built. Whichever of them are drawn, and by whom, it is the same frame. */
 enum { FRAMES_ALIKE = 24 };
 
-/* The options of the frame whose trials count. */
+/* The options of the frame that tells. */
 static VtsOptions telling_frame(const VtsOptions *o) {
     VtsOptions out = *o;
     int passed = o->frame - o->first_frame, back = passed % FRAMES_ALIKE;
@@ -81,7 +82,7 @@ static VtsOptions telling_frame(const VtsOptions *o) {
     return out;
 }
 
-/* Trials are drawn there, and the session comes back as it was, but for what is compiled. */
+/* It is compiled, and the session comes back as it was, but for that. */
 static VtsStatus ask_frame(VtsSession *session, const VtsOptions *frame, const char *scene_path, bool exact) {
     VtsOptions own = session->options;
     session->options = *frame;
@@ -91,19 +92,30 @@ static VtsStatus ask_frame(VtsSession *session, const VtsOptions *frame, const c
     return status;
 }
 
+/* What has just been compiled tells. */
+static void keep_told(VtsSession *session, int frame) {
+    struct FilmPilot *told = &session->film_pilot;
+    const CompiledScene *compiled = &session->compiled;
+    TexelFrame *texels = realloc(told->texels, size_max(1, compiled->texel_count) * sizeof *texels);
+    if (!texels) memory_budget_fail(&session->memory);
+    for (size_t i = 0; i < compiled->texel_count; i++) texels[i] = (TexelFrame){compiled->texels[i]->finest_seen, compiled->texels[i]->built};
+    session->pilot.texels = texels, session->pilot.texel_count = compiled->texel_count;
+    *told = (struct FilmPilot){true, frame, session->pilot, texels};
+}
+
 VtsStatus session_compile_frame(VtsSession *session, const char *scene_path, bool exact) {
     const VtsOptions frame = telling_frame(&session->options);
     struct FilmPilot *told = &session->film_pilot;
     if (!session->in_film || frame.last_frame <= frame.first_frame || (frame.time_set && !(frame.fps > 0)))
         return session_compile(session, exact, 0);
-    if (told->told && told->frame != frame.frame) *told = (struct FilmPilot){.told = false};
+    if (told->told && told->frame != frame.frame) *told = (struct FilmPilot){.told = false, .texels = told->texels};
     bool tells = frame.frame == session->options.frame;
-    session->pilot = told->result;
+    session->pilot = tells ? (PilotResult){.known = false} : told->result;
     session->pilot.elsewhere = !tells && !told->told;
     VtsStatus status = session_compile(session, exact, 0);
     bool asked = status == VTS_OK && session->pilot.asked;
     if (asked) status = ask_frame(session, &frame, scene_path, exact);
-    if (status == VTS_OK && (tells || asked)) *told = (struct FilmPilot){true, frame.frame, session->pilot};
+    if (status == VTS_OK && (tells || asked)) keep_told(session, frame.frame);
     return asked && status == VTS_OK ? session_repeat(session, scene_path, exact) : status;
 }
 

@@ -51,6 +51,7 @@ struct VtsSession {
         bool told;            /* by this frame */
         int frame;
         PilotResult result;   /* not known where nothing of it was needed */
+        TexelFrame *texels;   /* of it */
     } film_pilot;
     struct KeptStates *nets; /* followed so far; NULL: none */
     uint64_t key;   /* of the picture that is being drawn: session_key() */
@@ -92,7 +93,7 @@ VtsStatus session_draw(VtsSession *session, bool exact, const MomentPlan *plan, 
 /* vts_shutter.c: the same over the time that the picture is exposed. Leaves scene and compiled scene of some moment of it. */
 VtsStatus session_expose(VtsSession *session, const char *scene_path, bool exact, RenderStats *stats);
 struct Preview *session_connect_preview(VtsSession *session);
-/* vts_film.c: session_compile() of what is evaluated, with trial pixels told by one frame of each second for all of it. */
+/* vts_film.c: session_compile() of what is evaluated, with what one frame of each second tells for all of it. */
 VtsStatus session_compile_frame(VtsSession *session, const char *scene_path, bool exact);
 /* vts_shutter.c: evaluates once more, silently, and compiles. */
 VtsStatus session_repeat(VtsSession *session, const char *scene_path, bool exact);

@@ -137,16 +137,12 @@ void beam_pilot(CompiledScene *compiled) {
     compiled->voxel_error = -1;
     if (!(compiled->all_exact_to > 0) || isinf(compiled->all_exact_to)) return;
     PilotResult *kept = compiled->options->pilot, here = {.known = false};
-    if (kept && kept->elsewhere && !kept->known) {
-        kept->asked = true;
-        return;
-    }
     describe(compiled, &here);
     if (kept && kept->known && are_alike(&here, kept)) compiled->told = kept;
     PilotResult result = compiled->told ? *compiled->told : tell(compiled);
     if (kept && !kept->known) {
         compiled->tells = kept;
-        *kept = here;
+        kept->planned = here.planned, kept->bright = here.bright, kept->lamps = here.lamps;
         kept->known = true, kept->factor = result.factor, kept->voxel_error = result.voxel_error;
     }
     beam_reach_set(compiled, result.factor);

@@ -42,8 +42,6 @@ void beam_worth(CompiledScene *compiled) {
     compiled->allot = (AllotPlan){.first = compiled->samples, .most = most};
     bool told = compiled->scene->settings.samples > 0 || compiled->options->exact;
     if (told || !is_drawn_by_beams(compiled) || view->width < BLOCK || view->height < BLOCK) return;
-    const PilotResult *pilot = compiled->options->pilot;
-    if (pilot && pilot->asked && !pilot->known) return; /* another scene tells */
     if (compiled->told && compiled->told->worth > 0) {
         compiled->allot.worth = compiled->told->worth;
         return;

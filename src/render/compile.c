@@ -132,6 +132,7 @@ static CompileStatus build_texels(const CompileOptions *options, Detail detail, 
     bool sky = out->scene->settings.sky_light && detail != DETAIL_EXACT; /* what triangles see of the sky, voxels know */
     if (!voxels && !out->secondary && !sky) return COMPILE_OK; /* mirrors show voxels */
     for (size_t i = 0; i < out->skin_count && !options->exact; i++) skin_ask_voxels(&out->skins[i], options, out);
+    if (!options->exact) texels_settle_voxels(out);
     for (size_t i = 0; i < out->texel_count; i++) {
         if (!texel_build(out->texels[i], options, out, diags)) return interrupted(options) ? COMPILE_INTERRUPTED : COMPILE_FAILED;
         if (interrupted(options)) return COMPILE_INTERRUPTED;
@@ -171,6 +172,14 @@ size_t compiled_skins_met(const CompiledScene *compiled, const Ray *ray, double 
     return met.count;
 }
 
+/* Whether another frame of the film has to be compiled first. */
+static bool asks_elsewhere(const CompiledScene *compiled) {
+    const CompileOptions *options = compiled->options;
+    PilotResult *pilot = options->pilot;
+    if (!pilot || !pilot->elsewhere || options->exact || !compiled->texel_count) return false;
+    return pilot->asked = true;
+}
+
 CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, Arena *arena, DiagList *diags, CompiledScene *out) {
     double start = stopwatch_wall();
     size_t errors = diags->error_count;
@@ -208,6 +217,8 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
         if (skin_compile(skins.items[i], out, diags, &out->skins[out->skin_count])) out->skin_count++;
     if (interrupted(options)) return COMPILE_INTERRUPTED;
     if (diags->error_count > errors) return COMPILE_FAILED;
+    if (asks_elsewhere(out)) return COMPILE_OK;
+    texels_settle_triangles(out);
     out->most_samples = scene->settings.max_error > 0 ? MOST_SAMPLES : MOST_SAMPLES_UNASKED;
     if (options->film && out->skin_count) { /* errors of two frames add up in their difference, and few of those of skins are the same */
         out->max_error *= FILM_SHARE;

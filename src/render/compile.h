@@ -15,16 +15,23 @@
 #include "shape/box_tree.h"
 #include "texel/texel_cache.h"
 
-/* What trial pixels have told (beam_pilot.c), for scenes that hardly differ. */
+/* How fine a texel is in one frame of a film: BuiltTexel has both. */
+typedef struct TexelFrame {
+    int finest_seen, built;
+} TexelFrame;
+
+/* What a frame of a film tells those after it: what trial pixels have shown (beam_pilot.c), for scenes that hardly differ, and how fine texels are. */
 typedef struct PilotResult {
-    bool known;
+    bool known;                 /* what trial pixels have shown */
     double factor, voxel_error; /* of the planned distances; of CompiledScene */
     double planned;             /* what they were told at: the least of these distances, and */
     Vec3 lamps;                 /* the lamps' sum, by brightness and direction (those at a place: towards it from the middle of what is exact), and */
     double bright;              /* the sum of their brightness */
     double worth;   /* of samples (beam_worth.c); 0: not told */
-    bool elsewhere; /* they are to be told by another scene: nothing is drawn for it, and */
-    bool asked;     /* if the scene needs them, this becomes true */
+    const TexelFrame *texels; /* of CompiledScene, in its order: others build none coarser, so that what they share is built once; NULL: not told */
+    size_t texel_count;
+    bool elsewhere; /* all this is to be told by another scene first: one with texels is not compiled further than to its skins, and */
+    bool asked;     /* this becomes true */
 } PilotResult;
 
 typedef struct CompileOptions {
@@ -116,7 +123,9 @@ void compiled_scene_print(const CompiledScene *compiled, StrBuf *out);
 bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, CompiledSkin *out);
 /* The longest cells that show all that changes along the skin: 0 where no length is told, HUGE_VAL where nothing changes. */
 double skin_longest_cell(const Skin *skin);
-/* Asks the skin's texels for the resolution that the view can see where voxels are drawn. */
+/* Tells the skin's texels how fine they are seen where they are nearest. skin_resolution.c */
+void skin_ask_triangles(CompiledSkin *skin, const CompiledScene *compiled);
+/* Asks them for the resolution that the view can see where voxels are drawn. skin_resolution.c */
 void skin_ask_voxels(CompiledSkin *skin, const CompileOptions *options, const CompiledScene *compiled);
 /* When the texels are built: what only they tell, and the hierarchy over the cells. False when Embree is out of memory. */
 bool skin_finish(CompiledSkin *skin, const CompileOptions *options, CompiledScene *compiled);
@@ -127,7 +136,10 @@ PlacedTexel *skin_place_family(CompiledSkin *skin, size_t index, const TexelDef 
 bool skin_place_wang(CompiledSkin *skin, size_t index, const TexelDef *const *defs, size_t count, CompiledScene *compiled, DiagList *diags);
 /* The texel of a definition, made known at the first time; looks alone. */
 BuiltTexel *texel_ask(const TexelDef *def, CompiledScene *compiled);
-/* Its voxels, as fine as was asked for; or its exact geometry, for the reference. */
+/* When all skins have asked: how fine triangles and voxels are, in powers of two where frames of films share them. skin_resolution.c */
+void texels_settle_triangles(CompiledScene *compiled);
+void texels_settle_voxels(CompiledScene *compiled);
+/* Its voxels, as fine as was settled; or its exact geometry, for the reference. */
 bool texel_build(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags);
 /* Triangles for beams of the skin's texels, as far as they may be seen nearer than voxels are planned to begin (`everything`: all); false after a
  * diagnostic or when interrupted. beam_plan.c */

@@ -59,7 +59,7 @@ typedef struct BuiltTexel {
     TexelMatter *matter;
     size_t matter_count;
     int asked, needed, built; /* resolutions of voxels: asked 0 = auto, built 0 = none, as everything seen is exact */
-    int finest_seen;          /* the resolution that the nearest place seen would ask for */
+    int finest_seen;          /* the resolution that the nearest place seen would ask for; in films a power of two above it */
     size_t voxel_count, bytes;
     double build_seconds;     /* or of loading */
     bool cached;              /* nothing of it had to be built */

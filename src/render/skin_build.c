@@ -18,15 +18,9 @@
 
 #include <string.h>
 
-enum { LEAST_RESOLUTION = 8, LARGEST_AUTO_RESOLUTION = 512, MOST_SUPERIMPOSED = 8 };
+enum { MOST_SUPERIMPOSED = 8 };
 
 /* ---- texels ---- */
-
-static int power_of_two_above(double x, int most) {
-    int n = LEAST_RESOLUTION;
-    while (n < most && (double)n < x) n *= 2;
-    return n;
-}
 
 /* Contents are tessellated to a fifth of a voxel: what is left of facets disappears in the voxels' own blur. */
 static const double CONTENT_TOLERANCE_VOXELS = 0.2;
@@ -229,15 +223,12 @@ BuiltTexel *texel_ask(const TexelDef *def, CompiledScene *compiled) {
 }
 
 bool texel_build(BuiltTexel *texel, const CompileOptions *options, CompiledScene *compiled, DiagList *diags) {
-    const TexelDef *def = texel->def;
-    int most = def->resolution ? def->resolution : LARGEST_AUTO_RESOLUTION;
     if (options->exact) {
         double start = stopwatch_wall();
         bool done = exact_build_texel(texel, &(ExactMaking){.tolerance = EXACT_TOLERANCE}, compiled, diags);
         texel->build_seconds = stopwatch_wall() - start;
         return done;
     }
-    texel->built = def->file ? def->resolution : power_of_two_above(texel->needed, power_of_two_above(most, TEXEL_LARGEST_RESOLUTION));
     if (!build_matter(texel, options, compiled, diags)) return false;
     if (texel->matter_count == 0) return true;
     int size[3];
@@ -433,29 +424,6 @@ static bool make_cells(const Skin *skin, const SurfaceMesh *mesh, CompiledScene 
     return true;
 }
 
-/* ---- resolution: what the view can see ---- */
-
-/* Voxels along the longest side that the nearest visible cell asks for, at so many footprints of a pixel each; not nearer than `from`. */
-static double needed_resolution(const CompiledSkin *skin, const View *view, Vec3f extent, double voxel_width, double from) {
-    double needed = 1;
-    for (size_t i = 0; i < skin->cell_count; i++) {
-        const SkinCell *cell = &skin->cells[i];
-        Box3 box = cell->bounds;
-        if (view_misses(view, box)) continue;
-        Vec3 nearest = vec3_max(box.min, vec3_min(box.max, view->camera.location));
-        double distance = fmax(from, vec3_length(vec3_sub(nearest, view->camera.location)));
-        Cone cone = view_cone(view, view->width / 2.0, view->height / 2.0, 1);
-        double footprint = cone_diameter(&cone, distance) * voxel_width;
-        SkinPoint middle = {(int32_t)i, cell->triangle ? 1.0 / 3 : 0.5, cell->triangle ? 1.0 / 3 : 0.5, 0.5};
-        TexturePlace place = skin_texture_place(cell, &middle);
-        double volume = fabs(vec3_dot(place.grad_u, vec3_cross(place.grad_v, place.grad_w))) * (double)(extent.x * extent.y * extent.z);
-        if (!(volume > 0)) continue;
-        double side = cbrt(1 / volume); /* scene units for one unit of texel space */
-        needed = fmax(needed, footprint > 0 ? side / footprint : TEXEL_LARGEST_RESOLUTION);
-    }
-    return fmin(ceil(needed), TEXEL_LARGEST_RESOLUTION);
-}
-
 /* ---- placing ---- */
 
 /* How far copies may reach out of their tiles. */
@@ -483,7 +451,6 @@ PlacedTexel *skin_place_family(CompiledSkin *skin, size_t index, const TexelDef 
         if (texel->matter_count == 0) continue;
         members[placed->family_size++] = texel;
         placed->cyclic |= (defs[k]->cyclic & (TEXEL_CYCLIC_X | TEXEL_CYCLIC_Z)) != 0;
-        texel->finest_seen = int_max(texel->finest_seen, (int)needed_resolution(skin, &compiled->view, texel->extent, (double)compiled->march.voxel_width, 0));
     }
     placed->jitter = skin->def->jitter.instance;
     if (placed->family_size) skin->texel_count++;
@@ -566,6 +533,7 @@ static bool compile_skin(const Skin *skin, CompiledScene *compiled, DiagList *di
     if (!make_cells(smooth ? smooth : skin, &mesh, compiled, out, diags)) return false;
     out->texels = arena_new_array(compiled->arena, PlacedTexel, skin->texel_count * (skin->wang ? WANG_GRIDS + 1 : 1));
     for (size_t i = 0; i < skin->texel_count; i++) place_texel(i, compiled, diags, out);
+    skin_ask_triangles(out, compiled);
     skin_rim_add(out, &mesh, compiled->arena, &compiled->scratch);
     out->rigid = skin_is_rigid(out);
     out->overlaps = sheets_overlap(out);
@@ -578,23 +546,6 @@ bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, Co
     bool good = compile_skin(skin, compiled, diags, out);
     arena_reset_to(&compiled->scratch, mark);
     return good;
-}
-
-/* The least that what triangles see of the sky is known with. */
-enum { SKY_RESOLUTION = 32 };
-
-void skin_ask_voxels(CompiledSkin *skin, const CompileOptions *options, const CompiledScene *compiled) {
-    bool all_exact = skin->boxes && !isfinite(skin->exact_to) && !compiled->secondary, sky = compiled->scene->settings.sky_light;
-    double from = skin->boxes && isfinite(skin->exact_to) ? EARLIEST_VOXELS * 0.7 * skin->exact_to : 0;
-    for (size_t i = 0; i < skin->texel_count; i++)
-        for (size_t k = 0; k < skin->texels[i].family_size; k++) {
-            BuiltTexel *texel = skin->texels[i].family[k];
-            int needed = options->texel_resolution ? options->texel_resolution
-                         : all_exact && sky        ? SKY_RESOLUTION
-                                                   : (int)needed_resolution(skin, &compiled->view, texel->extent, (double)compiled->march.voxel_width, from);
-            if (sky && skin->boxes) needed = int_max(needed, SKY_RESOLUTION);
-            texel->needed = int_max(texel->needed, needed);
-        }
 }
 
 bool skin_finish(CompiledSkin *skin, const CompileOptions *options, CompiledScene *compiled) {

@@ -1,7 +1,7 @@
 #include "terrain/ground_horizon.h"
 
 /* Directions all around, and rings about the eye, each so much wider than the one before. */
-enum { DIRECTIONS = 2048, MOST_RINGS = 1200, WIDEST = 64 /* directions that a question may span */ };
+enum { DIRECTIONS = 512, MOST_RINGS = 1200, WIDEST = 64 /* directions that a question may span */ };
 static const double GROWTH = 1.01, FIRST_RING = 0.25 /* posts */;
 
 /* Where a direction meets a ring. */

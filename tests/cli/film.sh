@@ -157,6 +157,26 @@ S
   [ "$cached" = 'Ball false Drop false Ball true Drop false Ball true Drop false ' ] || fail "built: $cached"
 }
 
+# A camera that comes nearer and goes again asks for voxels of other widths; what the first frame has built does for all of them, and each frame is
+# the same picture with others or alone.
+case_flight() {
+  cat >flight.vts <<'S'
+animation { frames 4 }
+#declare Away = array[4] { 42, 39, 44, 36 };
+camera { location <0, 0.4, -Away[frame_number - 1]> look_at 0 angle 20 }
+light_source { <5, 10, -5> rgb 1 }
+global_settings { detail voxels }
+#declare Ball = texel { layer { sphere { 0.5, 0.4 } } }
+skin { surface { patch_grid 1, 1 function(u, v) { <u - 0.5, 0, v - 0.5> } } texel { Ball } mapping { repeat <1, 1> height 1 } }
+S
+  run flight.vts -s 300x30 -o a.ppm --report -; want_status 0
+  local needed
+  needed=$(grep -o '"needed":[0-9]*\|"cached":[a-z]*' out | sed 's/.*://' | tr '\n' ' ')
+  [ "$needed" = '15 false 17 true 15 true 18 true ' ] || fail "needed and kept: $needed"
+  run flight.vts -s 300x30 -o b.ppm -f 3 --report -; want_status 0
+  cmp -s a3.ppm b3.ppm || fail "frame 3 is another picture alone"
+}
+
 # Each phase is built once, and played as long as its share of the period.
 case_phases() {
   cat >phases.vts <<'S'

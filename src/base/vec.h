@@ -73,8 +73,13 @@ static inline Vec3 vec3_normalize(Vec3 a) {
     double length = vec3_length(a);
     return length > 0 ? vec3_scale(a, 1 / length) : a;
 }
-static inline Vec3 vec3_min(Vec3 a, Vec3 b) { return (Vec3){fmin(a.x, b.x), fmin(a.y, b.y), fmin(a.z, b.z)}; }
-static inline Vec3 vec3_max(Vec3 a, Vec3 b) { return (Vec3){fmax(a.x, b.x), fmax(a.y, b.y), fmax(a.z, b.z)}; }
+/* Of each coordinate the lesser and the greater, or the one that is a number: like fmin and fmax, which compilers call from the library. */
+static inline Vec3 vec3_min(Vec3 a, Vec3 b) {
+    return (Vec3){a.x < b.x || b.x != b.x ? a.x : b.x, a.y < b.y || b.y != b.y ? a.y : b.y, a.z < b.z || b.z != b.z ? a.z : b.z};
+}
+static inline Vec3 vec3_max(Vec3 a, Vec3 b) {
+    return (Vec3){a.x > b.x || b.x != b.x ? a.x : b.x, a.y > b.y || b.y != b.y ? a.y : b.y, a.z > b.z || b.z != b.z ? a.z : b.z};
+}
 static inline bool vec3_is_finite(Vec3 a) { return isfinite(a.x) && isfinite(a.y) && isfinite(a.z); }
 static inline double vec3_get(Vec3 a, int axis) { return axis == 0 ? a.x : axis == 1 ? a.y : a.z; }
 /* Two unit vectors that make an orthonormal frame with the unit vector n (Duff et al. 2017). */

@@ -111,8 +111,16 @@ void outline_add_closed(Arena *arena, Outline *outline, CurveKind kind, const Po
     }
 }
 
+/* Whether the line passes the box around the piece by more than rounding. */
+static bool line_passes(const OutlinePiece *piece, double a, double b, double c) {
+    double x = a * (piece->min.x + piece->max.x), y = b * (piece->min.y + piece->max.y);
+    double reach = fabs(a) * (piece->max.x - piece->min.x) + fabs(b) * (piece->max.y - piece->min.y);
+    return fabs(x + y + 2 * c) > reach + 1e-12 * (fabs(x) + fabs(y) + 2 * fabs(c));
+}
+
 int outline_meet(const OutlinePiece *piece, double a, double b, double c, double s[3]) {
     double p[4];
+    if (line_passes(piece, a, b, c)) return 0;
     for (int i = 0; i < 4; i++) p[i] = a * piece->x[i] + b * piece->y[i];
     p[0] += c;
     if (p[3] == 0 && p[2] == 0) { /* the common case, and exact at its ends */

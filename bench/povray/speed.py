@@ -5,7 +5,8 @@ Processor seconds of POV-Ray and of vts at equal error, one thread each, for the
 the scene with many settings: POV-Ray with those of POVRAY (both methods of anti-aliasing, thresholds, depths), vts with the --max-error
 of VTS. The error of a picture is its distance from what the same program makes of the scene with many rays for every pixel (RMSE over
 pixels and channels, linear light clamped to [0, 1]), so that it tells of sampling alone; the table says how far these two are apart.
-The best pictures have errors of their own, so that less than about 0.0015 cannot be told. For an error that is asked for, each program gets the time of its fastest setting that is as exact. Times are the least of --runs runs,
+The best pictures have errors of their own, so that less than about 0.0015 cannot be told. For an error that is asked for, each program gets the time that its best settings
+tell: those that no other setting beats in both time and error, and between them a power law of the error. Times are the least of --runs runs, taken in turns over all settings of both programs,
 from the program's start to its end, reading and writing included.
 
 Scenes are left out whose best picture takes POV-Ray longer than --patience seconds, and those of which the two best pictures are further apart
@@ -53,9 +54,26 @@ class Point:
         self.setting, self.seconds, self.error = setting, seconds, error
 
 
-def fastest(points, error):
-    """The fastest that is as exact; None where none is."""
-    return min((p for p in points if p.error <= error), key=lambda p: p.seconds, default=None)
+def best_of(points):
+    """Those that no other beats in both, by falling error: from the fastest to the most exact."""
+    front = []
+    for p in sorted(points, key=lambda p: (p.seconds, p.error)):
+        if not front or p.error < front[-1].error:
+            front.append(p)
+    return front
+
+
+def seconds_at(points, error):
+    """What that error takes; None where no setting is as exact."""
+    front = best_of(points)
+    for before, after in zip([None] + front, front):
+        if after.error > error:
+            continue
+        if before is None:
+            return after.seconds
+        share = math.log(before.error / error) / math.log(before.error / after.error)
+        return before.seconds * (after.seconds / before.seconds) ** share
+    return None
 
 
 class Row:
@@ -67,9 +85,9 @@ class Row:
         return next(p for p in self.povray if p.setting == ' '.join(USUAL))
 
     def pair(self, error):
-        """The fastest of both as exact; None where one is not. `error` None: as exact as POV-Ray's usual picture, and its time."""
-        theirs = self.usual() if error is None else fastest(self.povray, error)
-        ours = fastest(self.vts, theirs.error if error is None else error)
+        """Seconds of both at that error; None where one does not reach it. `error` None: as exact as POV-Ray's usual picture, and its time."""
+        theirs = self.usual().seconds if error is None else seconds_at(self.povray, error)
+        ours = seconds_at(self.vts, self.usual().error if error is None else error)
         return (theirs, ours) if theirs and ours else None
 
 
@@ -99,17 +117,21 @@ class Bench:
             self.vts(scene, ours, ['--samples', str(BEST_SAMPLES)])
         return (pictures.read_ppm(theirs), pictures.read_pfm(ours)) if os.path.exists(ours) else None
 
-    def measure(self, setting, out, truth, read, render):
-        """The point of a setting; None when the program fails."""
-        seconds = math.inf
-        for _ in range(self.options.runs):
-            done = render()
-            if done.status != 0:
-                return None
-            seconds = min(seconds, done.seconds)
-            if done.seconds > 3:
-                break
-        return Point(setting, seconds, pictures.rmse(read(out), truth))
+    def measure(self, settings):
+        """The points of `settings`, each (name, picture, truth, read, render); None when a program fails. Runs go round, so that a machine
+        that is busy for a while is so for all."""
+        seconds, errors = [math.inf] * len(settings), [None] * len(settings)
+        for turn in range(self.options.runs):
+            for i, (_, out, truth, read, render) in enumerate(settings):
+                if turn > 0 and seconds[i] > 3:
+                    continue
+                done = render()
+                if done.status != 0:
+                    return None
+                seconds[i] = min(seconds[i], done.seconds)
+                if errors[i] is None:
+                    errors[i] = pictures.rmse(read(out), truth)
+        return [Point(setting[0], t, error) for setting, t, error in zip(settings, seconds, errors)]
 
     def row(self, scene):
         name = os.path.basename(scene)[:-4]
@@ -117,17 +139,16 @@ class Bench:
         if best is None:
             return None
         theirs, ours = self.path(name, '-pov.ppm'), self.path(name, '-vts.pfm')
-        povray = [self.measure(' '.join(quality), theirs, best[0], pictures.read_ppm, lambda q=quality: self.povray(scene, theirs, q, 300))
-                  for quality in POVRAY]
-        vts = [self.measure('%g' % error, ours, best[1], pictures.read_pfm, lambda e=error: self.vts(scene, ours, ['--max-error', '%g' % e]))
-               for error in VTS]
-        if None in povray or None in vts:
-            return None
-        return Row(name, povray, vts, pictures.rmse(*best))
+        settings = [(' '.join(quality), theirs, best[0], pictures.read_ppm, lambda q=quality: self.povray(scene, theirs, q, 300))
+                    for quality in POVRAY]
+        settings += [('%g' % error, ours, best[1], pictures.read_pfm, lambda e=error: self.vts(scene, ours, ['--max-error', '%g' % e]))
+                     for error in VTS]
+        points = self.measure(settings)
+        return Row(name, points[:len(POVRAY)], points[len(POVRAY):], pictures.rmse(*best)) if points else None
 
 
 def mean_ratio(pairs):
-    return math.exp(sum(math.log(theirs.seconds / ours.seconds) for theirs, ours in pairs) / len(pairs))
+    return math.exp(sum(math.log(theirs / ours) for theirs, ours in pairs) / len(pairs))
 
 
 def asked_name(error):
@@ -152,9 +173,9 @@ def table(rows, size):
         cells = []
         for error in asked:
             pair = row.pair(error)
-            cells.append('%.2f' % (pair[0].seconds / pair[1].seconds) if pair else '–')
+            cells.append('%.2f' % (pair[0] / pair[1]) if pair else '–')
         yield '| %s | %.4f | %.4f, %.3f | %s | %s |' % (row.name, row.apart, row.usual().error, row.usual().seconds,
-                                                  '%.3f' % usual[1].seconds if usual else '–', ' | '.join(cells))
+                                                  '%.3f' % usual[1] if usual else '–', ' | '.join(cells))
 
 
 def main():

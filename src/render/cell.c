@@ -1,15 +1,7 @@
 #include "render/cell.h"
 
-/* A net of so many samples or more says more without the middle: its error falls with their power 3/2, and what another would add does not. */
-enum { NET_ALONE = 8 };
 /* The squared error of a mean from the squared difference of its halves: 1/4 if they were random, less where they are parts of a net. */
 static const double HALVES_TO_ERROR = 0.2;
-
-Vec3f light_shown(Vec3f color) {
-    return vec3f(float_clamp(color.x, 0, 1), float_clamp(color.y, 0, 1), float_clamp(color.z, 0, 1));
-}
-
-float light_mean_square(Vec3f a) { return vec3f_dot(a, a) / 3; }
 
 void cell_begin(Cell *cell, const Middle *m) {
     Vec3f light = light_shown(m->seen.color);
@@ -23,9 +15,6 @@ void cell_begin(Cell *cell, const Middle *m) {
                    .refinable = m->refinable,
                    .doubt = m->doubt};
 }
-
-static bool cell_counts_middle(const Cell *cell) { return cell->centred && cell->net < NET_ALONE; }
-int cell_count(const Cell *cell) { return cell->net + cell_counts_middle(cell); }
 
 void cell_add(Cell *cell, const Radiance *seen) {
     Vec3f light = light_shown(seen->color);

@@ -28,16 +28,21 @@ typedef struct Cell {
 } Cell;
 
 /* Light that the picture can show: clamped to [0, 1]. */
-Vec3f light_shown(Vec3f color);
+static inline Vec3f light_shown(Vec3f color) {
+    return vec3f(float_clamp(color.x, 0, 1), float_clamp(color.y, 0, 1), float_clamp(color.z, 0, 1));
+}
 /* Of its channels. */
-float light_mean_square(Vec3f light);
+static inline float light_mean_square(Vec3f light) { return vec3f_dot(light, light) / 3; }
 
 /* A cell that has but its middle. */
 void cell_begin(Cell *cell, const Middle *middle);
 /* The next sample of the net. */
 void cell_add(Cell *cell, const Radiance *seen);
+/* A net of so many samples or more says more without the middle: its error falls with their power 3/2, and what another would add does not. */
+enum { CELL_NET_ALONE = 8 };
+static inline bool cell_counts_middle(const Cell *cell) { return cell->centred && cell->net < CELL_NET_ALONE; }
 /* Of the samples that count: the net's, and the middle while the net is small. */
-int cell_count(const Cell *cell);
+static inline int cell_count(const Cell *cell) { return cell->net + cell_counts_middle(cell); }
 /* Their clamped light, and the squares of its channels, summed. */
 Vec3f cell_shown_sum(const Cell *cell);
 float cell_squares_sum(const Cell *cell);

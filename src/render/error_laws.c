@@ -44,25 +44,30 @@ static double error_of_many(const ErrorLaws *laws, const Cell *cell) {
     return CAUTION * variance(cell) * ratio / count;
 }
 
-double error_alone(const ErrorLaws *laws, const Cell *cell) {
+/* As the pixel by itself seems; 0 of what cannot be refined. */
+static double error_alone(const ErrorLaws *laws, const Cell *cell) {
     if (!cell->refinable) return 0;
     return cell->net && cell_count(cell) > 1 ? error_of_many(laws, cell) : CAUTION * (double)cell->contrast * laws->ratios[cell->class] + (double)cell->doubt;
 }
 
 int error_quiet_class(const Cell *cell) { return cell->net ? 1 + learned_level(cell_count(cell)) : 0; }
 
-bool error_is_quiet(const ErrorLaws *laws, const Cell *cell, double alone) {
+/* Whether a pixel seems to need nothing; `alone`: error_alone(), not looked at of pixels that have more than their middle. */
+static bool is_quiet(const ErrorLaws *laws, const Cell *cell, double alone) {
     double seen = cell->net ? CAUTION * cell_variance(cell) / cell_count(cell) : alone;
     return cell->refinable && seen < QUIET * laws->accepted;
 }
 
-double error_expected(const ErrorLaws *laws, const Cell *cell, double alone) {
-    return error_is_quiet(laws, cell, alone) ? fmax(alone, laws->missed[error_quiet_class(cell)]) : alone;
+bool error_net_is_quiet(const ErrorLaws *laws, const Cell *cell) { return is_quiet(laws, cell, 0); }
+
+double error_expected(const ErrorLaws *laws, const Cell *cell) {
+    const double alone = error_alone(laws, cell);
+    return is_quiet(laws, cell, alone) ? fmax(alone, laws->missed[error_quiet_class(cell)]) : alone;
 }
 
 void error_learn(ErrorLaws *laws, const Cell *before, const Cell *cell) {
     const int count = cell_count(cell);
-    if (error_is_quiet(laws, before, error_alone(laws, before)))
+    if (is_quiet(laws, before, error_alone(laws, before)))
         learn(&laws->quiet[error_quiet_class(before)], 0, (before->net ? DOUBLING_TO_ERROR : 1) * (double)light_mean_square(vec3f_sub(before->mean, cell->mean)));
     if (before->net == 0 && cell->centred)
         learn(&laws->contrasts[cell->class], (double)cell->contrast, (double)light_mean_square(vec3f_sub(cell->first, cell->mean)));

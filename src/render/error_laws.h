@@ -22,13 +22,11 @@ void error_laws_begin(ErrorLaws *laws, double accepted);
 
 /* Whether a contrast is so large that what it comes from makes a difference. */
 bool error_counts(const ErrorLaws *laws, float contrast);
-/* As the pixel by itself seems; 0 of what cannot be refined. */
-double error_alone(const ErrorLaws *laws, const Cell *cell);
-/* Whether a pixel seems to need nothing; `alone`: error_alone(). */
-bool error_is_quiet(const ErrorLaws *laws, const Cell *cell, double alone);
+/* Whether a pixel that has more than its middle seems to need nothing. */
+bool error_net_is_quiet(const ErrorLaws *laws, const Cell *cell);
 int error_quiet_class(const Cell *cell);
-/* Where samples agree they may all have missed something. */
-double error_expected(const ErrorLaws *laws, const Cell *cell, double alone);
+/* As the pixel by itself seems; where samples agree they may all have missed something. 0 of what cannot be refined. */
+double error_expected(const ErrorLaws *laws, const Cell *cell);
 
 /* `before`: the cell before its last samples. */
 void error_learn(ErrorLaws *laws, const Cell *before, const Cell *cell);

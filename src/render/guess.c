@@ -84,11 +84,16 @@ static void corners_of(const Tile *t, const Square *s, const Middle *corners[4])
     for (int k = 0; k < 4; k++) corners[k] = &t->middles[place(k & 1 ? s->x1 : s->x0, k & 2 ? s->y1 : s->y0)];
 }
 
-static Guess guess_at(const Tile *t, const Square *s, int x, int y) {
-    float u = (float)(x - s->x0) / (float)(s->x1 - s->x0), v = (float)(y - s->y0) / (float)(s->y1 - s->y0);
-    Guess guess = {.weights = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v}};
+static Guess guess_of(const Tile *t, const Square *s) {
+    Guess guess = {.even = false};
     corners_of(t, s, guess.corners);
     return guess;
+}
+
+static void weigh(Guess *guess, const Square *s, int x, int y) {
+    const float u = (float)(x - s->x0) / (float)(s->x1 - s->x0), v = (float)(y - s->y0) / (float)(s->y1 - s->y0);
+    guess->weights[0] = (1 - u) * (1 - v), guess->weights[1] = u * (1 - v);
+    guess->weights[2] = (1 - u) * v, guess->weights[3] = u * v;
 }
 
 static Vec3f error_of(const Middle *guessed, const Middle *m) { return vec3f_sub(shown(guessed), shown(m)); }
@@ -103,7 +108,8 @@ static bool agree(Tile *t, const Square *s, int mx, int my) {
     for (int k = 0; k < 4; k++)
         if (!has_finite_light(corners[k]) || !same_surface(corners[k], corners[0])) return false;
     find(t, mx, my);
-    const Guess guess = guess_at(t, s, mx, my);
+    Guess guess = guess_of(t, s);
+    weigh(&guess, s, mx, my);
     Middle guessed = *middle;
     return guess_light(&guess, &guessed) && (double)most_of(error_of(&guessed, middle)) <= t->sight->tolerance;
 }
@@ -133,12 +139,13 @@ static void try_guess(Tile *t, const Guess *guess, struct Kind *kind, int x, int
     kind->tried++;
 }
 
-/* Of what the corners see, in their light. */
-static void put_guess(Tile *t, const Guess *guess, int x, int y) {
+/* Of what the corners see, in their light; `flat`: they have one normal. */
+static void put_guess(Tile *t, const Guess *guess, bool flat, int x, int y) {
     Middle *m = &t->middles[place(x, y)];
     *m = *guess->corners[0];
-    Vec3f normal = {0, 0, 0};
     take_mean(guess, m);
+    if (flat) return;
+    Vec3f normal = {0, 0, 0};
     for (int k = 0; k < 4; k++) normal = vec3f_madd(normal, guess->corners[k]->normal, guess->weights[k]);
     float length = vec3f_length(normal);
     if (length > 0) m->normal = vec3f_scale(normal, 1 / length);
@@ -188,24 +195,24 @@ typedef struct Fill {
     Square square;
     int kind, half;
     VistaView view;
-    bool even;      /* there is one colour */
+    Guess guess;
     bool patterned; /* its light is that of a pattern's colours, which have to be looked at */
+    bool flat;      /* the corners have one normal */
 } Fill;
 
 /* First the one, then the other half of a checkerboard's squares. */
-static void fill_pixel(Tile *t, const Fill *f, int x, int y) {
+static void fill_pixel(Tile *t, Fill *f, int x, int y) {
     const Square *s = &f->square;
-    Guess guess = guess_at(t, s, x, y);
-    guess.even = f->even;
-    bool holds = true, even = f->view == VISTA_EVEN || (f->view == VISTA_ONE && f->half == 1);
+    bool holds = true, even = f->view == VISTA_EVEN || (f->view == VISTA_SOME && f->half == 1);
+    weigh(&f->guess, s, x, y);
     if (random_hash((uint64_t)x, (uint64_t)y, 0, 0) % TRIED == 0) {
-        try_guess(t, &guess, &t->kinds[f->kind], x, y);
+        try_guess(t, &f->guess, &t->kinds[f->kind], x, y);
         return;
     }
-    if (even && (f->patterned || f->view == VISTA_ONE)) even = f->half == 1 && is_among(t, s, x, y);
+    if (even && (f->patterned || f->view == VISTA_SOME)) even = f->half == 1 && is_among(t, s, x, y);
     if (even && f->patterned) even = put_mean(t, s, x, y);
-    else if (even) put_guess(t, &guess, x, y);
-    if (!even) holds = t->sight->see(t->sight->context, x, y, &guess, &t->middles[place(x, y)]);
+    else if (even) put_guess(t, &f->guess, f->flat, x, y);
+    if (!even) holds = t->sight->see(t->sight->context, x, y, &f->guess, &t->middles[place(x, y)]);
     t->known[place(x, y)] = (uint8_t)(holds ? GUESSED + f->kind : FOUND);
     t->kinds[f->kind].guessed += holds;
 }
@@ -233,9 +240,18 @@ static bool has_even_color(const Tile *t, const Square *s, int mx, int my) {
     return t->sight->even && t->sight->even(t->sight->context, mx, my, width, middle);
 }
 
+static bool have_one_normal(const Middle *const corners[4]) {
+    const Vec3f n = corners[0]->normal;
+    bool one = true;
+    for (int k = 1; k < 4; k++) one &= corners[k]->normal.x == n.x && corners[k]->normal.y == n.y && corners[k]->normal.z == n.z;
+    return one;
+}
+
 static void fill(Tile *t, const Square *s, bool even, bool patterned) {
     const GuessSight *sight = t->sight;
-    Fill f = {*s, kind_of(t, s), 0, VISTA_OPEN, even, patterned};
+    Fill f = {*s, kind_of(t, s), 0, VISTA_OPEN, guess_of(t, s), patterned, false};
+    f.guess.even = even;
+    f.flat = have_one_normal(f.guess.corners);
     if (sight->view) f.view = sight->view(sight->context, s->x0, s->y0, s->x1, s->y1, t->middles[place(s->x0, s->y0)].object);
     for (; f.half < 2; f.half++)
         for (int y = s->y0; y <= s->y1; y++)

@@ -255,8 +255,6 @@ static void set_contrast(const Sampler *sp, Cell *cell, float contrast) {
     if (error_counts(&sp->laws, contrast) && sp->shares && shared_but_pattern(cell, sp->plan.max_error)) cell->class += ERROR_OF_PATTERNS;
 }
 
-static double expected_error(const Sampler *sp, const Cell *cell) { return error_expected(&sp->laws, cell, error_alone(&sp->laws, cell)); }
-
 /* ---- a tile ---- */
 
 static int next_net(const Cell *cell) { return cell->net ? 2 * cell->net : FIRST_NET; }
@@ -302,7 +300,7 @@ static void probe_nets(Sampler *sp) {
     for (int row = 1; row <= sp->rows; row++)
         for (int column = 1; column <= sp->columns; column++) {
             const Cell *cell = &sp->cells[row * EDGE + column];
-            if (cell->net == 0 || !error_is_quiet(&sp->laws, cell, 0)) continue;
+            if (cell->net == 0 || !error_net_is_quiet(&sp->laws, cell)) continue;
             nets[count++] = row * EDGE + column;
             quiet[error_quiet_class(cell)]++;
         }
@@ -319,7 +317,7 @@ static double value_all(Sampler *sp, double least) {
     for (int row = 1; row <= sp->rows; row++)
         for (int column = 1; column <= sp->columns; column++) {
             Cell *cell = &sp->cells[row * EDGE + column];
-            cell->error = expected_error(sp, cell);
+            cell->error = error_expected(&sp->laws, cell);
             sum += cell->error;
             if ((cell->error > 0 || cell->probe) && gain_of(cell) >= least && can_refine(sp, cell)) candidates_push(&sp->heap, row * EDGE + column, gain_of(cell));
         }
@@ -337,6 +335,13 @@ static int refine(Sampler *sp, int index) {
     return cell->net - before.net;
 }
 
+/* Whether what pixels beside it see is another contrast by now, one that counts (contrasts are squares: half as much again takes 0.22 of
+ * a difference, and one that counts is 2.2 times the error that is accepted). */
+static bool turned_out(const Sampler *sp, const Cell *cell, Vec3f before) {
+    Vec3f off = vec3f_sub(cell->mean, before);
+    return (double)vec3f_dot(off, off) > 0.16 * sp->plan.max_error * sp->plan.max_error;
+}
+
 /* A pixel that turned out to be other than its middle may be part of something thin, which goes on beside it. */
 static double look_around(Sampler *sp, int index) {
     static const int around[] = {-EDGE - 1, -EDGE, -EDGE + 1, -1, 1, EDGE - 1, EDGE, EDGE + 1};
@@ -351,7 +356,7 @@ static double look_around(Sampler *sp, int index) {
         if (contrast <= 1.5f * cell->contrast) continue;
         set_contrast(sp, cell, contrast);
         change -= cell->error;
-        cell->error = expected_error(sp, cell);
+        cell->error = error_expected(&sp->laws, cell);
         change += cell->error;
         candidates_push(&sp->heap, other, gain_of(cell));
     }
@@ -381,12 +386,13 @@ static double refine_all(Sampler *sp) {
     for (int done = 1; (sum > accepted || sp->probes) && left > 0 && !stopped(sp) && next_candidate(sp, &least, &sum, &best); done++) {
         Cell *cell = &sp->cells[best.cell];
         if (best.gain != gain_of(cell) || !can_refine(sp, cell)) continue;
+        const Vec3f mean_before = cell->mean;
         left -= refine(sp, best.cell);
         valued = false;
         double before = cell->error;
-        cell->error = expected_error(sp, cell);
+        cell->error = error_expected(&sp->laws, cell);
         sum += cell->error - before;
-        sum += look_around(sp, best.cell);
+        if (turned_out(sp, cell, mean_before)) sum += look_around(sp, best.cell);
         if (can_refine(sp, cell)) candidates_push(&sp->heap, best.cell, gain_of(cell));
         if (done % REVALUE && (sum > accepted || sp->probes)) continue;
         sum = value_all(sp, least);
@@ -503,7 +509,7 @@ static double see_fixed(Sampler *sp) {
     for (int row = 1; row <= sp->rows; row++)
         for (int column = 1; column <= sp->columns; column++) {
             const Cell *cell = &sp->cells[row * EDGE + column];
-            if (cell->net > 1) sum += expected_error(sp, cell);
+            if (cell->net > 1) sum += error_expected(&sp->laws, cell);
         }
     return error_of_all(sum);
 }

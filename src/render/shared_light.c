@@ -3,7 +3,8 @@
 #include "render/contrast.h"
 
 /* Of the middles two at least have to see as smooth a part of the same surface, and agree. */
-static const double SAME_NORMAL = 0.98, NEAREST = 0.05, SHARED_RANGE = 4;
+static const double SAME_NORMAL = 0.98, SHARED_RANGE = 4;
+static const float NEAREST = 0.05f;
 
 static float most_of(Vec3f c) { return float_max(c.x, float_max(c.y, c.z)); }
 
@@ -14,8 +15,8 @@ typedef struct Shared {
     int count;
 } Shared;
 
-static void share_middle(Shared *shared, const Cell *cell, Vec3f color, double dx, double dy) {
-    float weight = (float)(1 / (dx * dx + dy * dy + NEAREST));
+static void share_middle(Shared *shared, const Cell *cell, Vec3f color, float dx, float dy) {
+    float weight = 1 / (dx * dx + dy * dy + NEAREST);
     Vec3f light = light_shown(color);
     if (shared->count++ == 0) shared->least = shared->most = light;
     shared->least = vec3f(float_min(shared->least.x, light.x), float_min(shared->least.y, light.y),
@@ -65,11 +66,12 @@ bool shared_light(const Cell *cell, const SharedPlace *place, double max_error, 
     Shared shared = {.count = 0};
     int count = same_around(cell, place->hit, same);
     if (count < 2) return false;
+    const float x = (float)place->x - 0.5f, y = (float)place->y - 0.5f;
     const SurfaceTint tint = tint_among(same, count, place);
     for (int i = 0; i < count; i++) {
         const Cell *other = same[i].cell;
         if (other->tint.texture != tint.texture) continue;
-        share_middle(&shared, other, middle_as(other->middle.color, &other->tint, &tint), place->x - 0.5 - same[i].column, place->y - 0.5 - same[i].row);
+        share_middle(&shared, other, middle_as(other->middle.color, &other->tint, &tint), x - (float)same[i].column, y - (float)same[i].row);
     }
     Vec3f range = vec3f_sub(shared.most, shared.least);
     if (shared.count < 2 || (double)most_of(range) > SHARED_RANGE * max_error)

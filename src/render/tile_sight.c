@@ -9,6 +9,11 @@ static void lines_of(const TileSight *sight, int x0, int y0, int x1, int y1, Ray
     }
 }
 
+static bool has_narrower(const TileSight *sight, const Ray corners[4], double pixels, int columns, int rows) {
+    const Cone middle = view_cone(&sight->compiled->view, sight->x0 + columns / 2.0, sight->y0 + rows / 2.0, pixels);
+    return vista_has_thin(hierarchy_pieces(sight->compiled->hierarchy), corners, middle.spread, middle.width);
+}
+
 /* Only in flat pictures lines between others are between them in space, too. */
 TileSight tile_sight(const CompiledScene *compiled, int x0, int y0, int columns, int rows) {
     TileSight sight = {.compiled = compiled, .x0 = x0, .y0 = y0, .vista = {.count = VISTA_MOST + 1}};
@@ -16,6 +21,7 @@ TileSight tile_sight(const CompiledScene *compiled, int x0, int y0, int columns,
     if (!view_is_flat(&compiled->view)) return sight;
     lines_of(&sight, 0, 0, columns - 1, rows - 1, corners);
     sight.vista = vista_of(hierarchy_pieces(compiled->hierarchy), corners);
+    sight.fine = has_narrower(&sight, corners, 2, columns, rows);
     return sight;
 }
 
@@ -23,7 +29,8 @@ VistaView tile_sight_view(const TileSight *sight, int x0, int y0, int x1, int y1
     Ray corners[4];
     if (sight->vista.count > VISTA_MOST) return VISTA_OPEN;
     lines_of(sight, x0, y0, x1, y1, corners);
-    return vista_view(&sight->vista, corners, object);
+    const VistaView view = vista_view(&sight->vista, corners, object);
+    return view == VISTA_SOME && sight->fine ? VISTA_OPEN : view;
 }
 
 bool tile_sight_thin(const CompiledScene *compiled, int x0, int y0, int columns, int rows) {
@@ -31,6 +38,5 @@ bool tile_sight_thin(const CompiledScene *compiled, int x0, int y0, int columns,
     if (!view_is_flat(&compiled->view)) return false;
     Ray corners[4];
     lines_of(&sight, -1, -1, columns, rows, corners);
-    Cone middle = view_cone(&compiled->view, x0 + columns / 2.0, y0 + rows / 2.0, 1);
-    return vista_has_thin(hierarchy_pieces(compiled->hierarchy), corners, middle.spread, middle.width);
+    return has_narrower(&sight, corners, 1, columns, rows);
 }

@@ -66,7 +66,7 @@ VistaView vista_view(const Vista *vista, const Ray corners[4], uint32_t object) 
         bool hides = piece->object && piece->object == object && !holds(&piece->box, corners[0].origin);
         if (!hides && may_touch(&shaft, &piece->box)) others++;
     }
-    return others == 0 ? VISTA_EVEN : others == 1 ? VISTA_ONE : VISTA_OPEN;
+    return others == 0 ? VISTA_EVEN : VISTA_SOME;
 }
 
 static double distance_to(const Box3 *box, Vec3 p) { return vec3_length(vec3_sub(vec3_max(box->min, vec3_min(box->max, p)), p)); }

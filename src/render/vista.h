@@ -31,8 +31,8 @@ typedef struct Vista {
 /* `corners`: lines of sight, unit directions, through one point or parallel, all others of that part are between them; rows of two. */
 Vista vista_of(const VistaPieces *pieces, const Ray corners[4]);
 typedef enum VistaView {
-    VISTA_OPEN,
-    VISTA_ONE,  /* one thing may be seen besides planes, and holes in it */
+    VISTA_OPEN, /* anything may be seen */
+    VISTA_SOME, /* a few things may be seen besides planes, and holes in them */
     VISTA_EVEN, /* all see what the corners see */
 } VistaView;
 

@@ -57,7 +57,7 @@ static bool on_like_value(Reader *reader, const Argument *value, void *target) {
     return draft->object != NULL;
 }
 
-/* looks_like { O … }, projected_through { O … }: about the origin, which is to be the light's place. */
+/* looks_like { O … }, projected_through { O … }: the first about the origin, which is to be the light's place. */
 static const Object *read_like(Reader *reader, const Word *word) {
     LikeDraft draft = {.transform = transform_identity()};
     if (!grammar_word(reader, word) || !word->body) return NULL;
@@ -75,9 +75,7 @@ static void read_looks_like(Reader *reader, const Word *word, void *target) {
 }
 
 static void read_projected(Reader *reader, const Word *word, void *target) {
-    Light *light = &((LightDraft *)target)->light;
-    light->projected_through = read_like(reader, word);
-    inert_add(reader->context, &light->inert, word->text, word->span);
+    ((LightDraft *)target)->light.projected_through = read_like(reader, word);
 }
 
 static void read_point_at(Reader *reader, const Word *word, void *target) {
@@ -190,7 +188,6 @@ static bool finish(Reader *reader, LightDraft *draft, bool copy, Value *out) {
                      "this light has no direction, for it stands where it points at: it lights nothing");
     Transform shift = transform_translate(light->location);
     if (!copy) light->looks_like = placed_like(reader->context, light->looks_like, &shift);
-    if (!copy) light->projected_through = placed_like(reader->context, light->projected_through, &shift);
     *out = (Value){.kind = VALUE_LIGHT, .as.light = light_placed(reader->context, light, &draft->transform)};
     return true;
 }

@@ -113,7 +113,7 @@ static uint32_t ask_light(BeamTracer *tr, const Light *light) {
         if (!sight->look) continue;
         LightRay ray;
         sight->tone = tone_of(sight, light, &ray);
-        if (light->shadowless || !(luminance(sight->tone) > 0)) continue;
+        if (light_comes_everywhere(light) || !(luminance(sight->tone) > 0)) continue;
         count = add_points(tr, sight, &ray, count);
         sight->asked = true;
         sight->tone = vec3f_scale(sight->tone, through_voxels(tr, sight, &ray));

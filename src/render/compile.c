@@ -5,6 +5,7 @@
 #include "render/beam_worth.h"
 #include "render/exact_skin.h"
 #include "render/radiosity.h"
+#include "render/shone_through.h"
 #include "render/terrain_view.h"
 #include "render/volume_memo.h"
 #include "render/volume_set.h"
@@ -205,6 +206,8 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     out->eye_filling_count = hierarchy_inside(out->hierarchy, scene->camera.location, out->eye_fillings, EYE_FILLINGS);
     if (!volumes_compile(out, diags)) return COMPILE_FAILED;
     out->exact_paths = options->exact;
+    out->projections = projections_prepare(scene, arena);
+    out->clear_shadows |= out->projections != NULL; /* which some light does not come through */
     out->clear_shadows |= out->volumes != NULL; /* which let some light through, too */
     out->secondary = !hierarchy_is_plain(out->hierarchy) || out->volumes; /* which ask the voxels of skins for their shadows */
     SkinList skins = {0};

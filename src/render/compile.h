@@ -66,6 +66,7 @@ typedef struct CompiledScene {
     struct RigidCopies *rigid; /* copies that rays meet, or NULL */
     struct WangKept *wang; /* texels taken apart */
     struct VolumeSet *volumes; /* clouds, or NULL */
+    const struct Projections *projections; /* what lights are projected through, or NULL */
     bool solids_matter;   /* there are fogs or media: what is not hollow keeps them out */
     Filling eye_fillings[EYE_FILLINGS]; /* what holds the camera's location */
     size_t eye_filling_count;

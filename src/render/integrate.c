@@ -212,7 +212,7 @@ static size_t gather(Tracer *tr, const Cone *cone, const ConeStart *start, doubl
 static float luminance(Vec3f c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
 static float record_visibility(Tracer *tr, const Light *light, const Cone *cone, const ShadeRecord *r) {
-    if (light->shadowless) return 1;
+    if (light_comes_everywhere(light)) return 1;
     const CompiledScene *scene = tr->compiled;
     Vec3 point = cone_point(cone, r->t), to_eye = vec3_negate(cone->direction);
     LightRay ray = light_ray(light, point);
@@ -250,7 +250,7 @@ static Vec3f add_shadowed(Tracer *tr, const Cone *cone, size_t count, size_t lig
     for (size_t i = 0; i < count; i++) total += luminance(direct[i * stride]);
     Vec3f sum = {0, 0, 0};
     if (total <= 0) return sum;
-    bool worth = total > SHADOW_WORTH && !light->shadowless;
+    bool worth = total > SHADOW_WORTH && !light_comes_everywhere(light);
     int points = worth ? int_clamp(1 + (int)(total * SHADOWS_PER_LIGHT), 1, MOST_SHADOW_POINTS) : 0;
     if (worth && count == 1) points = 1;
     float seen[MOST_SHADOW_POINTS + 1], at[MOST_SHADOW_POINTS + 1];

@@ -27,6 +27,9 @@ double light_spread(const Light *light, const LightRay *ray);
 /* Whether the light shines on what belongs to this group (NULL: none). */
 bool light_shines_on(const Light *light, const LightGroup *group);
 
+/* Whether nothing is dark for it: without shadows, a light that is projected through something still lights nothing beside that. */
+static inline bool light_comes_everywhere(const Light *light) { return light->shadowless && !light->projected_through; }
+
 /* What matter of this pigment colour sends to the eye for one unit of light: `shade` of its normals. */
 Vec3f shade_tone(const NdfShade *shade, const Look *look, Vec3f color);
 

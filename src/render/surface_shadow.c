@@ -2,6 +2,7 @@
 
 #include "base/random.h"
 #include "render/media.h"
+#include "render/shone_through.h"
 #include "render/surface_parts.h"
 #include "render/volume_set.h"
 
@@ -187,6 +188,8 @@ Vec3f surface_open(SurfaceTracer *tracer, const Ray *ray, double distance, const
 
 static Vec3f one_way(SurfaceTracer *tracer, const Light *light, const Ray *ray, double distance, const Leg *leg, double clear, double width) {
     const CompiledScene *compiled = tracer->compiled;
+    if (!projections_let(compiled->projections, light, ray, distance, &distance)) return vec3f(0, 0, 0);
+    if (light->shadowless) return vec3f(1, 1, 1);
     Vec3f through = open_way(tracer, ray, distance, leg, clear, light->through_air);
     if (light->through_air && compiled->scene->fog_count) through = vec3f_mul(through, air_fog_passing(compiled->scene, ray, distance));
     if (!tracer->passing || most_of(through) <= 0) return through;
@@ -217,7 +220,7 @@ static Vec3f mean_of_places(SurfaceTracer *tracer, const Light *light, const Leg
 
 Vec3f surface_shadow(SurfaceTracer *tracer, const Light *light, const LightRay *way, const Leg *leg, Vec3 point, double clear,
                      uint64_t seed) {
-    if (light->shadowless) return vec3f(1, 1, 1);
+    if (light_comes_everywhere(light)) return vec3f(1, 1, 1);
     double width = cone_diameter(&leg->cone, vec3_length(vec3_sub(point, leg->cone.origin)));
     if (!light_is_area(light)) {
         Ray ray = {point, way->direction};
@@ -229,7 +232,7 @@ Vec3f surface_shadow(SurfaceTracer *tracer, const Light *light, const LightRay *
 }
 
 Vec3f surface_shadow_way(SurfaceTracer *tracer, const Light *light, const LightRay *way, const Leg *leg, Vec3 point, double clear) {
-    if (light->shadowless) return vec3f(1, 1, 1);
+    if (light_comes_everywhere(light)) return vec3f(1, 1, 1);
     Ray ray = {point, way->direction};
     double width = clear > 0 ? cone_diameter(&leg->cone, vec3_length(vec3_sub(point, leg->cone.origin))) : 0;
     return one_way(tracer, light, &ray, way->distance, leg, clear, width);

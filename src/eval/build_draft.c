@@ -229,7 +229,7 @@ static bool object_is_modelled(const Object *object) {
     }
 }
 
-/* An object without a texture takes the default of the moment when it enters the scene. */
+/* An object without a texture takes the default of the moment when it enters the scene, where it lies in the scene: it has been turned and moved by then. */
 static void add_object(SceneDraft *draft, BuildContext *context, const Object *object) {
     LightFinder finder = {context, add_light, draft, draft->light_groups};
     walk_object(draft, context, object);
@@ -237,8 +237,10 @@ static void add_object(SceneDraft *draft, BuildContext *context, const Object *o
     draft->light_groups = finder.group_count;
     if (!object_is_modelled(object)) return;
     if (!object->texture && context->default_texture != draft->first_default) {
+        const Transform place = object_transform(object);
+        const Transform back = transform_is_singular(&place) ? transform_identity() : transform_inverse(&place);
         Object colored = object_copy(object);
-        colored.texture = context->default_texture;
+        colored.texture = texture_placed(context, context->default_texture, &back);
         object = object_keep(context->arena, &colored, NULL);
     }
     *list_push(context->arena, &draft->objects) = object;

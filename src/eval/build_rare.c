@@ -208,6 +208,7 @@ static void read_picture(Reader *reader, const Word *word, void *target) {
     if (word->count == 0) return;
     draft_of(target)->picture_span = word->arguments[0].span;
     word_string(reader, word, 0, &draft_of(target)->picture);
+    draft_of(target)->potential = strcmp(word->text, "pot") == 0;
 }
 
 #define CUSTOM(word, handler)                                                                                \

@@ -20,7 +20,7 @@ typedef struct RareDraft {
     } parts;
     bool full_detail;
     IsosurfaceMethod method;
-    bool takes_parts, open, conic, smooth, hypercomplex;
+    bool takes_parts, open, conic, smooth, hypercomplex, potential;
     CurveKind curve;
     double threshold, accuracy, max_gradient, water_level, iterations;
     const Object *container;

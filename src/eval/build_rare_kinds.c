@@ -416,6 +416,7 @@ bool build_height_field(BuildContext *context, const EvalBlock *block, Value *ou
         draft.picture = first->value.as.string.text;
         draft.picture_span = first->span;
     }
+    draft.solid.as.field.potential = draft.potential;
     if (draft.picture) {
         draft.solid.as.field.path = find_file(context, draft.picture, draft.picture_span);
         if (!draft.solid.as.field.path) {

@@ -85,6 +85,7 @@ static void add_field(Hash128 *h, const Solid *s) {
     add_text(h, s->as.field.path);
     hash_add_double(h, s->as.field.water_level);
     hash_add_u64(h, s->as.field.smooth);
+    hash_add_u64(h, s->as.field.potential);
     hash_add_u64(h, (uint64_t)s->as.field.columns << 32 | (uint64_t)s->as.field.rows);
     if (s->as.field.heights)
         add_doubles(h, s->as.field.heights, (size_t)s->as.field.columns * (size_t)s->as.field.rows);

@@ -163,6 +163,7 @@ typedef struct Solid {
             const double *heights; /* in [0, 1], row after row from z = 0 on */
             double water_level;
             bool smooth;
+            bool potential; /* the picture's left half has the high bytes of its numbers, the right half the low ones (Fractint's .pot) */
         } field;
     } as;
 } Solid;

@@ -36,6 +36,14 @@ static bool copy_heights(const Solid *s, Arena *arena, Field *f) {
     return true;
 }
 
+/* In the picture's codes. */
+static double code_at(const Image *image, bool potential, uint32_t i, uint32_t j) {
+    const float *pixel = image_pixel(image, (int)i, (int)j);
+    if (potential) return 256 * (double)pixel[0] + (double)image_pixel(image, (int)i + image->width / 2, (int)j)[0];
+    if (image->channels < 3) return (double)pixel[0];
+    return 0.297 * (double)pixel[0] + 0.589 * (double)pixel[1] + 0.114 * (double)pixel[2];
+}
+
 /* The picture's upper border lies at z = 1. */
 static bool load_heights(const Solid *s, Arena *arena, Field *f) {
     Image image;
@@ -45,19 +53,15 @@ static bool load_heights(const Solid *s, Arena *arena, Field *f) {
     if (!ok) return false;
     Palette palette;
     if (palette_read(s->as.field.path, &palette)) palette_index(&palette, &image);
-    double most = image.stored_as == IMAGE_SAMPLE_U8 ? 255 : image.stored_as == IMAGE_SAMPLE_U16 ? 65535 : 1;
-    f->columns = (uint32_t)image.width;
+    const bool potential = s->as.field.potential && image.stored_as == IMAGE_SAMPLE_U8;
+    double most = potential ? 65535 : image.stored_as == IMAGE_SAMPLE_U8 ? 255 : image.stored_as == IMAGE_SAMPLE_U16 ? 65535 : 1;
+    f->columns = (uint32_t)(potential ? image.width / 2 : image.width);
     f->rows = (uint32_t)image.height;
     if (f->columns >= 2 && f->rows >= 2) {
         float *heights = arena_new_array(arena, float, (size_t)f->columns * f->rows);
         for (uint32_t j = 0; j < f->rows; j++)
-            for (uint32_t i = 0; i < f->columns; i++) {
-                const float *pixel = image_pixel(&image, (int)i, (int)j);
-                double grey = (double)pixel[0];
-                if (image.channels >= 3)
-                    grey = 0.297 * grey + 0.589 * (double)pixel[1] + 0.114 * (double)pixel[2];
-                heights[(size_t)(f->rows - 1 - j) * f->columns + i] = quantize(grey / most);
-            }
+            for (uint32_t i = 0; i < f->columns; i++)
+                heights[(size_t)(f->rows - 1 - j) * f->columns + i] = quantize(code_at(&image, potential, i, j) / most);
         f->heights = heights;
     }
     image_free(&image);

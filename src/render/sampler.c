@@ -460,6 +460,24 @@ static const Middle *shared_middle(const Sampler *sp, const Middle *const shared
     return rows ? &rows[py % FILM_TILE * FILM_TILE + px % FILM_TILE] : NULL;
 }
 
+/* Whether the explicit surface of a pixel ends between its middle and those around. */
+static bool ends_near(const Sampler *sp, int index) {
+    static const int around[] = {-EDGE - 1, -EDGE, -EDGE + 1, -1, 1, EDGE - 1, EDGE, EDGE + 1};
+    const Cell *cell = &sp->cells[index];
+    for (int k = 0; k < 8; k++)
+        if (sp->cells[index + around[k]].object != cell->object) return true;
+    return false;
+}
+
+/* A skin ends where its surface does: its cone, which is opaque where it meets the surface, tells nothing of what is beside the border. */
+static void find_ends_of_skins(Sampler *sp) {
+    for (int row = 1; row <= sp->rows; row++)
+        for (int column = 1; column <= sp->columns; column++) {
+            Cell *cell = &sp->cells[row * EDGE + column];
+            cell->refinable = cell->refinable || ends_near(sp, row * EDGE + column);
+        }
+}
+
 static void see_middles(Sampler *sp) {
     const View *view = &sp->compiled->view;
     const Middle *shared[9];
@@ -490,6 +508,7 @@ static void see_middles(Sampler *sp) {
             sp->cells[row * EDGE + column] = sp->cells[y * EDGE + x];
             set_mean(sp, row * EDGE + column, sp->cells[y * EDGE + x].first);
         }
+    if (sp->compiled->skin_count) find_ends_of_skins(sp);
     for (int row = 1; row <= sp->rows; row++) {
         float contrasts[FILM_TILE];
         contrast_row(&sp->light, row * EDGE + 1, sp->columns, contrasts);

@@ -111,8 +111,8 @@ static void see_facet(const BeamTracer *tr, Sight *sight) {
     sight->color = vec3f_mul(facet_color(tr, &plane, own, sight), copy->tint);
 }
 
-/* Of the width of a sample's share of the pixel: as in sampler.c. */
-static const double SAMPLE_WIDTH = 0.7;
+/* Of one of so many samples, in pixels: of the width of its share 0.7, as in sampler.c. */
+static double sample_width(double samples) { return samples > 1 ? 0.7 / sqrt(samples) : 1; }
 
 /* Whether what a surface looks like may change within a pixel. */
 static bool look_varies(const SurfaceHit *hit) { return hit->share_count || !hit->look->uniform || hit->look->texture->normal; }
@@ -120,7 +120,7 @@ static bool look_varies(const SurfaceHit *hit) { return hit->share_count || !hit
 static void see_explicit(const SeenSurface *seen, Vec3 point, double width, int samples, double t, Sight *sight) {
     const SurfaceHit *hit = &seen->hit;
     Vec3 normal = hit->normal, direction = vec3_negate(vec3_from_f(sight->view));
-    double part = look_varies(hit) && samples > 1 ? SAMPLE_WIDTH / sqrt(samples) : 1;
+    double part = look_varies(hit) ? sample_width(samples) : 1;
     const Cone cone = {vec3_madd(point, direction, -hit->t), direction, part * width, 0};
     sight->color = hit->look->color;
     if (look_varies(hit) || !hit->look->opaque) surface_glance(&cone, hit, &sight->color, &normal);
@@ -156,15 +156,33 @@ Cone beam_sight_cone(const BeamTracer *tr, const Sight *sight, double *t) {
     }
     BeamLine line = beam_line_at(tr, x / sight->count, y / sight->count);
     Cone cone = tr->cones[sight->pixel];
+    if (sight->narrow) {
+        const double part = sample_width((double)tr->allotment.asked[sight->pixel] / sight->count);
+        cone.width *= part, cone.spread *= part;
+    }
     cone.origin = line.origin;
     cone.direction = vec3_scale(line.direction, 1 / line.length);
     *t = sight->look ? sum / sight->count : VTS_INFINITY;
     return cone;
 }
 
+/* Where the surface that carries a layer of voxels ends, parts of the pixel look at them by themselves: far layers are lower than a pixel,
+ * and one line would meet them, or pass over them, for all. */
+static bool is_narrow(const BeamTracer *tr, uint32_t sample, bool beyond) {
+    return beyond && !tr->beam.samples.mark[sample] && tr->surface[sample] != BEAM_NOTHING;
+}
+/* Two across and four down, since most of what ends is a horizon. */
+static int part_of_pixel(const BeamSamples *s, uint32_t sample) {
+    float x = s->x[sample], y = s->y[sample];
+    return 4 * (int)(2 * (x - floorf(x))) + (int)(4 * (y - floorf(y)));
+}
+
 /* What changes within a pixel is looked at for each sample: what one look misses would stay with any number of samples, and their noise
  * would know nothing of it. */
-static bool may_join(const Sight *sight) { return !sight->surface || !look_varies(sight->surface); }
+static bool may_join(const BeamSamples *s, const Sight *sight, uint32_t sample) {
+    if (sight->surface && look_varies(sight->surface)) return false;
+    return !sight->narrow || part_of_pixel(s, sample) == part_of_pixel(s, (uint32_t)sight->first);
+}
 
 /* The sight of the pixel, whose sights begin at `begin`, that the sample belongs to; sight_count if none does yet. */
 static uint32_t sight_of(const BeamTracer *tr, int pixel, uint32_t begin, uint32_t sample, bool beyond) {
@@ -172,14 +190,14 @@ static uint32_t sight_of(const BeamTracer *tr, int pixel, uint32_t begin, uint32
     uint32_t k = begin;
     for (; k < tr->sight_count; k++) {
         uint32_t other = (uint32_t)tr->sights[k].first;
-        if (mark[sample] != mark[other] || beyond != tr->sights[k].beyond || !may_join(&tr->sights[k])) continue;
+        if (mark[sample] != mark[other] || beyond != tr->sights[k].beyond || !may_join(&tr->beam.samples, &tr->sights[k], sample)) continue;
         if (mark[sample] || same_surface(beam_surface_of(tr, pixel, sample), beam_surface_of(tr, pixel, other))) break;
     }
     return k;
 }
 
 static Sight new_sight(const BeamTracer *tr, int pixel, uint32_t sample, bool beyond) {
-    Sight sight = {.pixel = pixel, .first = BEAM_NOTHING, .t = INFINITY, .sky = -1, .beyond = beyond};
+    Sight sight = {.pixel = pixel, .first = BEAM_NOTHING, .t = INFINITY, .sky = -1, .beyond = beyond, .narrow = is_narrow(tr, sample, beyond)};
     uint32_t mark = tr->beam.samples.mark[sample];
     if (!mark && !beam_surface_of(tr, pixel, sample)->found) return sight;
     double t;

@@ -35,6 +35,7 @@ typedef struct Sight {
     Vec3f tone;           /* of the light that is being asked for, without shadows */
     uint32_t begin;       /* of its points */
     bool asked;           /* whether it has any */
+    bool narrow;          /* its samples lie together in a part of the pixel, and are looked at by a cone as wide as that */
     bool beyond;          /* its samples may see voxels before it, and get the shadows of voxels; else all before it is exact */
     Vec3 point;           /* the mean of its samples on a facet; that of the first on explicit objects */
 } Sight;
@@ -114,7 +115,7 @@ const SeenSurface *beam_surface_of(const BeamTracer *tracer, int pixel, uint32_t
 
 /* Sorts the samples of each pixel by what they see, and by whether voxels may lie before it. */
 void beam_gather_sights(BeamTracer *tracer);
-/* The mean of the lines to the samples of a sight, as wide as the pixel, and how far along it they lie (VTS_INFINITY of the sky). The line
+/* The mean of the lines to the samples of a sight, as wide as the pixel or as a narrow sight's part of it, and how far along it they lie (VTS_INFINITY of the sky). The line
  * through the pixel's middle would end before what they see or behind it, by more than a thin layer's height. */
 Cone beam_sight_cone(const BeamTracer *tracer, const Sight *sight, double *t);
 

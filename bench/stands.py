@@ -112,10 +112,8 @@ def main():
                 for sun in options.suns.split(","):
                     for side in options.sides.split(","):
                         for pixels in options.pixels.split(","):
-                            cell = kind, up, sun, side, pixels
                             for term in ["lit", "seen", "facing"] if options.terms else ["lit"]:
-                                if term == "seen":
-                                    cell = kind, up, "45", "0", pixels
+                                cell = (kind, up, "45", "0", pixels) if term == "seen" else (kind, up, sun, side, pixels)
                                 asked = cell[:4] + (TRUTH_PIXELS,)
                                 key = " ".join([term, options.tiling, str(options.rays), *asked])
                                 true = kept(truth, options.truth, key, lambda: means(options, folder, asked, term, True))

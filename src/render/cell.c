@@ -36,6 +36,7 @@ float cell_squares_sum(const Cell *cell) {
 }
 
 Radiance cell_light(const Cell *cell) {
+    if (cell->edged) return cell->edge;
     int count = cell_count(cell);
     float share = count ? 1 / (float)count : 0;
     Radiance sum = cell->sum;

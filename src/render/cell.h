@@ -16,6 +16,9 @@ typedef struct Cell {
     bool refinable;
     bool probe;           /* its next samples are for others like it */
     bool checked, misled; /* whether what is shared was looked at in this round, and was wrong */
+    bool edged, traced;   /* one edge goes through the pixel (pixel_edge.h), as the middles around have it; and as its samples have it */
+    float edge_error;     /* squared error to be expected of */
+    Radiance edge;        /* the light that it makes */
     Vec3f mean;           /* of what counts */
     float squares;        /* of the channels of its net's samples */
     Radiance sum;         /* over these, */

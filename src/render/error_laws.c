@@ -23,6 +23,7 @@ static void tell(ErrorLaws *laws) {
     double ratio = 1, missed = 0;
     for (int k = 0; k < ERROR_CLASSES; k++)
         laws->ratios[k] = ratio = learned_ratio(&laws->contrasts[k], k % ERROR_OF_PATTERNS ? ratio : 1, k < ERROR_OF_PATTERNS ? KNOWN : KNOWN_OF_PATTERNS);
+    for (int k = 0; k < 2; k++) laws->edge_ratios[k] = learned_ratio(&laws->edges[k], 1, KNOWN);
     for (int k = 0; k < QUIET_CLASSES; k++) laws->missed[k] = missed = learned_mean(&laws->quiet[k], MISSED_AGAIN * missed);
 }
 
@@ -47,6 +48,7 @@ static double error_of_many(const ErrorLaws *laws, const Cell *cell) {
 /* As the pixel by itself seems; 0 of what cannot be refined. */
 static double error_alone(const ErrorLaws *laws, const Cell *cell) {
     if (!cell->refinable) return 0;
+    if (cell->edged) return CAUTION * (double)cell->edge_error * laws->edge_ratios[cell->traced] + (double)cell->doubt;
     return cell->net && cell_count(cell) > 1 ? error_of_many(laws, cell) : CAUTION * (double)cell->contrast * laws->ratios[cell->class] + (double)cell->doubt;
 }
 
@@ -65,13 +67,21 @@ double error_expected(const ErrorLaws *laws, const Cell *cell) {
     return is_quiet(laws, cell, alone) ? fmax(alone, laws->missed[error_quiet_class(cell)]) : alone;
 }
 
+/* What an edge differs from what better ones, or nets, tell later; these have errors of their own. */
+static void learn_edge(ErrorLaws *laws, const Cell *before, const Cell *cell) {
+    const double off = (double)light_mean_square(vec3f_sub(before->mean, cell->mean));
+    const double own = cell->edged ? (double)cell->edge_error : error_of_many(laws, cell) / CAUTION;
+    learn(&laws->edges[before->traced], (double)before->edge_error, fmax(off - own, 0));
+}
+
 void error_learn(ErrorLaws *laws, const Cell *before, const Cell *cell) {
     const int count = cell_count(cell);
     if (is_quiet(laws, before, error_alone(laws, before)))
         learn(&laws->quiet[error_quiet_class(before)], 0, (before->net ? DOUBLING_TO_ERROR : 1) * (double)light_mean_square(vec3f_sub(before->mean, cell->mean)));
-    if (before->net == 0 && cell->centred)
+    if (before->edged) learn_edge(laws, before, cell);
+    else if (before->net == 0 && cell->centred)
         learn(&laws->contrasts[cell->class], (double)cell->contrast, (double)light_mean_square(vec3f_sub(cell->first, cell->mean)));
-    learn(&laws->levels[learned_level(count)], variance(cell) / count, cell_halves_error(cell));
+    if (!cell->edged) learn(&laws->levels[learned_level(count)], variance(cell) / count, cell_halves_error(cell));
     tell(laws);
 }
 

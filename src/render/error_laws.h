@@ -14,8 +14,8 @@ enum { QUIET_CLASSES = LEARNED_LEVELS + 1 };
 
 typedef struct ErrorLaws {
     double accepted; /* of a pixel, on the mean */
-    Learned contrasts[ERROR_CLASSES], levels[LEARNED_LEVELS], quiet[QUIET_CLASSES];
-    double ratios[ERROR_CLASSES], missed[QUIET_CLASSES]; /* what these have told by now */
+    Learned contrasts[ERROR_CLASSES], levels[LEARNED_LEVELS], quiet[QUIET_CLASSES], edges[2]; /* of middles, of samples */
+    double ratios[ERROR_CLASSES], missed[QUIET_CLASSES], edge_ratios[2]; /* what these have told by now */
 } ErrorLaws;
 
 void error_laws_begin(ErrorLaws *laws, double accepted);

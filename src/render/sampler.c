@@ -4,6 +4,7 @@
 #include "render/cell.h"
 #include "render/error_laws.h"
 #include "render/guess.h"
+#include "render/pixel_edge.h"
 #include "render/shared_light.h"
 #include "render/tile_sight.h"
 
@@ -13,6 +14,9 @@ enum { EDGE = CONTRAST_EDGE, CELLS = CONTRAST_CELLS };
 /* Where so much of the light comes from explicit surfaces, their edges are worth samples; where less, skins hide them. */
 static const float EDGE_WORTH = 1.0f / 64, ALL_EXPLICIT = 0.999f;
 enum { FIRST_NET = 4 };
+/* Of an edge so many samples are taken at most, until its error is this part of what is accepted; where that is not enough a net of so many tells more. */
+enum { EDGE_SAMPLES = 4, NET_AFTER_EDGE = 32 };
+static const double EDGE_ENOUGH = 0.25;
 /* Samples of a net are so wide, against its mesh: wider ones, which blur what is at a pixel's border, are wrong by more than narrower ones are noisy. */
 static const double SAMPLE_WIDTH = 0.7;
 /* Middles are guessed where this is found to be no further off than so many times the error that is accepted, unless the guesses take
@@ -234,6 +238,7 @@ static void see_more(Sampler *sp, int index, int count) {
     double width = count > 1 ? SAMPLE_WIDTH / sqrt(count) : 1;
     place_of(sp, index, &px, &py);
     cell->checked = cell->net == 0;
+    cell->edged = cell->traced = false;
     Draw draw = {random_hash((uint64_t)px, (uint64_t)py, sp->plan.seed, 0), 0};
     for (int k = cell->net; k < count && !stopped(sp); k++) {
         double x, y;
@@ -255,9 +260,49 @@ static void set_contrast(const Sampler *sp, Cell *cell, float contrast) {
     if (error_counts(&sp->laws, contrast) && sp->shares && shared_but_pattern(cell, sp->plan.max_error)) cell->class += ERROR_OF_PATTERNS;
 }
 
+/* ---- edges ---- */
+
+static void set_edge(Cell *cell, const PixelEdge *edge) {
+    cell->edge = pixel_edge_light(edge);
+    cell->edge_error = pixel_edge_error(edge);
+    cell->mean = light_shown(cell->edge.color);
+    cell->edged = isfinite(cell->edge.color.x) && isfinite(cell->edge.color.y) && isfinite(cell->edge.color.z);
+}
+
+/* Where the middles show one, and it makes a difference. */
+static void find_edge(const Sampler *sp, Cell *cell) {
+    PixelEdge edge;
+    if (!sp->shares || sp->aovs || !cell->refinable || cell->class >= ERROR_OF_PATTERNS || !error_counts(&sp->laws, cell->contrast)) return;
+    if (pixel_edge_begin(cell, &edge)) set_edge(cell, &edge);
+    if (!cell->edged) cell->mean = cell->first;
+}
+
+/* Samples along the pixel's edge; returns how many. It is none after all if they say so. */
+static int trace_edge(Sampler *sp, int index) {
+    Cell *cell = &sp->cells[index];
+    PixelEdge edge;
+    int px, py, taken = 0;
+    bool holds = pixel_edge_begin(cell, &edge);
+    place_of(sp, index, &px, &py);
+    cell->checked = true;
+    while (holds && taken < EDGE_SAMPLES && !stopped(sp) &&
+           (taken == 0 || (double)pixel_edge_error(&edge) > EDGE_ENOUGH * sp->laws.accepted)) {
+        float x, y;
+        Sighting s;
+        edge_place(&edge.fit, taken++, &x, &y);
+        see(sp, &(Aim){px, py, taken, 0.5 + (double)x, 0.5 + (double)y, SAMPLE_WIDTH / 2, 1.0 / FIRST_NET}, cell, NULL, &s);
+        holds = pixel_edge_add(&edge, x, y, &s.seen);
+    }
+    cell->edged = false;
+    if (holds) set_edge(cell, &edge);
+    cell->traced = cell->edged;
+    if (cell->edged) set_mean(sp, index, cell->mean);
+    return taken;
+}
+
 /* ---- a tile ---- */
 
-static int next_net(const Cell *cell) { return cell->net ? 2 * cell->net : FIRST_NET; }
+static int next_net(const Cell *cell) { return cell->traced ? NET_AFTER_EDGE : cell->net ? 2 * cell->net : FIRST_NET; }
 
 static double gain_of(const Cell *cell) { return cell->probe ? VTS_INFINITY : cell->error / (next_net(cell) - cell->net); }
 
@@ -328,11 +373,12 @@ static double value_all(Sampler *sp, double least) {
 static int refine(Sampler *sp, int index) {
     Cell *cell = &sp->cells[index];
     const Cell before = *cell;
-    see_more(sp, index, next_net(cell));
+    int taken = cell->edged && !cell->traced && !cell->probe ? trace_edge(sp, index) : 0;
+    if (!cell->traced || before.traced) see_more(sp, index, next_net(cell));
     sp->probes -= cell->probe;
     cell->probe = false;
     error_learn(&sp->laws, &before, cell);
-    return cell->net - before.net;
+    return taken + cell->net - before.net;
 }
 
 /* Whether what pixels beside it see is another contrast by now, one that counts (contrasts are squares: half as much again takes 0.22 of
@@ -349,12 +395,14 @@ static double look_around(Sampler *sp, int index) {
     for (int k = 0; k < 8; k++) {
         int other = index + around[k], row = other / EDGE, column = other % EDGE;
         Cell *cell = &sp->cells[other];
-        if (row < 1 || row > sp->rows || column < 1 || column > sp->columns || cell->net ||
+        if (row < 1 || row > sp->rows || column < 1 || column > sp->columns || cell->net || cell->traced ||
             !cell->refinable)
             continue;
         float contrast = contrast_at(&sp->light, other);
         if (contrast <= 1.5f * cell->contrast) continue;
         set_contrast(sp, cell, contrast);
+        cell->edged = false;
+        cell->mean = cell->first;
         change -= cell->error;
         cell->error = error_expected(&sp->laws, cell);
         change += cell->error;
@@ -512,7 +560,10 @@ static void see_middles(Sampler *sp) {
     for (int row = 1; row <= sp->rows; row++) {
         float contrasts[FILM_TILE];
         contrast_row(&sp->light, row * EDGE + 1, sp->columns, contrasts);
-        for (int i = 0; i < sp->columns; i++) set_contrast(sp, &sp->cells[row * EDGE + 1 + i], contrasts[i]);
+        for (int i = 0; i < sp->columns; i++) {
+            set_contrast(sp, &sp->cells[row * EDGE + 1 + i], contrasts[i]);
+            find_edge(sp, &sp->cells[row * EDGE + 1 + i]);
+        }
     }
 }
 
@@ -549,6 +600,6 @@ void sampler_tile(Sampler *sp, int x0, int y0, int x1, int y1, Radiance *out, Ao
         for (int column = 1; column <= sp->columns; column++) {
             const Cell *cell = &sp->cells[row * EDGE + column];
             *out++ = cell_light(cell);
-            sp->tally.refined += cell_count(cell) > 1;
+            sp->tally.refined += cell->traced || cell_count(cell) > 1;
         }
 }

@@ -136,11 +136,32 @@ static void test_thin_things_are_told(void **state) {
     assert_false(vista_has_thin(&pieces, corners, spread, 0));
 }
 
+/* A floor of 20 × 20, `below` the eye, that begins 10 away. */
+static bool floor_is_thin(double below, double thickness, double width, double spread, double pixel) {
+    Ray corners[4];
+    corners_at(-1, -1, 1, 1, corners);
+    VistaPiece piece = {.box = {vec3(-10, -below - thickness, 10), vec3(10, -below, 30)}, .width = width};
+    VistaPieces pieces = {&piece, 1, false};
+    return vista_has_thin(&pieces, corners, spread, pixel);
+}
+
+static void test_floors_are_as_wide_as_they_look(void **state) {
+    (void)state;
+    /* From 2 above it fills an angle of at least 2·20/(10.2·31.7) = 0.124. */
+    assert_false(floor_is_thin(2, 0, 0, 0.01, 0));
+    assert_true(floor_is_thin(2, 0, 0, 0.13, 0));
+    assert_true(floor_is_thin(0.1, 0, 0, 0.01, 0)); /* nearly edge-on */
+    assert_true(floor_is_thin(-0.1, 0.2, 0.2, 0.05, 0)); /* seen from its own height */
+    assert_true(floor_is_thin(2, 0.1, 0.05, 0.01, 0)); /* holds what is thinner than its box */
+    assert_true(floor_is_thin(2, 0, 0, 0, 0.1)); /* parallel lines: who knows how they lie */
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_is_beside_does_not_count),
                                        cmocka_unit_test(test_what_is_convex_hides_what_is_behind),
                                        cmocka_unit_test(test_nothing_that_can_be_met_is_left_out),
                                        cmocka_unit_test(test_what_cannot_be_told), cmocka_unit_test(test_few_things_are_told),
-                                       cmocka_unit_test(test_thin_things_are_told)};
+                                       cmocka_unit_test(test_thin_things_are_told),
+                                       cmocka_unit_test(test_floors_are_as_wide_as_they_look)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

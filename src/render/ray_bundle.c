@@ -44,15 +44,11 @@ void bundle_add(RayBundle *bundle, Vec3f origin, Vec3f direction, float near, fl
     bundle->valid[i] = -1;
 }
 
-static void init_context(struct RTCIntersectContext *context) {
-    rtcInitIntersectContext(context);
-    context->flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-}
-
 void bundle_intersect(RayBundle *bundle, RTCScene scene) {
     struct RTCIntersectContext context;
     void *rays = bundle->cells;
-    init_context(&context);
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT; /* in place of a half more time */
     if (bundle->lanes == MOST_LANES) rtcIntersect8(bundle->valid, scene, &context, rays);
     else rtcIntersect1(scene, &context, rays);
 }
@@ -60,7 +56,7 @@ void bundle_intersect(RayBundle *bundle, RTCScene scene) {
 void bundle_occlude(RayBundle *bundle, RTCScene scene) {
     struct RTCIntersectContext context;
     void *rays = bundle->cells;
-    init_context(&context);
+    rtcInitIntersectContext(&context); /* ways from places behind each other are not coherent: taken so, they take a seventh longer */
     if (bundle->lanes == MOST_LANES) rtcOccluded8(bundle->valid, scene, &context, rays);
     else rtcOccluded1(scene, &context, rays);
 }

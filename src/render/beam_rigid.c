@@ -202,9 +202,36 @@ static void leave_cut_off(const struct RTCFilterFunctionNArguments *args) {
     }
 }
 
+static bool same_clusters(const TexelCluster *a, const TexelCluster *b) {
+    size_t row = (size_t)a->vertex_count * sizeof *a->x;
+    return a->vertex_count == b->vertex_count && a->triangle_count == b->triangle_count &&
+           memcmp(a->triangles, b->triangles, (size_t)a->triangle_count * sizeof *a->triangles) == 0 && memcmp(a->x, b->x, row) == 0 &&
+           memcmp(a->y, b->y, row) == 0 && memcmp(a->z, b->z, row) == 0;
+}
+
+/* Whether their triangles are, whatever they are made of. */
+static bool same_triangles(const BeamTexel *a, const BeamTexel *b) {
+    if (a->triangle_count != b->triangle_count || a->cluster_count != b->cluster_count) return false;
+    for (size_t i = 0; i < a->cluster_count; i++)
+        if (!same_clusters(&a->clusters[i], &b->clusters[i])) return false;
+    return true;
+}
+
+/* Trees that differ by their colours alone have one hierarchy, which takes less room in caches than several. */
+static RigidTexel *texel_like(Building *b, const RigidTexel *like, const BeamTexel *beam) {
+    RigidTexel *texel = arena_new(b->compiled->arena, RigidTexel);
+    *texel = *like;
+    texel->beam = beam;
+    texel->next = b->out->texels;
+    rtcRetainScene(texel->scene);
+    return b->out->texels = texel;
+}
+
 static RigidTexel *texel_of(Building *b, const BeamTexel *beam) {
     for (RigidTexel *t = b->out->texels; t; t = t->next)
         if (t->beam == beam) return t;
+    for (RigidTexel *t = b->out->texels; t; t = t->next)
+        if (same_triangles(t->beam, beam)) return texel_like(b, t, beam);
     RigidTexel *texel = arena_new(b->compiled->arena, RigidTexel);
     uint32_t *facets = arena_new_array(b->compiled->arena, uint32_t, beam->triangle_count);
     size_t vertices = 0;

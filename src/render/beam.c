@@ -115,16 +115,22 @@ static void narrow(const Vec3f p[3], float top, float bottom, float *left, float
     }
 }
 
+static bool holds_samples(const BeamSamples *s, int x0, int x1, int y0, int y1) {
+    for (int row = y0; row <= y1; row++)
+        if (s->first[row * s->columns + x1 + 1] > s->first[row * s->columns + x0]) return true;
+    return false;
+}
+
 bool beam_draw_seen(Beam *beam, Vec3f a, Vec3f b, Vec3f c, uint32_t mark) {
     const BeamSamples *s = &beam->samples;
     float left = float_min(a.x, float_min(b.x, c.x)), right = float_max(a.x, float_max(b.x, c.x));
     float top = float_min(a.y, float_min(b.y, c.y)), bottom = float_max(a.y, float_max(b.y, c.y));
     if (!(right >= 0 && left <= (float)s->columns && bottom >= 0 && top <= (float)s->rows)) return false;
-    Triangle t;
-    Vec3f corners[3] = {a, b, c};
-    if (!set_up(corners, &t)) return false;
     int x0 = bin_below(left, s->columns - 1), x1 = bin_below(right, s->columns - 1);
     int y0 = bin_below(top, s->rows - 1), y1 = bin_below(bottom, s->rows - 1);
+    Triangle t;
+    Vec3f corners[3] = {a, b, c};
+    if (!holds_samples(s, x0, x1, y0, y1) || !set_up(corners, &t)) return false;
     bool large = y1 > y0 && x1 > x0;
     float most = beam->perspective ? INFINITY : (float)beam->nearest;
     bool any = false;

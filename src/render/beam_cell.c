@@ -127,11 +127,21 @@ bool cell_frame(CellFrame *f, const Beam *beam, const SkinCell *cell) {
     return true;
 }
 
-Vec3f cell_frame_point(const CellFrame *f, float a, float b, float w) {
+static inline float along(const float c[8], float a, float b, float w) {
     float ab = a * b;
-    return vec3f(f->x[0] + f->x[1] * a + f->x[2] * b + f->x[3] * ab + w * (f->x[4] + f->x[5] * a + f->x[6] * b + f->x[7] * ab),
-                 f->y[0] + f->y[1] * a + f->y[2] * b + f->y[3] * ab + w * (f->y[4] + f->y[5] * a + f->y[6] * b + f->y[7] * ab),
-                 f->z[0] + f->z[1] * a + f->z[2] * b + f->z[3] * ab + w * (f->z[4] + f->z[5] * a + f->z[6] * b + f->z[7] * ab));
+    return c[0] + c[1] * a + c[2] * b + c[3] * ab + w * (c[4] + c[5] * a + c[6] * b + c[7] * ab);
+}
+
+Vec3f cell_frame_point(const CellFrame *f, float a, float b, float w) { return vec3f(along(f->x, a, b, w), along(f->y, a, b, w), along(f->z, a, b, w)); }
+
+/* Written so that compilers make vectors of it. */
+void cell_frame_points(const CellFrame *f, int count, const float *restrict a, const float *restrict b, const float *restrict w, float *restrict x,
+                       float *restrict y, float *restrict z) {
+    for (int i = 0; i < count; i++) {
+        x[i] = along(f->x, a[i], b[i], w[i]);
+        y[i] = along(f->y, a[i], b[i], w[i]);
+        z[i] = along(f->z, a[i], b[i], w[i]);
+    }
 }
 
 void cell_frame_linearise(CellFrame *f, double u, double v) {
@@ -149,23 +159,35 @@ void cell_frame_linearise(CellFrame *f, double u, double v) {
 
 /* ---- boxes ---- */
 
-unsigned beam_outcode(const Beam *beam, float x, float y, float z) {
-    float scale = beam->perspective ? z : 1, columns = (float)beam->samples.columns * scale, rows = (float)beam->samples.rows * scale;
-    float near = (float)beam->nearest, far = (float)beam->farthest;
-    unsigned ends = beam->perspective ? (unsigned)(z < near) << 4 | (unsigned)(z > far) << 5 : (unsigned)(z > near) << 4 | (unsigned)(z < far) << 5;
-    return (unsigned)(x < 0) | (unsigned)(x > columns) << 1 | (unsigned)(y < 0) << 2 | (unsigned)(y > rows) << 3 | ends;
+/* Written so that compilers make vectors of it. */
+void beam_outcodes(const Beam *beam, int count, const float *restrict x, const float *restrict y, const float *restrict z, uint32_t *restrict codes) {
+    float columns = (float)beam->samples.columns, rows = (float)beam->samples.rows, near = (float)beam->nearest, far = (float)beam->farthest;
+    if (beam->perspective)
+        for (int i = 0; i < count; i++)
+            codes[i] = (uint32_t)(x[i] < 0) | (uint32_t)(x[i] > columns * z[i]) << 1 | (uint32_t)(y[i] < 0) << 2 | (uint32_t)(y[i] > rows * z[i]) << 3 |
+                       (uint32_t)(z[i] < near) << 4 | (uint32_t)(z[i] > far) << 5;
+    else
+        for (int i = 0; i < count; i++)
+            codes[i] = (uint32_t)(x[i] < 0) | (uint32_t)(x[i] > columns) << 1 | (uint32_t)(y[i] < 0) << 2 | (uint32_t)(y[i] > rows) << 3 |
+                       (uint32_t)(z[i] > near) << 4 | (uint32_t)(z[i] < far) << 5;
 }
 
 /* What lies between three pairs of planes of skin space is within the hull of its eight corners, as the mapping is linear along
  * each axis. */
 bool cell_box_met(const Beam *beam, const CellFrame *f, const CellBox *box, float *nearest) {
-    unsigned outside = 63;
-    *nearest = INFINITY;
-    for (int i = 0; i < 8; i++) {
-        Vec3f q = cell_frame_point(f, i & 1 ? box->a1 : box->a0, i & 2 ? box->b1 : box->b0, i & 4 ? box->w1 : box->w0);
-        outside &= beam_outcode(beam, q.x, q.y, q.z);
-        *nearest = float_min(*nearest, beam->perspective ? q.z : -q.z);
+    enum { CORNERS = 8 };
+    const float a[CORNERS] = {box->a0, box->a1, box->a0, box->a1, box->a0, box->a1, box->a0, box->a1};
+    const float b[CORNERS] = {box->b0, box->b0, box->b1, box->b1, box->b0, box->b0, box->b1, box->b1};
+    const float w[CORNERS] = {box->w0, box->w0, box->w0, box->w0, box->w1, box->w1, box->w1, box->w1};
+    float x[CORNERS], y[CORNERS], z[CORNERS], least = INFINITY, most = -INFINITY;
+    uint32_t codes[CORNERS], outside = ~0u;
+    cell_frame_points(f, CORNERS, a, b, w, x, y, z);
+    beam_outcodes(beam, CORNERS, x, y, z, codes);
+    for (int i = 0; i < CORNERS; i++) {
+        outside &= codes[i];
+        least = float_min(least, z[i]), most = float_max(most, z[i]);
     }
+    *nearest = beam->perspective ? least : -most;
     return outside == 0;
 }
 

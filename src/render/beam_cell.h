@@ -19,6 +19,9 @@ typedef struct CellFrame {
 bool cell_frame(CellFrame *f, const Beam *beam, const SkinCell *cell);
 /* Of (a, b, w). */
 Vec3f cell_frame_point(const CellFrame *f, float a, float b, float w);
+/* The same of many. */
+void cell_frame_points(const CellFrame *f, int count, const float *restrict a, const float *restrict b, const float *restrict w, float *restrict x,
+                       float *restrict y, float *restrict z);
 /* Takes the linear part of (u, v) → (a, b) at a place, or as near to it as the cell goes. */
 void cell_frame_linearise(CellFrame *f, double u, double v);
 
@@ -31,8 +34,10 @@ bool cell_is_singular(const SkinCell *cell);
 /* A quarter, 0 … 3, as a cell. The last of a triangle lies in its middle, turned about. */
 SkinCell cell_quarter(const SkinCell *cell, int quarter);
 
-/* In which of six ways a point of beam space is out of the beam, a bit each. */
-unsigned beam_outcode(const Beam *beam, float x, float y, float z);
+/* A point of beam space that lies before the beam's near end has this in its outcode. */
+enum { BEAM_TOO_NEAR = 16 };
+/* In which of six ways points of beam space are out of the beam, a bit each. */
+void beam_outcodes(const Beam *beam, int count, const float *restrict x, const float *restrict y, const float *restrict z, uint32_t *restrict codes);
 
 typedef struct CellBox {
     float a0, a1, b0, b1, w0, w1;

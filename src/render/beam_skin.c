@@ -168,15 +168,20 @@ static int clip_to_cell(const Vec3f in[3], bool triangle, Vec3f out[MOST_CLIPPED
 }
 
 static bool outside_beam(const Beam *beam, const Vec3f q[3]) {
-    return beam_outcode(beam, q[0].x, q[0].y, q[0].z) & beam_outcode(beam, q[1].x, q[1].y, q[1].z) & beam_outcode(beam, q[2].x, q[2].y, q[2].z);
+    const float x[3] = {q[0].x, q[1].x, q[2].x}, y[3] = {q[0].y, q[1].y, q[2].y}, z[3] = {q[0].z, q[1].z, q[2].z};
+    uint32_t codes[3];
+    beam_outcodes(beam, 3, x, y, z, codes);
+    return codes[0] & codes[1] & codes[2];
 }
 
-/* How far the mapping bends the triangle out of its plane, scene units. */
+/* How far the mapping bends out of its plane what is so large in (a, b, w), scene units. */
+static float bend_of(const CellFrame *f, float a, float b, float w) { return f->bend_ab * a * b + f->bend_aw * a * w + f->bend_bw * b * w; }
+
 static float bend(const CellFrame *f, const Vec3f p[3]) {
     float a = float_max(fabsf(p[1].x - p[0].x), float_max(fabsf(p[2].x - p[0].x), fabsf(p[2].x - p[1].x)));
     float b = float_max(fabsf(p[1].y - p[0].y), float_max(fabsf(p[2].y - p[0].y), fabsf(p[2].y - p[1].y)));
     float w = float_max(fabsf(p[1].z - p[0].z), float_max(fabsf(p[2].z - p[0].z), fabsf(p[2].z - p[1].z)));
-    return f->bend_ab * a * b + f->bend_aw * a * w + f->bend_bw * b * w;
+    return bend_of(f, a, b, w);
 }
 
 /* One triangle of the cluster or a part of it, in the cell and in the beam. */
@@ -187,30 +192,19 @@ typedef struct Piece {
     bool inside; /* the cell as a whole */
 } Piece;
 
+/* Of what lies in the cell and before the beam's near end as a whole. */
 static void draw_flat(Drawing *d, const Piece *piece) {
     Beam *beam = d->draft->beam;
     const CellFrame *f = d->at.frame;
-    uint32_t mark = d->draft->facet_count + 1;
-    const Vec3f *q = piece->q;
-    bool seen;
+    Vec3f part[MOST_CLIPPED];
+    int count = 3;
     d->draft->triangles++;
+    for (int i = 0; i < 3; i++) part[i] = piece->q[i];
     if (!piece->inside) {
-        Vec3f part[MOST_CLIPPED];
-        int count = clip_to_cell(piece->p, f->cell->triangle, part);
-        if (count < 3) return;
+        count = clip_to_cell(piece->p, f->cell->triangle, part);
         for (int i = 0; i < count; i++) part[i] = cell_frame_point(f, part[i].x, part[i].y, part[i].z);
-        seen = beam_draw(beam, part, count, mark);
-    } else if (beam->perspective && q[0].z >= (float)beam->nearest && q[1].z >= (float)beam->nearest && q[2].z >= (float)beam->nearest) {
-        Vec3f s[3];
-        for (int i = 0; i < 3; i++) {
-            float key = 1 / q[i].z;
-            s[i] = vec3f(q[i].x * key, q[i].y * key, key);
-        }
-        seen = beam_draw_seen(beam, s[0], s[1], s[2], mark);
-    } else {
-        seen = beam_draw(beam, q, 3, mark);
     }
-    if (seen && d->draft->facets) keep_facet(d, piece->p, piece->triangle);
+    if (beam_draw(beam, part, count, d->draft->facet_count + 1) && d->draft->facets) keep_facet(d, piece->p, piece->triangle);
 }
 
 /* Cut in four, and again, until the mapping bends it no more than is tolerated. */
@@ -237,13 +231,8 @@ static void draw_bent(Drawing *d, const Piece *piece, int depth) {
     draw_bent(d, &middle, depth + 1);
 }
 
-/* The bit after those of beam_outcode(): out of the cell. */
+/* The bit after those of beam_outcodes(): out of the cell. */
 enum { OUT_OF_CELL = 64 };
-
-static unsigned cell_code(float a, float b, float w, bool triangle) {
-    float most_b = triangle ? 1 - a : 1;
-    return (a >= -HAIR && a <= 1 + HAIR && b >= -HAIR && b <= most_b + HAIR && w >= -HAIR && w <= 1 + HAIR) ? 0 : OUT_OF_CELL;
-}
 
 /* The walls of the cell as a copy sees them: straight lines of texture space. */
 static void set_walls(Drawing *d) {
@@ -292,32 +281,71 @@ static void draw_across(Drawing *d, const Vec3f corner[3], int triangle) {
     }
 }
 
-static void draw_cluster(Drawing *d, const TexelCluster *cluster) {
+/* A cluster's vertices: in the cell, in the beam, and as they are seen. */
+typedef struct MappedVertices {
     float a[CLUSTER_VERTICES], b[CLUSTER_VERTICES], w[CLUSTER_VERTICES];
-    Vec3f q[CLUSTER_VERTICES];
-    unsigned char code[CLUSTER_VERTICES];
-    const CellFrame *f = d->at.frame;
-    d->cluster = cluster;
-    to_skin(&d->at, cluster->vertex_count, cluster->x, cluster->y, cluster->z, a, b, w);
-    for (int i = 0; i < cluster->vertex_count; i++) {
-        q[i] = cell_frame_point(f, a[i], b[i], w[i]);
-        code[i] = (unsigned char)(beam_outcode(d->draft->beam, q[i].x, q[i].y, q[i].z) | cell_code(a[i], b[i], w[i], f->cell->triangle));
+    float x[CLUSTER_VERTICES], y[CLUSTER_VERTICES], z[CLUSTER_VERTICES];
+    float seen_x[CLUSTER_VERTICES], seen_y[CLUSTER_VERTICES], key[CLUSTER_VERTICES]; /* of those that lie before the near end */
+    uint32_t code[CLUSTER_VERTICES];
+} MappedVertices;
+
+/* Written so that compilers make vectors of it. */
+static void map_vertices(const Drawing *d, const TexelCluster *cluster, MappedVertices *v) {
+    const Beam *beam = d->draft->beam;
+    const bool perspective = beam->perspective, triangle = d->at.frame->cell->triangle;
+    const int count = cluster->vertex_count;
+    to_skin(&d->at, count, cluster->x, cluster->y, cluster->z, v->a, v->b, v->w);
+    cell_frame_points(d->at.frame, count, v->a, v->b, v->w, v->x, v->y, v->z);
+    beam_outcodes(beam, count, v->x, v->y, v->z, v->code);
+    for (int i = 0; i < count; i++) {
+        float a = v->a[i], b = v->b[i], w = v->w[i], most_b = triangle ? 1 - a : 1;
+        uint32_t in = (uint32_t)(a >= -HAIR) & (uint32_t)(a <= 1 + HAIR) & (uint32_t)(b >= -HAIR) & (uint32_t)(b <= most_b + HAIR) &
+                      (uint32_t)(w >= -HAIR) & (uint32_t)(w <= 1 + HAIR);
+        v->code[i] |= in ? 0 : OUT_OF_CELL;
+        float key = perspective ? 1 / v->z[i] : 1;
+        v->seen_x[i] = v->x[i] * key, v->seen_y[i] = v->y[i] * key, v->key[i] = perspective ? key : v->z[i];
     }
+}
+
+static Vec3f vertex_in_box(const TexelCluster *cluster, int i) { return vec3f(cluster->x[i], cluster->y[i], cluster->z[i]); }
+static Vec3f vertex_in_cell(const MappedVertices *v, int i) { return vec3f(v->a[i], v->b[i], v->w[i]); }
+static Vec3f vertex_in_beam(const MappedVertices *v, int i) { return vec3f(v->x[i], v->y[i], v->z[i]); }
+static Vec3f vertex_seen(const MappedVertices *v, int i) { return vec3f(v->seen_x[i], v->seen_y[i], v->key[i]); }
+
+/* A triangle that needs neither be cut nor bent. */
+static void draw_plain(Drawing *d, const MappedVertices *v, const uint8_t *corner, int triangle) {
+    BeamDraft *draft = d->draft;
+    draft->triangles++;
+    if (!beam_draw_seen(draft->beam, vertex_seen(v, corner[0]), vertex_seen(v, corner[1]), vertex_seen(v, corner[2]), draft->facet_count + 1)) return;
+    if (!draft->facets) return;
+    const Vec3f p[3] = {vertex_in_cell(v, corner[0]), vertex_in_cell(v, corner[1]), vertex_in_cell(v, corner[2])};
+    keep_facet(d, p, triangle);
+}
+
+/* `box` holds the part of the cluster that is in the cell. */
+static void draw_cluster(Drawing *d, const TexelCluster *cluster, const CellBox *box) {
+    MappedVertices v;
+    const CellFrame *f = d->at.frame;
+    const bool plain = bend_of(f, box->a1 - box->a0, box->b1 - box->b0, box->w1 - box->w0) <= d->at.tolerance;
+    d->cluster = cluster;
+    map_vertices(d, cluster, &v);
     for (int i = 0; i < cluster->triangle_count; i++) {
-        const uint8_t *v = cluster->triangles[i];
-        bool inside = !((code[v[0]] | code[v[1]] | code[v[2]]) & OUT_OF_CELL);
-        Piece piece = {.triangle = i, .inside = inside};
-        if (!f->affine) {
-            for (int k = 0; k < 3; k++) piece.x[k] = vec3f(cluster->x[v[k]], cluster->y[v[k]], cluster->z[v[k]]);
-            if (!inside) {
-                draw_across(d, piece.x, i);
-                continue;
-            }
+        const uint8_t *corner = cluster->triangles[i];
+        const uint32_t any = v.code[corner[0]] | v.code[corner[1]] | v.code[corner[2]], all = v.code[corner[0]] & v.code[corner[1]] & v.code[corner[2]];
+        const bool inside = !(any & OUT_OF_CELL);
+        const Vec3f x[3] = {vertex_in_box(cluster, corner[0]), vertex_in_box(cluster, corner[1]), vertex_in_box(cluster, corner[2])};
+        if (!f->affine && !inside) {
+            draw_across(d, x, i);
+            continue;
         }
-        if (code[v[0]] & code[v[1]] & code[v[2]] & (OUT_OF_CELL - 1)) continue;
-        for (int k = 0; k < 3; k++) piece.p[k] = vec3f(a[v[k]], b[v[k]], w[v[k]]), piece.q[k] = q[v[k]];
-        if (bend(f, piece.p) <= d->at.tolerance) draw_flat(d, &piece);
-        else draw_bent(d, &piece, 0);
+        if (all & (OUT_OF_CELL - 1)) continue;
+        if (plain && inside && !(any & BEAM_TOO_NEAR)) {
+            draw_plain(d, &v, corner, i);
+            continue;
+        }
+        Piece piece = {.triangle = i, .inside = inside};
+        for (int k = 0; k < 3; k++) piece.p[k] = vertex_in_cell(&v, corner[k]), piece.q[k] = vertex_in_beam(&v, corner[k]), piece.x[k] = x[k];
+        draw_bent(d, &piece, 0);
     }
 }
 
@@ -351,7 +379,7 @@ static void draw_copy(Drawing *d, const BeamTexel *texel) {
         d->draft->nodes++;
         if (!node_box(&d->at, node, &box) || !cell_box_met(d->draft->beam, d->at.frame, &box, &nearest)) continue;
         if (node->leaf) {
-            draw_cluster(d, &texel->clusters[node->first]);
+            draw_cluster(d, &texel->clusters[node->first], &box);
         } else if (depth + 2 <= DEEPEST_NODE) {
             stack[depth++] = node->first;
             stack[depth++] = node->first + 1;

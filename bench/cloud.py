@@ -7,7 +7,7 @@ import argparse, math, os, resource, shutil, subprocess, sys
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from pfm import read_pfm
 
-SPREAD = (1, 4, 16, 64, 256)
+SPREAD = (1, 4, 16, 64, 256, 1024)
 
 
 def run(command):
@@ -175,7 +175,7 @@ def main():
     every = bench.reference("all")
     print("noise of the reference: RMSE %.5f" % math.sqrt(every[1]), flush=True)
     bench.draw("default", "auto", "", every)
-    for rays in (300, 3000, 30000, 300000, 1500000):
+    for rays in (300, 3000, 30000, 300000, 1500000, 4000000):
         bench.draw("rays", str(rays), "rays %d" % rays, every)
     for storage in ("isotropic", "directional"):
         bench.draw("storage", storage, "rays 100000 storage " + storage, every)

@@ -474,7 +474,7 @@ static VtsStatus render(VtsSession *session, const char *scene_path, const char 
     session->audits = !exact && !o->unreported;
     if ((status = session_expose(session, scene_path, exact, &stats)) != VTS_OK) return status;
     stats.kept_tiles = session->tiles_taken + tile_file_taken(session->kept);
-    if (!exact) verdict_tell(&session->compiled, &stats, &session->diags);
+    verdict_tell(&session->compiled, &stats, &session->diags);
     double rendered = stopwatch_wall();
     session_mark_part(session);
     if ((status = session_save_picture(session, scene_path, output_path)) != VTS_OK) return status;

@@ -19,8 +19,8 @@ static const double TOLERANCE_VOXELS = 0.2;
 enum { COARSEST = 16, FLAKES = 60000, MOST_TRIANGLES = 3000000 };
 /* What lies within chance counts less and less: at so many standard errors as much as what was thought before. */
 static const double DOUBTFUL = 2;
-/* Above so many, what was thought before was too much; but so much of its square is left. */
-static const double MOST_LUCK = 1.5, LEAST_LEFT = 0.05;
+/* Above so many, what was thought before was too much; but so much of its square is left. More with volumes: the few of their paths that are bright tell most, and are mostly missed. */
+static const double MOST_LUCK = 1.5, LEAST_LEFT = 0.05, LEAST_LEFT_OF_PATHS = 0.25;
 enum { ENOUGH = 16 };
 
 typedef struct Place {
@@ -136,7 +136,7 @@ static void see_place(void *context, size_t index, int worker) {
 }
 
 /* What to take for the mean square of the error: what places tell, as far as they can, and what was thought before (negative: nothing). */
-static double settle(const Place *places, int count, double before) {
+static double settle(const Place *places, int count, double before, double least_left) {
     double sum = 0, squares = 0;
     for (int i = 0; i < count; i++) sum += places[i].squared, squares += places[i].squared * places[i].squared;
     if (count < 2) return fmax(before, 0);
@@ -144,7 +144,7 @@ static double settle(const Place *places, int count, double before) {
     if (before < 0) return fmax(mean, 0.5 * sqrt(variance));
     double square = mean > 0 ? mean * mean : 0, weight = square * square / (square * square + chance * chance);
     double settled = weight > 0 ? weight * mean + (1 - weight) * before : before;
-    return count < ENOUGH ? settled : fmin(settled, fmax(mean + MOST_LUCK * sqrt(variance), LEAST_LEFT * before));
+    return count < ENOUGH ? settled : fmin(settled, fmax(mean + MOST_LUCK * sqrt(variance), least_left * before));
 }
 
 /* The same of pictures whose samples tell their noise: few places hit upon the edges that make most of it, so that they count only for what is wrong nearly everywhere. */
@@ -157,6 +157,11 @@ static double settle_bias(const Place *places, int count, double before) {
 }
 
 static bool samples_tell(const CompiledScene *compiled) { return compiled->skin_count == 0 && !compiled->volumes && !compiled->scene->has_media; }
+
+static double settled_of(const CompiledScene *compiled, const Place *places, int count, double before) {
+    if (samples_tell(compiled)) return settle_bias(places, count, before);
+    return settle(places, count, before, compiled->volumes ? LEAST_LEFT_OF_PATHS : LEAST_LEFT);
+}
 
 static int rays_a_pixel(const TraceCounters *c, bool paths, int pixels) {
     double work = (double)c->camera_rays + (double)c->shadow_rays + (double)c->steps / STEPS_A_RAY + (double)c->triangles / TRIANGLES_A_RAY;
@@ -176,11 +181,12 @@ static void look(Audit *audit, const CompiledScene *compiled, Pool *pool, Render
     }
     audit->options.samples = rays_a_pixel(&stats->counters, compiled->volumes, int_min(inside, MOST_WITHIN) + int_min(PLACES - inside, MOST_BESIDE));
     double noise = stats->noise_estimate * stats->noise_estimate, known = stats->error_estimate, total = 0;
+    if (compiled->volumes && compiled->volume_rays > 0 && known >= 0) known = hypot(known, compiled->volume_error); /* samples of a pixel share what bins have */
     for (int kind = 0; kind < 2; kind++) {
         int of_kind = kind ? PLACES - inside : inside, count = choose(audit, all, within, !kind, of_kind, kind ? MOST_BESIDE : MOST_WITHIN);
         double before = kind ? noise : known < 0 ? -1 : known * known;
         if (!pool_run(pool, (size_t)count, see_place, audit)) return;
-        total += (samples_tell(compiled) ? settle_bias : settle)(audit->places, count, before) * of_kind / PLACES;
+        total += settled_of(compiled, audit->places, count, before) * of_kind / PLACES;
     }
     stats->error_estimate = sqrt(total);
 }

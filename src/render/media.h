@@ -23,7 +23,7 @@ typedef struct MediumSite {
     double stride; /* how far apart places are that tell of all in between; infinite where it is even */
 } MediumSite;
 
-enum { MEDIA_MOST_SITES = 32 };
+enum { MEDIA_MOST_SITES = 96 };
 typedef struct MediaMatter {
     MediumSite sites[MEDIA_MOST_SITES]; /* of more the rest is left out */
     int count;

@@ -151,7 +151,7 @@ static double stride_at(const MediaMatter *matter, double t) {
 }
 
 /* Far away steps grow with the distance, so that a way without end has few. */
-enum { FIXED_STOPS = 128 };
+enum { FIXED_STOPS = 2 * MEDIA_MOST_SITES + 64 };
 static const double GROWTH = 0.08;
 
 int media_stops(const MediaMatter *matter, const double *extra, int extra_count, double stops[MEDIA_MOST_STOPS]) {
@@ -165,6 +165,7 @@ int media_stops(const MediaMatter *matter, const double *extra, int extra_count,
     for (int i = 0; i < extra_count && fixed_count < FIXED_STOPS; i++)
         if (extra[i] > begin && extra[i] < end) fixed[fixed_count++] = extra[i];
     for (int i = 0; i < fixed_count; i++) count = put(stops, count, fixed[i]);
+    if (count < 2) return 0;
     double sorted[FIXED_STOPS];
     for (int i = 0; i < count; i++) sorted[i] = stops[i];
     int pieces = count - 1;

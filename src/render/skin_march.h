@@ -11,6 +11,7 @@ typedef struct TraceCounters {
     uint64_t camera_rays, shadow_rays, steps, voxels_visited;
     uint64_t places;    /* in media */
     uint64_t triangles; /* of texels, drawn by beams */
+    uint64_t left_out;  /* objects around a ray that there was no room for, see MOST_ENCLOSURES */
     SolidWork functions; /* of isosurfaces; counted for a picture as a whole */
 } TraceCounters;
 
@@ -21,6 +22,7 @@ static inline void trace_counters_add(TraceCounters *sum, const TraceCounters *c
     sum->voxels_visited += c->voxels_visited;
     sum->places += c->places;
     sum->triangles += c->triangles;
+    sum->left_out += c->left_out;
     solid_work_add(&sum->functions, &c->functions);
 }
 

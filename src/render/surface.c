@@ -293,7 +293,7 @@ static Vec3f bent_light(SurfaceTracer *tracer, Meeting *m, double ratio, bool *a
     double bend = vec3_dot(direction, normal) - vec3_dot(m->leg->cone.direction, normal) / ratio; /* n cos i - cos t */
     Leg leg;
     leg_from(tracer, m, direction, bend, most_of(m->through), &leg);
-    surface_cross(leg.enclosures, &leg.enclosure_count, m->hit, tracer->compiled->solids_matter);
+    surface_cross(tracer, leg.enclosures, &leg.enclosure_count, m->hit);
     return vec3f_mul(m->through, follow(tracer, &leg, NULL, false));
 }
 
@@ -447,7 +447,7 @@ static Vec3f follow(SurfaceTracer *tracer, Leg *leg, const SurfaceHit *first, bo
         leg->clear = clearance(tracer, point, hit->t);
         leg->cone = (Cone){point, leg->cone.direction, cone_diameter(&leg->cone, hit->t), leg->cone.spread};
         leg->weight *= most_of(seen.straight);
-        surface_cross(leg->enclosures, &leg->enclosure_count, hit, compiled->solids_matter);
+        surface_cross(tracer, leg->enclosures, &leg->enclosure_count, hit);
     }
     return sum;
 }

@@ -14,7 +14,7 @@ typedef struct Enclosure {
     bool hollow;
     Affine to_interior;       /* as SurfaceHit's */
 } Enclosure;
-enum { MOST_ENCLOSURES = 24 }; /* of more, the outermost are forgotten */
+enum { MOST_ENCLOSURES = 64 }; /* of more, the innermost are left out, and counted; each leg of a line of sight has as many on the stack */
 
 /* One leg of a line of sight: from the eye, a mirror, or glass. */
 typedef struct Leg {
@@ -111,8 +111,8 @@ Vec3f surface_faded(const Interior *interior, double distance);
 
 /* The index of the enclosure that the surface bounds, or −1. */
 int surface_enclosure(const Enclosure *enclosures, int count, const SurfaceHit *hit);
-/* Steps over the surface: into its object, or out. `solids`: those without an interior count, too. */
-void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit, bool solids);
+/* Steps over the surface: into its object, or out. */
+void surface_cross(const SurfaceTracer *tracer, Enclosure *enclosures, int *count, const SurfaceHit *hit);
 /* What comes along the ray past explicit objects, volumes and media in objects, between `clear` and `distance`. */
 Vec3f surface_open(SurfaceTracer *tracer, const Ray *ray, double distance, const Leg *leg, double clear);
 /* The share of light from one place of the light, to a point within volumes (clear: 0) or beside a surface, near to which nothing is met. */

@@ -44,16 +44,17 @@ void surface_eye_leg(const CompiledScene *compiled, const Cone *cone, Leg *leg) 
         enclose(&leg->enclosures[leg->enclosure_count++], fillings[i].interior, fillings[i].filled, fillings[i].hollow, &fillings[i].to_interior);
 }
 
-void surface_cross(Enclosure *enclosures, int *count, const SurfaceHit *hit, bool solids) {
-    if (!hit->interior && (hit->hollow || !solids)) return;
+void surface_cross(const SurfaceTracer *tracer, Enclosure *enclosures, int *count, const SurfaceHit *hit) {
+    if (!hit->interior && (hit->hollow || !tracer->compiled->solids_matter)) return;
     int at = surface_enclosure(enclosures, *count, hit);
-    if (at < 0 && *count == MOST_ENCLOSURES) at = 0; /* makes room */
-    bool entering = at < 0 || surface_enclosure(enclosures, *count, hit) < 0;
     if (at >= 0) {
         for (int i = at; i + 1 < *count; i++) enclosures[i] = enclosures[i + 1];
         --*count;
+    } else if (*count < MOST_ENCLOSURES) {
+        enclose(&enclosures[(*count)++], hit->interior, hit->filled, hit->hollow, &hit->to_interior);
+    } else {
+        tracer->counters->left_out++; /* and so it is where the ray comes out again */
     }
-    if (entering) enclose(&enclosures[(*count)++], hit->interior, hit->filled, hit->hollow, &hit->to_interior);
 }
 
 /* POV-Ray's bright spot in the shadow of what is clear: cos^(45 caustics), to the normal as the top layer bends it, is added to 1
@@ -130,7 +131,7 @@ static Vec3f clear_surfaces(const SurfaceTracer *tracer, const Ray *ray, double 
         through = vec3f_mul(through, filtered(ray, &hit));
         if (hit.interior && surface_enclosure(enclosures, count, &hit) >= 0)
             through = vec3f_mul(through, surface_faded(hit.interior, hit.t - begun));
-        surface_cross(enclosures, &count, &hit, compiled->solids_matter);
+        surface_cross(tracer, enclosures, &count, &hit);
         if (most_of(through) < (float)bailout) break;
         if (!media && compiled->scene->has_media) keep_crossing(crossings, &hit);
         begun = hit.t;
@@ -155,7 +156,7 @@ static Vec3f clear_media(const SurfaceTracer *tracer, const Ray *ray, double dis
         SurfaceHit hit;
         hit.interior = side->interior, hit.filled = side->filled, hit.hollow = side->hollow;
         if (side->interior && side->interior->media.count) hit.to_interior = side->to_interior;
-        surface_cross(enclosures, &count, &hit, tracer->compiled->solids_matter);
+        surface_cross(tracer, enclosures, &count, &hit);
         begun = end;
     }
     return through;

@@ -1,5 +1,7 @@
 #include "render/verdict.h"
 
+#include "render/surface.h"
+
 #include <string.h>
 
 /* Estimates are within a factor of two, mostly within a quarter: only what is well above is told, and far above where nobody named an error. */
@@ -32,12 +34,19 @@ static bool densities_alone(const CompiledScene *compiled) {
 static Cause cause_of(const CompiledScene *compiled, const RenderStats *stats) {
     double error = stats->error_estimate, noise = stats->noise_estimate;
     if (noise * noise > MOSTLY_NOISE * error * error) return compiled->scene->settings.max_error > 0 ? NOISE : NOISE_UNASKED;
-    if (compiled->voxels) return densities_alone(compiled) ? DENSITIES : VOXELS;
+    if (compiled->voxels && compiled->skin_count) return densities_alone(compiled) ? DENSITIES : VOXELS;
     if (compiled->volumes) return VOLUMES;
     return compiled->scene->has_media ? MEDIA : NOISE;
 }
 
+static void tell_left_out(const RenderStats *stats, DiagList *diags) {
+    if (!stats->counters.left_out) return;
+    Diagnostic *d = diag_warning(diags, (Span){0}, "more than %d objects lie within each other: the media and interiors of the innermost are left out", MOST_ENCLOSURES);
+    diag_hint(diags, d, "one object with a 'density' in the place of many");
+}
+
 void verdict_tell(const CompiledScene *compiled, const RenderStats *stats, DiagList *diags) {
+    tell_left_out(stats, diags);
     const GlobalSettings *asked = &compiled->scene->settings;
     double accepted = compiled->accepted_error;
     bool named = asked->max_error > 0, chosen = asked->detail && (strcmp(asked->detail, "voxels") == 0 || strcmp(asked->detail, "slab") == 0);

@@ -83,6 +83,7 @@ typedef struct LampFill {
     CompiledVolume *volume;
     Tracer **tracers;
     size_t light;
+    float (*depths)[3]; /* at nodes */
 } LampFill;
 
 static void fill_node(const LampFill *f, SurfaceTracer *tracer, Vec3 point, float depth[3], uint8_t *state) {
@@ -128,7 +129,30 @@ static void fill_lamp_row(void *context, size_t row, int worker) {
     int y = (int)(row % (size_t)(n[1] + 1)), z = (int)(row / (size_t)(n[1] + 1));
     for (int x = 0; x <= n[0]; x++) {
         Vec3 point = volume_point(f->volume, vec3((double)x / n[0], (double)y / n[1], (double)z / n[2]));
-        fill_node(f, &tracer, point, light->depths[base + (size_t)x], &light->states[base + (size_t)x]);
+        fill_node(f, &tracer, point, f->depths[row * (size_t)(n[0] + 1) + (size_t)x], &light->states[base + (size_t)x]);
+    }
+}
+
+/* Depths begin as parabolas where light enters: linear between nodes they would be too large on the mean, by a twelfth of second differences, and clouds of fine cells too dark by 1 %.
+ * What is kept is less by that. */
+static void level_row(void *context, size_t row, int worker) {
+    const LampFill *f = context;
+    const VolumeLight *light = f->volume->light;
+    const int *n = light->cells;
+    const size_t width = (size_t)(n[0] + 1), strides[3] = {1, width, width * (size_t)(n[1] + 1)};
+    const int at[3] = {0, (int)(row % (size_t)(n[1] + 1)), (int)(row / (size_t)(n[1] + 1))};
+    (void)worker;
+    for (int x = 0; x <= n[0]; x++) {
+        const size_t i = row * width + (size_t)x;
+        for (int c = 0; c < 3; c++) {
+            const float here = f->depths[i][c];
+            float bend = 0;
+            for (int k = 0; k < 3; k++) {
+                const int along = k ? at[k] : x;
+                if (along > 0 && along < n[k]) bend += f->depths[i - strides[k]][c] - 2 * here + f->depths[i + strides[k]][c];
+            }
+            light->depths[f->light * light->nodes + i][c] = float_max(0, here - bend / 12);
+        }
     }
 }
 
@@ -164,13 +188,16 @@ static bool light_lamps(CompiledScene *compiled, CompiledVolume *v, Tracer **tra
         (size_t)(light->cells[0] + 1) * (size_t)(light->cells[1] + 1) * (size_t)(light->cells[2] + 1);
     light->depths = arena_push_array_(compiled->arena, lamps * light->nodes + 1, sizeof *light->depths);
     light->states = arena_new_array(compiled->arena, uint8_t, lamps * light->nodes + 1);
-    for (size_t l = 0; l < lamps; l++) {
-        LampFill fill = {compiled, v, tracers, l};
-        if (!pool_run(compiled->options->pool, (size_t)(light->cells[1] + 1) * (size_t)(light->cells[2] + 1),
-                      fill_lamp_row, &fill))
-            return false;
+    ArenaMark mark = arena_mark(&compiled->scratch);
+    float(*depths)[3] = arena_push_array_(&compiled->scratch, light->nodes, sizeof *depths);
+    const size_t rows = (size_t)(light->cells[1] + 1) * (size_t)(light->cells[2] + 1);
+    bool done = true;
+    for (size_t l = 0; l < lamps && done; l++) {
+        LampFill fill = {compiled, v, tracers, l, depths};
+        done = pool_run(compiled->options->pool, rows, fill_lamp_row, &fill) && pool_run(compiled->options->pool, rows, level_row, &fill);
     }
-    return true;
+    arena_reset_to(&compiled->scratch, mark);
+    return done;
 }
 
 enum { LEAST_BINS = 24, MOST_BINS = 40 };

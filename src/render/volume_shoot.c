@@ -254,8 +254,9 @@ static void shoot_batch(void *context, size_t batch, int worker) {
 /* ---- how many ---- */
 
 enum { FIRST_ROUND = 1 << 10 };
-/* Rays are doubled until the error of the bins' light is below this multiple of max_error: a bin sees many, and a pixel several. Or until so many free paths. */
-static const double BIN_ERROR = 16, MOST_FREE_PATHS = 1.2e7, RAYS_AT_MOST = 1 << 22;
+/* Rays are doubled until the error of the bins' light is below this multiple of max_error: a bin sees many, and a pixel several. What is left of it in pictures is so much less than in
+ * bins (7.5 to 8.5 in a fractal cloud and a thick slab). Or until so many free paths. */
+static const double BIN_ERROR = 16, SEEN_ERROR = 8, MOST_FREE_PATHS = 1.2e7, RAYS_AT_MOST = 1 << 22;
 
 /* Of the light of all bins that hold something, on the mean, as brightness of matter that hides what is behind; found by what batches differ. */
 static double error_of_bins(const Shooting *s, double rays) {
@@ -284,8 +285,9 @@ static double error_of_bins(const Shooting *s, double rays) {
     return weights > 0 ? sqrt(sum / weights) : 0;
 }
 
-/* Each further look at other bins halves the error of what paths have brought, about, where bins see each other; it takes as long as so many free paths for each of its rays. */
-static const double LOOK_RAY_PATHS = 1.5;
+/* Each further look at other bins leaves about so much of the error of what paths have brought, where bins see each other (0.5 is too hopeful where clouds are as fine as bins); it
+ * takes as long as so many free paths for each of its rays. */
+static const double LOOK_LEAVES = 0.7, LOOK_RAY_PATHS = 1.5;
 enum { MOST_LOOKS = 4 };
 
 static double look_cost(const Shooting *s) {
@@ -311,7 +313,7 @@ static bool bins_see_each_other(const Shooting *s) {
 /* How often to look around when rays bring this multiple of the error that may remain after one look; 0 if more rays are cheaper. */
 static int enough_looks(const Shooting *s, double excess, double paths) {
     if (!(excess > 1)) return 1;
-    double more = ceil(log2(excess));
+    double more = ceil(-log(excess) / log(LOOK_LEAVES));
     if (!s->looks_help || more > MOST_LOOKS - 1) return 0;
     return more * look_cost(s) < paths * (excess * excess - 1) ? 1 + (int)more : 0;
 }
@@ -344,7 +346,7 @@ static double shoot_rounds(Shooting *s) {
         if (next > RAYS_AT_MOST || 2 * paths > MOST_FREE_PATHS) break;
     }
     s->compiled->volume_rays = rays;
-    s->compiled->volume_error = error_of_bins(s, rays) / BIN_ERROR / (double)(1 << (s->looks - 1));
+    s->compiled->volume_error = error_of_bins(s, rays) / SEEN_ERROR * pow(LOOK_LEAVES, s->looks - 1);
     return rays;
 }
 

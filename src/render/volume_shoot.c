@@ -253,7 +253,8 @@ static void shoot_batch(void *context, size_t batch, int worker) {
 
 /* ---- how many ---- */
 
-enum { FIRST_ROUND = 1 << 10 };
+/* In what is very dense a ray has thousands of free paths: the first round tells. */
+enum { FIRST_ROUND = 1 << 7, LEAST_RAYS = 1 << 12 };
 /* Rays are doubled until the error of the bins' light is below this multiple of max_error: a bin sees many, and a pixel several. What is left of it in pictures is so much less than in
  * bins (7.5 to 8.5 in a fractal cloud and a thick slab). Or until so many free paths. */
 static const double BIN_ERROR = 16, SEEN_ERROR = 8, MOST_FREE_PATHS = 1.2e7, RAYS_AT_MOST = 1 << 22;
@@ -339,7 +340,7 @@ static double shoot_rounds(Shooting *s) {
         double paths = free_paths(s);
         s->looks = 1;
         if (asked > 0) break;
-        if (rays <= 4 * FIRST_ROUND) continue;
+        if (rays <= LEAST_RAYS && 2 * paths <= MOST_FREE_PATHS) continue;
         s->looks = enough_looks(s, error_of_bins(s, rays) / (BIN_ERROR * s->compiled->max_error), paths);
         if (s->looks > 0) break;
         s->looks = s->looks_help ? MOST_LOOKS : 1;

@@ -37,6 +37,35 @@ static void slabs_obey_the_equation_of_transfer(void **state) {
 
 }
 
+/* The reference, from the lamp's side: hardly any matter and very much. */
+static void reference_obeys_the_equation_of_transfer(void **state) {
+    static const struct {
+        double depth;
+        int samples;
+    } slabs[] = {{0.1, 12000}, {1, 4000}, {4, 4000}, {16, 2000}};
+    const Bench *b = *state;
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(slabs); i++) {
+        char scene[1024];
+        VtsOptions o = options_of_size(8, 8);
+        double back, on, half = 10 + 8 / slabs[i].depth;
+        slab_radiance(slabs[i].depth, 1, &back, &on);
+        o.reference_samples = slabs[i].samples;
+        snprintf(scene, sizeof scene,
+                 "global_settings { assumed_gamma 1 }\ncamera { orthographic location <0, 0, -10> look_at 0 right %g*x up %g*y }\nlight_source { <0, 0, -100>, rgb 1 parallel point_at 0 }\n"
+                 "volume { box { <-%g, -%g, 0>, <%g, %g, 1> } scattering rgb %.9g }\n", half, half, half, half, half, half, slabs[i].depth);
+        bench_write(b, scene);
+        VtsSession *session = vts_session_create(&o, NULL);
+        assert_non_null(session);
+        assert_int_equal(vts_reference(session, b->scene, b->output), VTS_OK);
+        vts_session_destroy(session);
+        Picture p = picture_read(b->output);
+        double seen = picture_mean(&p);
+        picture_free(&p);
+        printf("slab %g: %.5f (%.5f)\n", slabs[i].depth, seen, back);
+        if (fabs(seen - back) > 0.005 * back) fail_msg("slab %g", slabs[i].depth);
+    }
+}
+
 /* What only scatters cannot be seen in even light. */
 static void furnace_is_invisible(void **state) {
     static const char *const clouds[] = {
@@ -157,6 +186,7 @@ static void light_is_not_lost(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slabs_obey_the_equation_of_transfer),
+        cmocka_unit_test(reference_obeys_the_equation_of_transfer),
         cmocka_unit_test(furnace_is_invisible),
         cmocka_unit_test(absorption_is_exponential),
         cmocka_unit_test(thin_balls_show_their_phase),

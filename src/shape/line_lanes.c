@@ -1,11 +1,11 @@
-/* First changes of sign by bounds of several pieces at once (tape_lanes.h): a piece is divided into as many as there are lanes, what
- * remains of each waits in order. As many bounds as halving takes on the same way, and a fraction of the time. */
+/* First changes of sign by bounds of several pieces at once (tape_lanes.h): parts of a piece, as long as bounds are likely to exclude them
+ * (tape_reach.h), are bounded together; what remains of each waits in order. */
 #include "shape/line_parts.h"
 #include "tape/tape_noise.h"
 
 #include <stdlib.h>
 
-enum { AHEAD = 2 /* pieces divided together */, FEW_LANES = 24 };
+enum { FEW_LANES = 24 };
 
 /* Pieces up to this many line_shortest() are left to halving, whose bounds' roundings are smaller. */
 static const double ALONE = 0x1p6;
@@ -33,6 +33,8 @@ typedef struct Crossing {
 
 typedef struct LanePiece {
     double a, b;
+    double step, care; /* how long its parts may be, and what share of the way to 0 their bounds may reach */
+    int at;            /* in TapeReach, of the last length */
     Crossing crossing;
     Settled settled;
 } LanePiece;
@@ -43,6 +45,7 @@ typedef struct Lanes {
     TapeNoiseWay ways[TAPE_TERMS_MOST];
     LanePiece stack[LINE_MOST_PIECES];
     int count;
+    double per_length; /* of the line's parameter, for a length */
 } Lanes;
 
 /* What is divided together, lane by lane. */
@@ -53,6 +56,13 @@ typedef struct Batch {
     AffineLanes bounds;
     TapeEach each;
 } Batch;
+
+/* Where bounds on pieces of a length usually reach this share of the way to 0, pieces are as long: some of eight are not excluded then, and
+ * the fewest bounds in all are needed. The share grows and shrinks with success. */
+static const double USUAL_CARE = 0.5, MORE_CARELESS = 1.05, MORE_CAREFUL = 0.9;
+/* Lengths of parts change by this at most from one batch to the next, and are this share of what is left at least: what bounds usually
+ * tell may be far from what they tell on this line. */
+static const double MOST_SHRUNK = 4, MOST_GROWN = 8, SHORTEST_SHARE = 0x1p-11;
 
 static double middle_of(LinePiece p) { return p.a / 2 + p.b / 2; }
 static double half_of(LinePiece p) { return (p.b - p.a) / 2 * (1 + 0x1p-50); }
@@ -140,6 +150,11 @@ static Crossing crossing_of(const AffineForm *f, LinePiece whole, LinePiece rest
     return (Crossing){middle_of(whole) - half * (f->centre / f->slope), f->slope / half, half * fabs(f->slope) / f->error};
 }
 
+/* Of the line's parameter: on pieces of this length bounds usually reach so far. */
+static double length_for(const Lanes *lanes, double radius, int *at) {
+    return lanes->per_length * tape_reach_length(&lanes->search->line->sum->reach, radius, at);
+}
+
 /* What may hold a zero of the pieces, cut, goes onto the stack, the first on top. */
 static void push_rest(Lanes *lanes, const Batch *batch) {
     uint64_t open = open_lanes(&batch->bounds);
@@ -160,6 +175,8 @@ static void push_rest(Lanes *lanes, const Batch *batch) {
         LanePiece *rest = &lanes->stack[lanes->count++];
         rest->a = piece.a, rest->b = piece.b, rest->settled.terms = 0;
         rest->crossing = crossing_of(&f, batch->pieces[l], piece);
+        rest->step = (piece.b - piece.a) / double_clamp(1.5 * affine_radius(f) / fabs(f.centre), 2, 4);
+        rest->care = USUAL_CARE, rest->at = 0;
         /* Where cutting soon ends at a zero, only what settled terms are off would stand in its way. */
         if (settles && fabs(f.slope) <= f.error) rest->settled = settled[l];
     }
@@ -182,22 +199,18 @@ static void bound_batch(Lanes *lanes, Batch *batch) {
     lanes->search->work.bounds += (uint64_t)batch->used;
 }
 
-/* The pieces that were the first of the stack, and stay where they were until others are pushed: each is divided into as many parts as there are
- * lanes for it. */
-static void divide(Lanes *lanes, const LanePiece *const *wholes, int count) {
-    Batch batch;
-    int shares = AFFINE_LANES / count;
-    batch.used = 0, batch.settled.terms = wholes[0]->settled.terms;
-    for (int k = 0; k < count; k++) {
-        double a = wholes[k]->a, b = wholes[k]->b, step = (b - a) / shares;
-        for (int l = 0; l < shares; l++) {
-            LinePiece part = {l ? a + step * l : a, l < shares - 1 ? a + step * (l + 1) : b};
-            if (batch.settled.terms) take_settled(&wholes[k]->settled, part, &batch.settled, batch.used);
-            batch.pieces[batch.used++] = part;
-        }
+/* Parts of a piece that are bounded next, in as many lanes as there are at most; the piece keeps what they leave. */
+static void take(LanePiece *piece, int lanes, Batch *batch) {
+    double a = piece->a, b = piece->b, parts = (b - a) / piece->step, step = piece->step;
+    int count = lanes;
+    bool all = !(parts >= lanes + 0.5);
+    if (all) count = parts > 1 ? (int)(parts + 0.5) : 1, step = (b - a) / count;
+    for (int l = 0; l < count; l++) {
+        LinePiece part = {l ? a + step * l : a, all && l == count - 1 ? b : a + step * (l + 1)};
+        if (batch->settled.terms) take_settled(&piece->settled, part, &batch->settled, batch->used);
+        batch->pieces[batch->used++] = part;
     }
-    bound_batch(lanes, &batch);
-    push_rest(lanes, &batch);
+    piece->a = batch->pieces[batch->used - 1].b;
 }
 
 /* ---- zeros that are guessed first, and then proved to be the first ---- */
@@ -219,7 +232,7 @@ static bool guess_zero(LineSearch *s, double a, double b, const Crossing *crossi
 }
 
 static void push_plain(Lanes *lanes, double a, double b) {
-    if (b > a) lanes->stack[lanes->count++] = (LanePiece){.a = a, .b = b};
+    if (b > a) lanes->stack[lanes->count++] = (LanePiece){.a = a, .b = b, .step = (b - a) / AFFINE_LANES};
 }
 
 /* Pieces of [a, zero - near], the shorter the nearer they are: over each the sum is straight enough not to reach 0 at its end. The last
@@ -267,30 +280,52 @@ static bool guess(Lanes *lanes, double a, double b, Crossing crossing, double *t
     return false;
 }
 
+/* For the rest of a piece whose parts before it are the last `count` of the batch: its parts may be as long as the sum's bounds usually are
+ * of use where it is as far from 0 as in the last of them; or longer where bounds told more than is usual. */
+static void pace(const Lanes *lanes, const Batch *batch, int count, LanePiece *rest) {
+    const AffineLanes *bounds = &batch->bounds;
+    int last = batch->used - 1;
+    double value = fabs(bounds->centre[last]), radius = fabs(bounds->slope[last]) + bounds->error[last], next = rest->step;
+    bool all_excluded = open_lanes(bounds) >> (batch->used - count) == 0;
+    if (radius < HUGE_VAL) next = length_for(lanes, value * rest->care, &rest->at);
+    if (all_excluded) next = bound_max(next, rest->step * (value / (2 * radius)));
+    rest->care *= all_excluded ? MORE_CARELESS : MORE_CAREFUL;
+    next = double_clamp(next, rest->step / MOST_SHRUNK, rest->step * MOST_GROWN);
+    rest->step = bound_max(next, SHORTEST_SHARE * (rest->b - rest->a));
+}
+
 static bool search(Lanes *lanes, double *t, bool *falling) {
     LineSearch *s = lanes->search;
+    Batch batch;
     while (lanes->count > 0) {
-        const LanePiece *wholes[AHEAD];
-        int count = 0;
-        while (count < AHEAD && lanes->count > 0) {
-            const LanePiece *piece = &lanes->stack[lanes->count - 1];
+        LanePiece *rest = NULL; /* of the last piece that is divided */
+        int before = 0;
+        batch.used = 0;
+        while (batch.used < AFFINE_LANES && !rest && lanes->count > 0) {
+            LanePiece *piece = &lanes->stack[lanes->count - 1];
             double a = piece->a, b = piece->b;
             bool full = lanes->count + AFFINE_LANES + 2 > LINE_MOST_PIECES || s->work.bounds > LINE_MOST_BOUNDS;
-            bool other = count > 0 && piece->settled.terms != wholes[0]->settled.terms;
+            bool other = batch.used > 0 && piece->settled.terms != batch.settled.terms;
             bool alone = piece->crossing.straight >= GUESSED * (b - a) || b - a < 0x1p-20 * (fabs(a) + fabs(b));
-            if (count > 0 && (full || other || alone)) break;
+            if (batch.used > 0 && (full || other || alone)) break;
             lanes->count--;
             if (full) {
                 if (line_give_up(s, (LinePiece){a, b}, t, falling)) return true;
             } else if (b - a <= ALONE * line_shortest(s->line, b)) {
                 if (line_search_halves(s, a, b, t, falling)) return true;
-            } else if (count == 0 && piece->crossing.straight >= GUESSED * (b - a)) {
+            } else if (batch.used == 0 && piece->crossing.straight >= GUESSED * (b - a)) {
                 if (guess(lanes, a, b, piece->crossing, t, falling)) return true;
             } else {
-                wholes[count++] = piece;
+                if (batch.used == 0) batch.settled.terms = piece->settled.terms;
+                before = batch.used;
+                take(piece, AFFINE_LANES - before, &batch);
+                if (piece->a < b) rest = piece, lanes->count++;
             }
         }
-        if (count > 0) divide(lanes, wholes, count);
+        if (!batch.used) continue;
+        bound_batch(lanes, &batch);
+        if (rest) pace(lanes, &batch, batch.used - before, rest);
+        push_rest(lanes, &batch);
     }
     return false;
 }
@@ -302,7 +337,11 @@ bool line_search_lanes(LineSearch *s, double from, double to, double *t, bool *f
     lanes.search = s, lanes.scratch = slots > FEW_LANES ? malloc(slots * sizeof *few) : few;
     if (!lanes.scratch) return false;
     tape_sum_begin(s->line->sum, s->line->origin, s->line->direction, lanes.ways);
-    lanes.count = 1, lanes.stack[0].a = from, lanes.stack[0].b = to, lanes.stack[0].crossing.straight = 0, lanes.stack[0].settled.terms = 0;
+    lanes.count = 1, lanes.per_length = 1 / vec3_length(s->line->direction);
+    LanePiece *whole = &lanes.stack[0];
+    whole->a = from, whole->b = to, whole->crossing.straight = 0, whole->settled.terms = 0, whole->care = USUAL_CARE, whole->at = 0;
+    double start = fabs(s->line->start != 0 ? s->line->start : line_value(s, from));
+    whole->step = double_clamp(length_for(&lanes, start * USUAL_CARE, &whole->at), (to - from) * SHORTEST_SHARE, to - from);
     bool found = search(&lanes, t, falling);
     if (lanes.scratch != few) free(lanes.scratch);
     return found;

@@ -22,6 +22,7 @@ typedef struct Line {
     const TapeSum *sum; /* of the tape, over a box that the line does not leave: bounds of many pieces at once, by LINE_AFFINE_OPTIMISED; or NULL */
     /* With a sum that has levels of detail (tape_detail.h): the function is that of width.start + width.spread·t, in the tape's space. */
     RayWidth width;
+    double start; /* the function less `level` where the search begins, which tells how long the first pieces may be; 0: it is not known */
     struct NodeCache *cells; /* what noises of points keep from line to line (node_cache.h), of one thread; NULL: nothing */
 } Line;
 

@@ -169,17 +169,18 @@ static double seen_value(const Field *f, Vec3 p, double width) {
     return counted(f->solid, tape_sum_value(f->line.sum, p, width, few));
 }
 
-/* Every change of sign in turn. Behind one the search goes on where doubles can tell its place from it. */
-static void search(const Field *f, const Ray *ray, double from, double to, SolidSink *sink, LineWork *work) {
+/* Every change of sign in turn; `start`: the function's value at `from`, or 0. Behind one the search goes on where doubles can tell its place from it. */
+static void search(const Field *f, const Ray *ray, double from, double to, double start, SolidSink *sink, LineWork *work) {
     Line line = f->line;
     line.origin = ray->origin, line.direction = ray->direction, line.width = width_of(f, ray, sink->width);
     double t;
     bool falling;
+    line.start = start;
     line.cells = take_cache(f->work);
     for (int k = 0; k < MOST_CHANGES && from < double_min(to, sink->t_max); k++) {
         if (!line_first_root(&line, from, double_min(to, sink->t_max), &t, &falling, work)) break;
         solid_offer(sink, t, (SolidTag){PART_SURFACE, line.width.start + line.width.spread * t, 0});
-        from = line_behind(&line, t);
+        from = line_behind(&line, t), line.start = 0;
     }
     put_back(f->work, line.cells);
 }
@@ -230,18 +231,20 @@ static void cross(const void *data, const Ray *ray, SolidSink *sink) {
     RayWidth width = width_of(f, ray, sink->width);
     LineWork work = {0, 0, 0};
     find_ends(f, ray, &ends);
-    if (!f->solid->as.isosurface.open)
-        for (int i = 0; i < ends.count; i++) {
-            if (!(ends.t[i] > sink->t_min && ends.t[i] < sink->t_max)) continue;
+    bool closed = !f->solid->as.isosurface.open;
+    for (int i = 0; i < ends.count; i++) {
+        double end = ends.t[i], start = 0;
+        if (closed && end > sink->t_min && end < sink->t_max) {
             work.values++;
-            if (seen_value(f, vec3_madd(ray->origin, ray->direction, ends.t[i]), width.start + width.spread * ends.t[i]) < 0)
-                solid_offer(sink, ends.t[i], ends.tags[i]);
+            start = seen_value(f, vec3_madd(ray->origin, ray->direction, end), width.start + width.spread * end);
+            if (start < 0) solid_offer(sink, end, ends.tags[i]);
         }
-    for (int i = 0; i + 1 < ends.count; i++) {
-        double from = double_max(ends.t[i], sink->t_min), to = double_min(ends.t[i + 1], sink->t_max);
+        if (i + 1 == ends.count) break;
+        double from = double_max(end, sink->t_min), to = double_min(ends.t[i + 1], sink->t_max);
         if (!(from < to) || !within(f, &ends, i)) continue;
+        if (from > end) start = 0;
         if (f->bounded)
-            search(f, ray, from, to, sink, &work);
+            search(f, ray, from, to, start, sink, &work);
         else
             march(f->solid, ray, from, to, sink, &work);
     }

@@ -5,6 +5,7 @@
 #include "base/vec.h"
 #include "tape/affine_lanes.h"
 #include "tape/tape.h"
+#include "tape/tape_reach.h"
 
 /* As tape_eval_affine(), for every lane; lanes of which nothing is known have an error that is not below infinity. The tape has one
  * output. The scratch has tape_scratch_size() lanes. */
@@ -32,6 +33,7 @@ typedef struct TapeSum {
     double constant;
     /* The terms from k on are within rest_half of rest_middle, their absolute values at most rest_size; [count] is 0. */
     const double *rest_middle, *rest_half, *rest_size;
+    TapeReach reach;
 } TapeSum;
 
 struct Interval;

@@ -198,6 +198,7 @@ TapeSum tape_sum_of(const Tape *tape, const Interval *box, Arena *arena) {
     }
     qsort(terms, s.count, sizeof *terms, wider_first);
     add_up(&sum, arena);
+    sum.reach = tape_reach_of(&sum, box, arena);
     return sum;
 }
 

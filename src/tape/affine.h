@@ -27,6 +27,7 @@ static inline double affine_radius(AffineForm a) { return round_up(fabs(a.slope)
 static inline double affine_size(AffineForm a) { return round_up(fabs(a.centre) + affine_radius(a)); }
 
 static inline Interval affine_range(AffineForm a) {
+    if (a.slope == 0 && a.error == 0) return (Interval){a.centre, a.centre, a.nan}; /* operations know more about constants */
     double radius = affine_radius(a);
     if (!(radius < HUGE_VAL)) return interval_all(a.nan);
     return (Interval){round_down(a.centre - radius), round_up(a.centre + radius), a.nan};

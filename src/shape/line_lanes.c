@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-enum { FEW_LANES = 24 };
+enum { FEW_LANES = 24, MOST_PARTS = 4 };
 
 /* Pieces up to this many line_shortest() are left to halving, whose bounds' roundings are smaller. */
 static const double ALONE = 0x1p6;
@@ -155,6 +155,12 @@ static double length_for(const Lanes *lanes, double radius, int *at) {
     return lanes->per_length * tape_reach_length(&lanes->search->line->sum->reach, radius, at);
 }
 
+/* How many parts a piece is divided into that its form does not exclude: the more, the farther it reaches beyond 0. */
+static double parts_for(const AffineForm *f) {
+    double parts = 1.5 * affine_radius(*f) / fabs(f->centre);
+    return parts < MOST_PARTS ? bound_max(parts, 2) : MOST_PARTS;
+}
+
 /* What may hold a zero of the pieces, cut, goes onto the stack, the first on top. */
 static void push_rest(Lanes *lanes, const Batch *batch) {
     uint64_t open = open_lanes(&batch->bounds);
@@ -175,7 +181,7 @@ static void push_rest(Lanes *lanes, const Batch *batch) {
         LanePiece *rest = &lanes->stack[lanes->count++];
         rest->a = piece.a, rest->b = piece.b, rest->settled.terms = 0;
         rest->crossing = crossing_of(&f, batch->pieces[l], piece);
-        rest->step = (piece.b - piece.a) / double_clamp(1.5 * affine_radius(f) / fabs(f.centre), 2, 4);
+        rest->step = (piece.b - piece.a) / parts_for(&f);
         rest->care = USUAL_CARE, rest->at = 0;
         /* Where cutting soon ends at a zero, only what settled terms are off would stand in its way. */
         if (settles && fabs(f.slope) <= f.error) rest->settled = settled[l];
@@ -319,7 +325,7 @@ static bool search(Lanes *lanes, double *t, bool *falling) {
                 if (batch.used == 0) batch.settled.terms = piece->settled.terms;
                 before = batch.used;
                 take(piece, AFFINE_LANES - before, &batch);
-                if (piece->a < b) rest = piece, lanes->count++;
+                if (piece->a < b) rest = piece, rest->crossing.straight = 0, lanes->count++;
             }
         }
         if (!batch.used) continue;

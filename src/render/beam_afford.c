@@ -21,7 +21,7 @@ ExactReach beam_reach_set(CompiledScene *compiled, double factor) {
         to[i] = compiled->skins[i].exact_to;
         if (compiled->skins[i].boxes) compiled->skins[i].exact_to = factor > 0 ? factor * to[i] : 0;
     }
-    compiled->all_exact_to *= factor;
+    compiled->all_exact_to = factor > 0 ? factor * compiled->all_exact_to : 0;
     return before;
 }
 
@@ -93,14 +93,36 @@ static double seconds_of(const CompiledScene *compiled, const BeamWork *w, doubl
            times * (RAY * (double)w->rays + SAMPLE * (double)w->samples);
 }
 
+static double pixels_of(const Probe *probes, int count) {
+    double pixels = 0;
+    for (int i = 0; i < count; i++) pixels += (double)(probes[i].x1 - probes[i].x0) * (probes[i].y1 - probes[i].y0);
+    return pixels;
+}
+
+/* Of voxels alone. */
+static double seconds_of_voxels(const BeamWork *w, double pixels) { return STEP * (double)w->steps + PIXEL * pixels; }
+
+double beam_voxels_error(const CompiledScene *compiled) {
+    const BeamOffer drawn = {.factor = 1, .error = compiled->voxel_error};
+    return compiled->voxel_error > 0 ? picture_error(compiled, &drawn) : 0;
+}
+
+double beam_seconds(CompiledScene *compiled, bool voxels, double samples) {
+    Probe probes[MOST_PROBES];
+    int count = choose_probes(&compiled->view, probes);
+    if (count == 0) return -1;
+    BeamWork work = probe(compiled, voxels ? 0 : 1, probes, count);
+    double pixels = pixels_of(probes, count), all = (double)compiled->view.width * compiled->view.height;
+    return all / pixels * (voxels ? seconds_of_voxels(&work, pixels) : seconds_of(compiled, &work, samples));
+}
+
 double beam_afford(CompiledScene *compiled, const BeamOffer *offer) {
     Probe probes[MOST_PROBES];
     int count = choose_probes(&compiled->view, probes);
     if (count == 0 || picture_error(compiled, offer) <= KEPT * compiled->max_error) return offer->factor;
     BeamWork alone = probe(compiled, 0, probes, count);
-    double pixels = 0, samples = double_clamp(offer->samples, compiled->samples, compiled->most_samples), factor = offer->factor;
-    for (int i = 0; i < count; i++) pixels += (double)(probes[i].x1 - probes[i].x0) * (probes[i].y1 - probes[i].y0);
-    double most = MOST_TIMES * (STEP * (double)alone.steps + PIXEL * pixels);
+    double samples = double_clamp(offer->samples, compiled->samples, compiled->most_samples), factor = offer->factor;
+    double most = MOST_TIMES * seconds_of_voxels(&alone, pixels_of(probes, count));
     for (int i = 0; i < TRIES && factor > NEAREST_AFFORDED; i++) {
         BeamWork work = probe(compiled, factor, probes, count);
         double seconds = seconds_of(compiled, &work, samples);

@@ -29,5 +29,9 @@ typedef struct BeamOffer {
 } BeamOffer;
 /* The factor that is affordable: that of the offer at most. */
 double beam_afford(CompiledScene *compiled, const BeamOffer *offer);
+/* Seconds, by counts, that the picture takes as it is planned with so many samples a pixel, or from voxels alone; < 0 of a picture that is too small to be probed. */
+double beam_seconds(CompiledScene *compiled, bool voxels, double samples);
+/* The RMSE that voxels make in the picture as it is planned, noise not counted: 0 where no pilot has told. */
+double beam_voxels_error(const CompiledScene *compiled);
 
 #endif

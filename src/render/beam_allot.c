@@ -75,16 +75,25 @@ double allot_error(const Allotment *a) {
     return pixels ? sum / pixels : 0;
 }
 
+double allot_mean_samples(const double *noises, int count, const AllotPlan *plan) {
+    double sum = 0;
+    for (int i = 0; i < count; i++) sum += samples_at(noises[i], plan, plan->worth);
+    return count ? sum / count : 0;
+}
+
+double allot_mean_square(const double *noises, int count, const AllotPlan *plan) {
+    double sum = 0;
+    for (int i = 0; i < count; i++) sum += noises[i] * pow(samples_at(noises[i], plan, plan->worth), -FALL);
+    return count ? sum / count : 0;
+}
+
 double allot_worth(const double *noises, int count, const AllotPlan *plan, double error, double mean) {
     double least = -45, most = 5; /* natural logarithms of what it may be */
+    AllotPlan tried = *plan;
     for (int k = 0; k < HALVINGS; k++) {
-        double middle = (least + most) / 2, wrong = 0, samples = 0;
-        for (int i = 0; i < count; i++) {
-            double n = samples_at(noises[i], plan, exp(middle));
-            wrong += noises[i] * pow(n, -FALL);
-            samples += n;
-        }
-        if (wrong > error * count && samples < mean * count) most = middle;
+        double middle = (least + most) / 2;
+        tried.worth = exp(middle);
+        if (allot_mean_square(noises, count, &tried) > error && allot_mean_samples(noises, count, &tried) < mean) most = middle;
         else least = middle;
     }
     return exp(least);

@@ -39,5 +39,8 @@ double allot_noise(double error, double n);
 double allot_worth(const double *noises, int count, const AllotPlan *plan, double error, double mean);
 /* That for errors which are larger by `factor`. */
 double allot_worth_noisier(double worth, double factor);
+/* How many samples pixels of these noises get by the plan, on the mean; and the mean square of the error that is left to them. */
+double allot_mean_samples(const double *noises, int count, const AllotPlan *plan);
+double allot_mean_square(const double *noises, int count, const AllotPlan *plan);
 
 #endif

@@ -1,6 +1,7 @@
 /* A few blocks of pixels drawn both ways, before all others: how wrong voxels are in this picture tells where they may begin. */
 #include "base/random.h"
 #include "render/beam_afford.h"
+#include "render/beam_choice.h"
 
 /* So many blocks of so many pixels each way; no error is told from fewer blocks. As exact geometry they are drawn twice, at so many samples: the noises of both
  * know nothing of each other, so that the product of their differences from the voxels tells the error of these alone. */
@@ -147,4 +148,5 @@ void beam_pilot(CompiledScene *compiled) {
     }
     beam_reach_set(compiled, result.factor);
     compiled->voxel_error = result.voxel_error;
+    if (result.alone) beam_voxels_alone(compiled, result.voxel_error);
 }

@@ -1,6 +1,7 @@
 #include "render/compile.h"
 
 #include "base/stopwatch.h"
+#include "render/beam_choice.h"
 #include "render/beam_rigid.h"
 #include "render/beam_worth.h"
 #include "render/exact_skin.h"
@@ -108,6 +109,20 @@ enum { MOST_TERRAIN_VERTICES = 64000000 };
 
 static bool interrupted(const CompileOptions *options) { return options->interrupted && *options->interrupted; }
 
+/* As fine as they may be seen; the reference's triangles. */
+static CompileStatus build_voxels(const CompileOptions *options, DiagList *diags, CompiledScene *out) {
+    for (size_t i = 0; i < out->skin_count && !options->exact; i++) skin_ask_voxels(&out->skins[i], options, out);
+    if (!options->exact) texels_settle_voxels(out);
+    for (size_t i = 0; i < out->texel_count; i++) {
+        if (!texel_build(out->texels[i], options, out, diags)) return interrupted(options) ? COMPILE_INTERRUPTED : COMPILE_FAILED;
+        if (interrupted(options)) return COMPILE_INTERRUPTED;
+    }
+    for (size_t i = 0; i < out->skin_count; i++)
+        if (!skin_finish(&out->skins[i], options, out)) memory_budget_fail(options->memory);
+    out->voxels = !options->exact;
+    return COMPILE_OK;
+}
+
 /* Exact geometry where it may be seen, and voxels where the rest is; none of either that nothing needs. */
 static CompileStatus build_texels(const CompileOptions *options, Detail detail, DiagList *diags, CompiledScene *out) {
     bool flat = view_is_flat(&out->view) && !view_has_lens(&out->view); /* beams know no other lines of sight */
@@ -132,16 +147,7 @@ static CompileStatus build_texels(const CompileOptions *options, Detail detail, 
     }
     bool sky = out->scene->settings.sky_light && detail != DETAIL_EXACT; /* what triangles see of the sky, voxels know */
     if (!voxels && !out->secondary && !sky) return COMPILE_OK; /* mirrors show voxels */
-    for (size_t i = 0; i < out->skin_count && !options->exact; i++) skin_ask_voxels(&out->skins[i], options, out);
-    if (!options->exact) texels_settle_voxels(out);
-    for (size_t i = 0; i < out->texel_count; i++) {
-        if (!texel_build(out->texels[i], options, out, diags)) return interrupted(options) ? COMPILE_INTERRUPTED : COMPILE_FAILED;
-        if (interrupted(options)) return COMPILE_INTERRUPTED;
-    }
-    for (size_t i = 0; i < out->skin_count; i++)
-        if (!skin_finish(&out->skins[i], options, out)) memory_budget_fail(options->memory);
-    out->voxels = !options->exact;
-    return COMPILE_OK;
+    return build_voxels(options, diags, out);
 }
 
 static const BoxTree *tree_over_skins(const CompiledScene *compiled) {
@@ -179,6 +185,16 @@ static bool asks_elsewhere(const CompiledScene *compiled) {
     PilotResult *pilot = options->pilot;
     if (!pilot || !pilot->elsewhere || options->exact || !compiled->texel_count) return false;
     return pilot->asked = true;
+}
+
+/* Voxels alone, where auto would take longer for no less error. */
+static CompileStatus choose_detail_by_price(const CompileOptions *options, DiagList *diags, CompiledScene *out) {
+    BeamPrice planned;
+    if (!beam_choice_open(out, &planned)) return COMPILE_OK;
+    bool built = out->voxels;
+    CompileStatus status = built ? COMPILE_OK : build_voxels(options, diags, out);
+    if (status == COMPILE_OK && !beam_choose_voxels(out, &planned)) out->voxels = built;
+    return status;
 }
 
 CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, Arena *arena, DiagList *diags, CompiledScene *out) {
@@ -235,6 +251,8 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     radiosity_build(out);
     beam_pilot(out);
     beam_worth(out);
+    status = detail == DETAIL_AUTO ? choose_detail_by_price(options, diags, out) : COMPILE_OK;
+    if (status != COMPILE_OK) return status;
     budget_trial(out);
     if (options->exact && out->skin_count) out->exact = exact_skins_build(out->skins, out->skin_count, hierarchy_device(out->hierarchy));
     if (options->exact && out->skin_count && !out->exact) memory_budget_fail(options->memory);

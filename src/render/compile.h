@@ -24,6 +24,7 @@ typedef struct TexelFrame {
 typedef struct PilotResult {
     bool known;                 /* what trial pixels have shown */
     double factor, voxel_error; /* of the planned distances; of CompiledScene */
+    bool alone;                 /* voxels are drawn alone; voxel_error is then that of the picture */
     double planned;             /* what they were told at: the least of these distances, and */
     Vec3 lamps;                 /* the lamps' sum, by brightness and direction (those at a place: towards it from the middle of what is exact), and */
     double bright;              /* the sum of their brightness */
@@ -88,7 +89,8 @@ typedef struct CompiledScene {
     float dark_below;     /* light of which skins leave less than this share is gone */
     int most_samples;     /* a pixel, to keep it */
     int samples;          /* a pixel, of the first pass of what is drawn by beams */
-    AllotPlan allot;      /* the samples of what is drawn by beams */
+    AllotPlan allot;      /* the samples of what is drawn by beams; how many that are of a pixel, and the RMSE that they leave, where blocks have told: */
+    double allot_samples, allot_error;
     const PilotResult *told; /* that trial pixels need not tell again; NULL: there is none */
     PilotResult *tells;      /* that they become known by; NULL: nobody wants to know */
     int split;            /* cones per pixel side where explicit edges cross the pixel */
@@ -101,7 +103,8 @@ typedef struct CompiledScene {
     double all_exact_to;  /* the least exact_to of all skins, 0 of those that are voxels alone */
     double nearest;       /* nearer to the eye than this nothing is drawn by beams */
     const struct RadiosityKept *radiosity; /* radiosity.h; NULL: surfaces send each other no light */
-    double voxel_error;   /* expected RMSE of pixels at the distance all_exact_to that are drawn from voxels, falling with it; < 0: not known */
+    double voxel_error;   /* expected RMSE of pixels at the distance all_exact_to that are drawn from voxels, falling with it; of the whole picture where auto has chosen
+                           * voxels alone; < 0: not known */
 } CompiledScene;
 
 typedef enum CompileStatus { COMPILE_OK, COMPILE_FAILED /* see diags */, COMPILE_INTERRUPTED } CompileStatus;

@@ -104,7 +104,9 @@ static void count_workers(const Frame *frame, int workers, RenderStats *stats) {
     }
     squares += tally.squared_error, noise += tally.squared_error, pixels += tally.pixels;
     stats->split_pixels = tally.refined;
-    bool known = frame->beams ? isinf(frame->compiled->all_exact_to) || frame->compiled->voxel_error >= 0 : frame->compiled->skin_count == 0;
+    double wrong = frame->compiled->voxel_error;
+    bool known = wrong >= 0 || (frame->beams ? isinf(frame->compiled->all_exact_to) : frame->compiled->skin_count == 0);
+    if (!frame->beams && wrong >= 0) squares += wrong * wrong * (double)pixels;
     stats->noise_estimate = pixels ? sqrt(noise / (double)pixels) : 0;
     stats->voxels_estimate = !known ? -1 : pixels ? sqrt(fmax(squares - noise, 0) / (double)pixels) : 0;
     stats->pixels = pixels;

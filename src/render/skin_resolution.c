@@ -86,13 +86,29 @@ void texels_settle_triangles(CompiledScene *compiled) {
     }
 }
 
+/* Whether their voxels are the same, at the same resolution. */
+static bool hold_the_same(const TexelDef *a, const TexelDef *b, TexelFiltering filtering) {
+    if (a->file || b->file || a->layer_count != b->layer_count || a->resolution != b->resolution) return false;
+    for (size_t i = 0; i < a->layer_count; i++)
+        if (!hash_equal(texel_layer_key(a, &a->layers[i], 0, filtering), texel_layer_key(b, &b->layers[i], 0, filtering))) return false;
+    return true;
+}
+
+/* Texels that differ by their looks alone are built once, as fine as any of them needs: cones read the levels that fit them. */
+static int needed_by_any(const BuiltTexel *texel, const CompiledScene *compiled) {
+    int needed = texel->needed;
+    for (size_t i = 0; i < compiled->texel_count; i++)
+        if (hold_the_same(texel->def, compiled->texels[i]->def, compiled->filtering)) needed = int_max(needed, compiled->texels[i]->needed);
+    return needed;
+}
+
 void texels_settle_voxels(CompiledScene *compiled) {
     for (size_t i = 0; i < compiled->texel_count; i++) {
         const TexelFrame *told = told_of(compiled, i);
         BuiltTexel *texel = compiled->texels[i];
         const int asked = texel->def->resolution, most = power_of_two_above(asked ? asked : LARGEST_AUTO_RESOLUTION, TEXEL_LARGEST_RESOLUTION);
         if (texel->def->file) texel->built = asked;
-        else if (!compiled->options->film) texel->built = power_of_two_above(texel->needed, most);
-        else texel->built = resolution_in_film(texel->needed, told ? told->built : 0, most);
+        else if (!compiled->options->film) texel->built = power_of_two_above(needed_by_any(texel, compiled), most);
+        else texel->built = resolution_in_film(needed_by_any(texel, compiled), told ? told->built : 0, most);
     }
 }

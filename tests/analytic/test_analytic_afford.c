@@ -69,7 +69,15 @@ static void horizons_are_right(void **state) {
     }
 }
 
+/* Where voxels are right enough, and far cheaper, there is no geometry at all. */
+static void voxels_that_keep_it_are_alone(void **state) {
+    Work chosen = work_of(*state, "", 0.016);
+    assert_true(chosen.triangles <= 0 && chosen.steps > 0);
+    assert_true(chosen.error > 0 && chosen.error < 0.016);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(horizons_are_right), cmocka_unit_test(what_cannot_be_kept_is_bounded), cmocka_unit_test(what_can_be_kept_is)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(horizons_are_right), cmocka_unit_test(what_cannot_be_kept_is_bounded), cmocka_unit_test(what_can_be_kept_is),
+                                       cmocka_unit_test(voxels_that_keep_it_are_alone)};
     return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
 }

@@ -30,8 +30,7 @@ static double tiles_of_cell(const SkinCell *cell, double *area) {
     return share * fabs(ua * vb - ub * va);
 }
 
-/* Area of the surface against that of its tiles. */
-static double mean_tile_size(const CompiledSkin *skin) {
+double skin_tile_size(const CompiledSkin *skin) {
     double area = 0, tiles = 0, one;
     for (size_t i = 0; i < skin->cell_count; i++) tiles += tiles_of_cell(&skin->cells[i], &one), area += one;
     return tiles > 0 && area > 0 ? sqrt(area / tiles) : 0;
@@ -117,7 +116,6 @@ static double most_a_tile(const CompiledSkin *skin, bool everything, const View 
 }
 
 bool beam_build_skin(CompiledSkin *skin, bool everything, CompiledScene *compiled, DiagList *diags) {
-    skin->tile_size = mean_tile_size(skin);
     if (!(skin->tile_size > 0) || coordinates_singular(skin)) return true;
     double most = most_a_tile(skin, everything, &compiled->view), triangles = 0;
     for (size_t i = 0; i < skin->texel_count; i++) {
@@ -145,7 +143,7 @@ static double triangles_worth(const CompiledScene *compiled) {
 
 /* Takes the triangles on what the view meets of the skin from *left; *whole: there were as many. */
 static bool build_whole(CompiledSkin *skin, double *left, CompiledScene *compiled, DiagList *diags, bool *whole) {
-    double tiles = tiles_in_view(skin, &compiled->view), size = mean_tile_size(skin);
+    double tiles = tiles_in_view(skin, &compiled->view), size = skin->tile_size;
     *whole = size > 0 && !coordinates_singular(skin);
     for (size_t i = 0; i < skin->texel_count && *whole; i++) {
         const PlacedTexel *placed = &skin->texels[i];

@@ -234,6 +234,9 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     out->skins = arena_new_array(arena, CompiledSkin, skins.count);
     for (size_t i = 0; i < skins.count; i++)
         if (skin_compile(skins.items[i], out, diags, &out->skins[out->skin_count])) out->skin_count++;
+    out->least_tile = VTS_INFINITY;
+    for (size_t i = 0; i < out->skin_count; i++)
+        if (out->skins[i].tile_size > 0) out->least_tile = fmin(out->least_tile, out->skins[i].tile_size);
     if (interrupted(options)) return COMPILE_INTERRUPTED;
     if (diags->error_count > errors) return COMPILE_FAILED;
     if (asks_elsewhere(out)) return COMPILE_OK;

@@ -101,6 +101,7 @@ typedef struct CompiledScene {
     double build_seconds;
     Box3 exact_bounds;    /* of the skins that beams draw, those of `rigid` not counted */
     double all_exact_to;  /* the least exact_to of all skins, 0 of those that are voxels alone */
+    double least_tile;    /* the smallest of the skins' tiles, scene units; VTS_INFINITY: there are none */
     double nearest;       /* nearer to the eye than this nothing is drawn by beams */
     const struct RadiosityKept *radiosity; /* radiosity.h; NULL: surfaces send each other no light */
     double voxel_error;   /* expected RMSE of pixels at the distance all_exact_to that are drawn from voxels, falling with it; of the whole picture where auto has chosen
@@ -127,6 +128,8 @@ void compiled_scene_print(const CompiledScene *compiled, StrBuf *out);
 bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, CompiledSkin *out);
 /* The longest cells that show all that changes along the skin: 0 where no length is told, HUGE_VAL where nothing changes. */
 double skin_longest_cell(const Skin *skin);
+/* The side of a tile of the skin's texels, scene units: area of the surface against that of its tiles; 0 where there are none. beam_plan.c */
+double skin_tile_size(const CompiledSkin *skin);
 /* Tells the skin's texels how fine they are seen where they are nearest. skin_resolution.c */
 void skin_ask_triangles(CompiledSkin *skin, const CompiledScene *compiled);
 /* Asks them for the resolution that the view can see where voxels are drawn. skin_resolution.c */

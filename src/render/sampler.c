@@ -17,6 +17,9 @@ enum { FIRST_NET = 4 };
 /* Of an edge so many samples are taken at most, until its error is this part of what is accepted; where that is not enough a net of so many tells more. */
 enum { EDGE_SAMPLES = 4, NET_AFTER_EDGE = 32 };
 static const double EDGE_ENOUGH = 0.25;
+/* Where a pixel is wider than this part of a texel's tile its line of sight tells little of what it sees of a skin: other copies, and the ground's own
+ * shape, lie beside it. */
+static const double WIDE = 0.5;
 /* Samples of a net are so wide, against its mesh: wider ones, which blur what is at a pixel's border, are wrong by more than narrower ones are noisy. */
 static const double SAMPLE_WIDTH = 0.7;
 /* Middles are guessed where this is found to be no further off than so many times the error that is accepted, unless the guesses take
@@ -187,6 +190,22 @@ static void see(Sampler *sp, const Aim *aim, Cell *cell, const Guess *guess, Sig
     aovs->samples++;
 }
 
+/* Whether the pixel holds much that a skin's matter along its line of sight does not tell of. Of crests, over whose ground that line goes, a corner
+ * tells how far they are. */
+static bool is_wide(const Sampler *sp, const Aim *aim, const Sighting *s) {
+    const View *view = &sp->compiled->view;
+    const double x = aim->px + aim->x, y = aim->py + aim->y, widest = WIDE * sp->compiled->least_tile;
+    const Cone cone = view_cone(view, x, y, 1);
+    if (!isfinite(widest)) return false;
+    if (s->found) return cone_diameter(&cone, s->hit.t) > widest;
+    for (int corner = 2; corner < 6; corner++) { /* those below come first */
+        const Cone probe = view_cone(view, x + (corner & 1 ? 0.499 : -0.499), y + (corner & 2 ? 0.499 : -0.499), 1);
+        SurfaceHit hit;
+        if (find_surface(sp->compiled, &probe, false, &hit)) return cone_diameter(&cone, hit.t) > widest;
+    }
+    return false;
+}
+
 /* The first sample, by which it is found whether the pixel's error can be that of edges. */
 static bool see_first(Sampler *sp, const Aim *aim, const Guess *guess, Middle *out) {
     Sighting s;
@@ -195,7 +214,7 @@ static bool see_first(Sampler *sp, const Aim *aim, const Guess *guess, Middle *o
     out->tint = s.tint;
     out->object = s.found ? s.hit.object + 1 : 0;
     out->normal = s.found ? vec3f_from(s.hit.normal) : vec3f(0, 0, 0);
-    out->refinable = view_has_lens(&sp->compiled->view) || s.reaching >= ALL_EXPLICIT ||
+    out->refinable = view_has_lens(&sp->compiled->view) || s.reaching >= ALL_EXPLICIT || is_wide(sp, aim, &s) ||
                      (s.reaching >= EDGE_WORTH &&
                       surfaces_vary(sp->compiled, aim->px + aim->x, aim->py + aim->y, s.found, &s.hit));
     out->calm = s.found ? s.hit.look->even && s.hit.look->plain && s.hit.share_count == 0 : sp->compiled->scene->sky_layer_count == 0;

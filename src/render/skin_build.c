@@ -535,6 +535,7 @@ static bool compile_skin(const Skin *skin, CompiledScene *compiled, DiagList *di
     for (size_t i = 0; i < skin->texel_count; i++) place_texel(i, compiled, diags, out);
     skin_ask_triangles(out, compiled);
     skin_rim_add(out, &mesh, compiled->arena, &compiled->scratch);
+    out->tile_size = skin_tile_size(out);
     out->rigid = skin_is_rigid(out);
     out->overlaps = sheets_overlap(out);
     out->box = skin_box_of(out, compiled->arena);

@@ -54,7 +54,20 @@ static void coordinates(void **state) {
     try_voxels(trials, VTS_ARRAY_COUNT(trials));
 }
 
+/* What a line of sight through the middle of such a pixel meets is not what the pixel sees. */
+static void far_hills(void **state) {
+    (void)state;
+    static const Trial trials[] = {
+        {"pixels wider than tiles, and crests thinner than pixels",
+         "#declare Hill = surface { patch_grid 24, 24 function(u, v) { <60*(u - 0.5), 5*sin(7*u)*cos(9*v), 60*(v - 0.5)> } };\n"
+         "object { Hill pigment { rgb <0.5, 0.2, 0.1> } } Look(<0, 4, -70>, <0, 0, 0>, 30)\n"
+         "skin { surface { Hill } texel { Leaves(200, 0.2) } mapping { repeat <120, 120> height 0.5 } }", .019, .01, .04},
+    };
+    try_voxels(trials, VTS_ARRAY_COUNT(trials));
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(rays), cmocka_unit_test(cameras), cmocka_unit_test(jitters), cmocka_unit_test(coordinates)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(rays), cmocka_unit_test(cameras), cmocka_unit_test(jitters), cmocka_unit_test(coordinates),
+                                       cmocka_unit_test(far_hills)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -286,26 +286,36 @@ static Vec3 container_normal(const Field *f, Vec3 p, const SolidTag *tag) {
     return vec3_normalize(transform_normal(&f->place, out));
 }
 
-static Vec3 gradient(const Field *f, Vec3 p, double width) {
+/* The value and how it rises. */
+static Dual gradient(const Field *f, Vec3 p, double width) {
     const Tape *tape = f->solid->as.isosurface.function;
-    Dual few[FEW_SLOTS];
+    Dual few[FEW_SLOTS], out = {(double)NAN, {0, 0, 0}};
     size_t slots = size_max(tape_scratch_size(tape), f->line.sum ? f->line.sum->scratch_size : 0);
-    if (tape_input_count(tape) != 3 || tape_output_count(tape) != 1) return vec3(0, 0, 0);
-    Dual *scratch = slots > FEW_SLOTS ? malloc(slots * sizeof *scratch) : few, out = {0};
+    if (tape_input_count(tape) != 3 || tape_output_count(tape) != 1) return out;
+    Dual *scratch = slots > FEW_SLOTS ? malloc(slots * sizeof *scratch) : few;
     if (scratch) out = width > 0 ? tape_sum_gradient(f->line.sum, p, width, scratch) : tape_eval_gradient(tape, p, scratch);
     if (scratch != few) free(scratch);
-    return vec3(out.by[0], out.by[1], out.by[2]);
+    return out;
+}
+
+/* Where the function jumps over its level its slope on one side tells nothing of the surface: there it is not near the level, as it is
+ * at zeros, which are places to 2⁻⁴⁰. */
+static bool is_zero(const Dual *at, double level, double step) {
+    return fabs(at->value - level) <= step * (fabs(at->by[0]) + fabs(at->by[1]) + fabs(at->by[2]));
 }
 
 static Vec3 normal(const void *data, Vec3 p, const SolidTag *tag) {
     const Field *f = data;
     if (tag->part != PART_SURFACE) return container_normal(f, p, tag);
-    Vec3 exact = gradient(f, p, tag->u);
-    if (vec3_is_finite(exact) && vec3_length_squared(exact) > 0) return vec3_normalize(exact);
-    double h = 1e-6 * double_max(1, double_max(fabs(p.x), double_max(fabs(p.y), fabs(p.z))));
+    Dual at = gradient(f, p, tag->u);
+    Vec3 exact = {at.by[0], at.by[1], at.by[2]};
+    double size = vec3_length(vec3_sub(f->bounds.max, f->bounds.min)), h = 1e-6 * double_max(size, double_max(fabs(p.x), double_max(fabs(p.y), fabs(p.z))));
+    bool known = vec3_is_finite(exact) && vec3_length_squared(exact) > 0;
+    if (known && is_zero(&at, f->solid->as.isosurface.threshold, h)) return vec3_normalize(exact);
     Vec3 g = {difference(f->solid, p, vec3(1, 0, 0), h), difference(f->solid, p, vec3(0, 1, 0), h),
               difference(f->solid, p, vec3(0, 0, 1), h)};
-    return vec3_is_finite(g) && vec3_length_squared(g) > 0 ? vec3_normalize(g) : vec3(0, 1, 0);
+    if (vec3_is_finite(g) && vec3_length_squared(g) > 0) return vec3_normalize(g);
+    return known ? vec3_normalize(exact) : vec3(0, 1, 0);
 }
 
 static bool inside(const void *data, Vec3 p) {

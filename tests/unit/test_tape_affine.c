@@ -196,12 +196,24 @@ static void errors_are_of_second_order(void **state) {
     arena_destroy(&arena);
 }
 
+/* What an operation knows about constants it is told: a remainder by one has its dividend's slope between two jumps. */
+static void constants_are_points(void **state) {
+    (void)state;
+    Interval range = affine_range(affine_point(0.75));
+    assert_true(range.low == 0.75 && range.high == 0.75);
+    AffineForm between = affine_MOD((AffineForm){10.1, 0.1, 0, false}, affine_point(0.75));
+    assert_true(between.slope == 0.1 && between.error < 1e-12 && fabs(between.centre - 0.35) < 1e-12);
+    AffineForm over = affine_MOD((AffineForm){10.1, 0.5, 0, false}, affine_point(0.75));
+    assert_true(affine_range(over).low <= 0 && affine_range(over).high >= 0.749);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_operation_holds_its_values),
         cmocka_unit_test(noises_have_their_gradients),
         cmocka_unit_test(tapes_along_lines),
         cmocka_unit_test(errors_are_of_second_order),
+        cmocka_unit_test(constants_are_points),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

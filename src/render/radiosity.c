@@ -2,6 +2,8 @@
 
 #include "base/random.h"
 
+#include <float.h>
+
 /* ---- gathering ---- */
 
 /* Light changes within a part of the mean distance of what is met (the harmonic mean); of the whole hemisphere or of little of it, that by this
@@ -50,20 +52,64 @@ static Vec3f light_from(SurfaceTracer *tracer, const RadiosityPlace *place, Vec3
     return softened(&compiled->scene->settings.radiosity, surface_radiance(&asker, &leg, &hit));
 }
 
-static void look_around(SurfaceTracer *tracer, const RadiosityPlace *place, uint64_t seed, Hemisphere *h) {
-    double spread = sqrt(2 * VTS_PI / (h->net.rows * h->net.columns));
+/* Light from a field of the net, one of parts × parts of it, and one through how far away that is. */
+static Vec3f light_in(SurfaceTracer *tracer, const RadiosityPlace *place, const Hemisphere *h, int row, int column, int parts, int part,
+                      uint64_t seed, double *near) {
+    const RadiosityNet net = h->net;
+    uint64_t own = random_mix(seed + (uint64_t)(row * net.columns + column) + ((uint64_t)part << 32));
+    double area = (row + (part / parts + random_unit(own)) / parts) / net.rows,
+           turn = 2 * VTS_PI * (column + (part % parts + random_unit(random_mix(own))) / parts) / net.columns;
+    Vec3 d = vec3_madd(vec3_scale(around(h, turn), sqrt(area)), h->up, sqrt(1 - area));
+    *near = 0;
+    if (!(vec3_dot(d, place->flat) > 0)) return vec3f(0, 0, 0);
+    tracer->seed = own;
+    return light_from(tracer, place, d, sqrt(2 * VTS_PI / (net.rows * net.columns)) / parts, near);
+}
+
+/* The largest difference between the light of fields around one. Not that of its own: what was met by chance would then be looked at again, and
+ * what was missed by chance would not, so that small lights were too dark. */
+static float contrast_around(const Hemisphere *h, int row, int column) {
+    const int columns = h->net.columns;
+    Vec3f least = {FLT_MAX, FLT_MAX, FLT_MAX}, most = {0, 0, 0};
+    for (int down = -1; down <= 1; down++)
+        for (int right = -1; right <= 1; right++) {
+            const int j = row + down, k = (column + right + columns) % columns;
+            if ((!down && !right) || j < 0 || j >= h->net.rows) continue;
+            const Vec3f c = h->light[j][k];
+            least = vec3f(float_min(least.x, c.x), float_min(least.y, c.y), float_min(least.z, c.z));
+            most = vec3f(float_max(most.x, c.x), float_max(most.y, c.y), float_max(most.z, c.z));
+        }
+    return float_max(most.x - least.x, float_max(most.y - least.y, most.z - least.z));
+}
+
+/* Fields at the border of something bright, a window, are asked in so many parts each way, where one ray for all of a field would be seen to be
+ * wrong by more than this part of the error that is accepted. */
+enum { PARTS = 3 };
+static const double SEEN_TO_BE_WRONG = 0.5;
+
+static void look_closer(SurfaceTracer *tracer, const RadiosityPlace *place, uint64_t seed, Hemisphere *h) {
+    const double each = (double)place->worth / (h->net.rows * h->net.columns), accepted = SEEN_TO_BE_WRONG * tracer->compiled->max_error;
+    bool split[RADIOSITY_MOST_ROWS][RADIOSITY_MOST_COLUMNS];
+    for (int j = 0; j < h->net.rows; j++)
+        for (int k = 0; k < h->net.columns; k++) split[j][k] = (double)contrast_around(h, j, k) * each > accepted;
     for (int j = 0; j < h->net.rows; j++)
         for (int k = 0; k < h->net.columns; k++) {
-            uint64_t own = random_mix(seed + (uint64_t)(j * h->net.columns + k));
-            double area = (j + random_unit(own)) / h->net.rows,
-                   turn = 2 * VTS_PI * (k + random_unit(random_mix(own))) / h->net.columns;
-            Vec3 d = vec3_madd(vec3_scale(around(h, turn), sqrt(area)), h->up, sqrt(1 - area));
-            h->light[j][k] = vec3f(0, 0, 0);
-            h->near[j][k] = 0;
-            tracer->seed = own;
-            if (vec3_dot(d, place->flat) > 0)
-                h->light[j][k] = light_from(tracer, place, d, spread, &h->near[j][k]);
+            if (!split[j][k]) continue;
+            Vec3f light = {0, 0, 0};
+            double sum = 0, near;
+            for (int part = 0; part < PARTS * PARTS; part++) {
+                light = vec3f_add(light, light_in(tracer, place, h, j, k, PARTS, part, random_mix(seed), &near));
+                sum += near;
+            }
+            h->light[j][k] = vec3f_scale(light, 1.0f / (PARTS * PARTS));
+            h->near[j][k] = sum / (PARTS * PARTS);
         }
+}
+
+static void look_around(SurfaceTracer *tracer, const RadiosityPlace *place, uint64_t seed, Hemisphere *h) {
+    for (int j = 0; j < h->net.rows; j++)
+        for (int k = 0; k < h->net.columns; k++) h->light[j][k] = light_in(tracer, place, h, j, k, 1, 0, seed, &h->near[j][k]);
+    look_closer(tracer, place, seed, h);
 }
 
 static float channel(Vec3f c, int i) { return i == 0 ? c.x : i == 1 ? c.y : c.z; }

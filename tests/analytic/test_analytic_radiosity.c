@@ -39,6 +39,33 @@ static void sky_is_hidden_by_closed_forms(void **state) {
     assert_int_equal(bad, 0);
 }
 
+/* The share of a level place's hemisphere, by the cosine, of a level rectangle two above it with one corner over the place. */
+static double corner_share(double a, double b) {
+    double p = hypot(a, 2), q = hypot(b, 2);
+    return (a / p * atan(b / p) + b / q * atan(a / q)) / (2 * VTS_PI);
+}
+
+/* Light of a small bright panel, one wide, which few of a place's directions meet. */
+static void small_lights_are_even(void **state) {
+    static const char text[] = "#version 3.7;\nglobal_settings { assumed_gamma 1 radiosity { recursion_limit 1 } }\n"
+        "camera { orthographic location <0, 40, 0> direction -y sky z right x*8 up z*8 look_at 0 }\n"
+        "plane { y, 0 " MATT " } box { <-0.5, 2, -0.5>, <0.5, 2.001, 0.5> no_image texture { pigment { rgb 1 } finish { ambient 0 diffuse 0 emission 10 } } }\n";
+    VtsOptions o = options_of_size(64, 64);
+    Picture p = bench_see(*state, &o, text, false);
+    double squares = 0, sum = 0;
+    for (int y = 0; y < p.height; y++)
+        for (int x = 0; x < p.width; x++) {
+            double a = x_of(x), b = x_of(y);
+            double share = corner_share(0.5 - a, 0.5 - b) + corner_share(0.5 + a, 0.5 - b) + corner_share(0.5 - a, 0.5 + b) + corner_share(0.5 + a, 0.5 + b);
+            double off = (double)pixel_at(&p, x, y)[1] - 8 * share;
+            squares += off * off, sum += off;
+        }
+    printf("small light rmse %.4f mean off by %+.4f\n", sqrt(squares / 4096), sum / 4096);
+    assert_true(sqrt(squares / 4096) < 0.02);
+    assert_true(fabs(sum / 4096) < 0.004);
+    picture_free(&p);
+}
+
 /* Within a ball of emission e and share a each bounce brings a times the one before. */
 static float in_ball(Bench *bench, const char *settings, const char *finish, const char *version) {
     static char text[2048];
@@ -87,6 +114,7 @@ static void pixels_do_not_depend_on_threads(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sky_is_hidden_by_closed_forms),
+        cmocka_unit_test(small_lights_are_even),
         cmocka_unit_test(bounces_add_up),
         cmocka_unit_test(ambient_light_was_of_before),
         cmocka_unit_test(pixels_do_not_depend_on_threads),

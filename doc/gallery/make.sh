@@ -30,7 +30,7 @@ size_of() {
     kinds_values) echo 560x370 ;;
     contents | deformed | forest | kinds | jitter | larches | superimposed) echo 640x360 ;;
     pinwheels) echo 560x350 ;;
-    cloud | glade | orchard | planet) echo 480x300 ;;
+    cloud | glade | lamps | orchard | planet) echo 480x300 ;;
     haze) echo 480x270 ;;
     head) echo 400x320 ;;
     smoke) echo 300x400 ;;

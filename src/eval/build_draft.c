@@ -209,7 +209,6 @@ static void add_looks(SceneDraft *draft, BuildContext *context, const Light *lig
 
 static void add_light(void *target, BuildContext *context, const Light *light) {
     SceneDraft *draft = target;
-    warn_inert(draft, context, light->inert);
     *list_push(context->arena, &draft->lights) = *light;
     add_looks(draft, context, light);
 }

@@ -1,4 +1,5 @@
 #include "eval/build_parts.h"
+#include "eval/eval_files.h"
 #include "tape/tape.h"
 
 #include <string.h>
@@ -6,6 +7,7 @@
 typedef struct LightDraft {
     Light light;
     bool parallel;
+    bool turned; /* its table or where it points is new */
     Transform transform;
 } LightDraft;
 
@@ -79,8 +81,18 @@ static void read_projected(Reader *reader, const Word *word, void *target) {
 }
 
 static void read_point_at(Reader *reader, const Word *word, void *target) {
-    Light *light = &((LightDraft *)target)->light;
-    if (word_arguments(reader, word, 1, 1) && word_vector(reader, word, 0, &light->point_at)) light->aimed = true;
+    LightDraft *draft = target;
+    if (word_arguments(reader, word, 1, 1) && word_vector(reader, word, 0, &draft->light.point_at)) draft->light.aimed = draft->turned = true;
+}
+
+static void read_ies(Reader *reader, const Word *word, void *target) {
+    LightDraft *draft = target;
+    const char *name;
+    if (!word_arguments(reader, word, 1, 1) || !word_string(reader, word, 0, &name)) return;
+    const SourceFile *file = eval_find_text(reader->context->eval, name, word->arguments[0].span);
+    draft->light.lamp = file ? lamp_read(file, reader->context->diags, reader->context->arena) : NULL;
+    draft->turned = true;
+    reader->failed |= !draft->light.lamp;
 }
 
 static void read_goniometric(Reader *reader, const Word *word, void *target) {
@@ -103,8 +115,6 @@ static void read_interaction(Reader *reader, const Word *word, void *target) {
 }
 
 #define FIELD(name) offsetof(LightDraft, light.name)
-#define INERT(word)                                                                                          \
-    { word, WORD_INERT, FIELD(inert), NULL, false }
 #define IGNORED(word)                                                                                        \
     { word, WORD_IGNORED, 0, NULL, false }
 static const WordRule rules[] = {
@@ -126,7 +136,7 @@ static const WordRule rules[] = {
     {"looks_like", WORD_CUSTOM, 0, read_looks_like, false},
     {"projected_through", WORD_CUSTOM, 0, read_projected, false},
     {"goniometric", WORD_CUSTOM, 0, read_goniometric, false},
-    INERT("ies"),
+    {"ies", WORD_CUSTOM, 0, read_ies, false},
     IGNORED("adaptive"), /* shadows are sampled by the error that remains */
     {"media_interaction", WORD_CUSTOM, 0, read_interaction, false},
     {"media_attenuation", WORD_FLAG, FIELD(through_air), NULL, false},
@@ -155,6 +165,27 @@ static bool read_place(Reader *reader, Light *light) {
     return argument_color(reader, &color, "the light's colour", &light->color);
 }
 
+/* Transforms may have sheared the frame of a lamp's table. */
+static void square_up(Light *light) {
+    Vec3 *turns = light->lamp_turns, axis = light->to_light;
+    for (int i = 0; i < 2; i++) {
+        turns[i] = vec3_madd(turns[i], axis, -vec3_dot(turns[i], axis));
+        if (i) turns[1] = vec3_madd(turns[1], turns[0], -vec3_dot(turns[1], turns[0]));
+        turns[i] = vec3_normalize(turns[i]);
+    }
+}
+
+/* The lamp hangs with its height 0 downwards, turn 0 to the right and 90 away, counterclockwise from above as it is measured; the shortest turn brings it to
+ * where it points. Straight up, where each is as short, that is one about x. */
+static void turn_lamp(Light *light) {
+    Vec3 down = vec3_normalize(vec3_sub(light->point_at, light->location)), sum = vec3(down.x, down.y - 1, down.z);
+    const Vec3 hung[2] = {vec3(1, 0, 0), vec3(0, 0, 1)};
+    for (int i = 0; i < 2; i++) {
+        double along = vec3_dot(hung[i], sum) / (1 - down.y);
+        light->lamp_turns[i] = down.y > 1 - 1e-9 ? vec3_scale(hung[i], i ? -1 : 1) : vec3_madd(hung[i], sum, -along);
+    }
+}
+
 const Light *light_placed(const BuildContext *context, const Light *light, const Transform *t) {
     Light *placed = arena_copy(context->arena, light, sizeof *light);
     placed->location = transform_point(t, light->location);
@@ -164,6 +195,8 @@ const Light *light_placed(const BuildContext *context, const Light *light, const
     placed->looks_like = placed_like(context, light->looks_like, t);
     placed->projected_through = placed_like(context, light->projected_through, t);
     placed->to_light = vec3_normalize(vec3_sub(placed->location, placed->point_at));
+    for (int i = 0; i < 2; i++) placed->lamp_turns[i] = transform_vector(t, light->lamp_turns[i]);
+    square_up(placed);
     return placed;
 }
 
@@ -180,9 +213,12 @@ static bool finish(Reader *reader, LightDraft *draft, bool copy, Value *out) {
     Light *light = &draft->light;
     if (draft->parallel && light->kind == LIGHT_POINT) light->kind = LIGHT_PARALLEL;
     light->parallel = light->parallel || draft->parallel;
-    if (light->goniometric && light->kind == LIGHT_POINT && !light->aimed) aim(light);
-    if (light->goniometric && light_is_parallel(light))
-        diag_warning(reader->context->diags, reader->block->word_span, "all rays of a parallel light leave it at the same angle: 'goniometric' has no effect");
+    bool uneven = light->goniometric || light->lamp;
+    if (uneven && light->kind == LIGHT_POINT && !light->aimed) aim(light);
+    if (light->lamp && draft->turned) turn_lamp(light);
+    if (uneven && light_is_parallel(light))
+        diag_warning(reader->context->diags, reader->block->word_span, "all rays of a parallel light leave it at the same angle: '%s' has no effect",
+                     light->lamp ? "ies" : "goniometric");
     if (light->kind != LIGHT_POINT && vec3_length_squared(vec3_sub(light->location, light->point_at)) == 0)
         diag_warning(reader->context->diags, reader->block->word_span,
                      "this light has no direction, for it stands where it points at: it lights nothing");

@@ -26,25 +26,25 @@ void files_close_all(Eval *ev) {
     ev->memory = NULL;
 }
 
-static bool open_for_reading(Eval *ev, UserFile *f, const char *name, Span span) {
+const SourceFile *eval_find_text(Eval *ev, const char *name, Span span) {
     const SourceFile *source = NULL;
-    MemoryFile *m = files_in_memory(ev, name);
-    if (m) {
-        source = source_add_text(ev->sources, name, m->text.data ? m->text.data : "", m->text.size);
-    } else {
-        Diagnostic *refused = NULL;
-        StrBuf places = {0};
-        const char *path = path_find(ev, name, span, &refused, &places);
-        if (!path && !refused) {
-            Diagnostic *d = diag_error(ev->diags, span, "there is no file '%s'", name);
-            diag_hint(ev->diags, d, "looked in %s", places.data ? places.data : "no folder");
-        }
-        strbuf_free(&places);
-        if (!path) return false;
-        if (eval_load_text(ev, path, span, &source) != SOURCE_OK) return false;
+    const MemoryFile *m = files_in_memory(ev, name);
+    if (m) return source_add_text(ev->sources, name, m->text.data ? m->text.data : "", m->text.size);
+    Diagnostic *refused = NULL;
+    StrBuf places = {0};
+    const char *path = path_find(ev, name, span, &refused, &places);
+    if (!path && !refused) {
+        Diagnostic *d = diag_error(ev->diags, span, "there is no file '%s'", name);
+        diag_hint(ev->diags, d, "looked in %s", places.data ? places.data : "no folder");
     }
-    f->tokens = lexer_run(source, &ev->keywords, ev->parse);
-    return true;
+    strbuf_free(&places);
+    return path && eval_load_text(ev, path, span, &source) == SOURCE_OK ? source : NULL;
+}
+
+static bool open_for_reading(Eval *ev, UserFile *f, const char *name, Span span) {
+    const SourceFile *source = eval_find_text(ev, name, span);
+    if (source) f->tokens = lexer_run(source, &ev->keywords, ev->parse);
+    return source != NULL;
 }
 
 static bool open_for_writing(Eval *ev, UserFile *f, const char *name, Span span) {

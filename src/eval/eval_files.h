@@ -28,6 +28,8 @@ typedef struct MemoryFile {
 /* The path of a file that the text at `from` names, in the places where includes are looked for; NULL when there is none (the places go
  * to *looked_in) or when it may not be read (reported to *refused, if asked for). In the parse arena. */
 const char *path_find(Eval *ev, const char *name, Span from, Diagnostic **refused, StrBuf *looked_in);
+/* The text of a file that the text at `span` names: one that the scene has written, or one of path_find(); NULL after an error. */
+const SourceFile *eval_find_text(Eval *ev, const char *name, Span span);
 bool path_may_write(Eval *ev, const char *path);
 void eval_set_scene_path(Eval *ev, const char *path);
 MemoryFile *files_in_memory(const Eval *ev, const char *name);

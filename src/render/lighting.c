@@ -38,6 +38,12 @@ static double goniometric_factor(const Light *light, Vec3 to_light) {
     return out[0] > 0 && isfinite(out[0]) ? out[0] : 0;
 }
 
+/* What leaves it along -to_light. */
+static double lamp_factor(const Light *light, Vec3 to_light) {
+    double down = vec3_dot(light->to_light, to_light), across = -vec3_dot(light->lamp_turns[0], to_light), aside = -vec3_dot(light->lamp_turns[1], to_light);
+    return lamp_light(light->lamp, atan2(hypot(across, aside), down) / VTS_RADIANS, atan2(aside, across) / VTS_RADIANS);
+}
+
 static double fading(const Light *light, double distance) {
     if (!(light->fade_power > 0) || !(light->fade_distance > 0)) return 1;
     return 2 / (1 + pow(distance / light->fade_distance, light->fade_power));
@@ -61,6 +67,7 @@ LightRay light_ray_from(const Light *light, Vec3 point, Vec3 place) {
     if (light->kind == LIGHT_SPOT) factor *= spot_factor(light, ray.direction);
     if (light->kind == LIGHT_CYLINDER) factor *= cylinder_factor(light, to);
     if (light->goniometric && !light_is_parallel(light)) factor *= goniometric_factor(light, ray.direction);
+    if (light->lamp && !light_is_parallel(light)) factor *= lamp_factor(light, ray.direction);
     ray.color = vec3f_scale(limited(vec3f_from_color(light->color)), (float)fmin(factor, (double)BRIGHTEST));
     return ray;
 }

@@ -252,7 +252,7 @@ static void stop_for_light(const Light *light, const Ray *ray, double *extra, in
 /* The hull of light that a lamp sends to the way between t0 and t1; false where its light is no even one. Parallel light comes from so far. */
 static bool light_hull(const Way *way, const Light *light, double t0, double t1, double far, LightHull *hull) {
     const Vec3 ends[2] = {vec3_madd(way->ray.origin, way->ray.direction, t0), vec3_madd(way->ray.origin, way->ray.direction, t1)};
-    if (light->goniometric || light->projected_through) return false;
+    if (light->goniometric || light->lamp || light->projected_through) return false;
     hull->points[0] = ends[0], hull->points[1] = ends[1];
     hull->count = 2;
     if (light_is_parallel(light))

@@ -45,6 +45,10 @@ static Hash128 key_of(const CompiledScene *compiled) {
     for (size_t i = 0; i < scene->light_count; i++) {
         const Light *light = &scene->lights[i];
         if (light->goniometric) hash_add_hash(&key, tape_hash(light->goniometric));
+        if (light->lamp) {
+            hash_add_hash(&key, light->lamp->hash);
+            hash_add(&key, light->lamp_turns, sizeof light->lamp_turns);
+        }
         if (light->projected_through) hash_add_hash(&key, object_hash(light->projected_through));
     }
     for (size_t i = 0; i < scene->object_count; i++) hash_add_hash(&key, object_hash(scene->objects[i]));

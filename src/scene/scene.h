@@ -11,6 +11,7 @@
 #include "base/source.h"
 #include "base/strbuf.h"
 #include "base/vec.h"
+#include "scene/lamp.h"
 #include "scene/solids.h"
 #include "tape/tape.h"
 
@@ -688,9 +689,10 @@ struct Light {
     const LightGroup *group; /* shines on nothing else; NULL: on all */
     bool aimed;              /* point_at was given */
     const Tape *goniometric; /* (angle to the way from its place to point_at, radians) → factor of its colour, and what does not count; NULL: 1 */
+    const LampTable *lamp;   /* a further factor, of what leaves its place along -to_light at height 0; NULL: 1 */
+    Vec3 lamp_turns[2];      /* unit vectors across that, where it turns by 0 and by 90 degrees */
     bool unscattered;        /* media do not scatter it */
     bool through_air;        /* media that are nowhere in particular weaken it */
-    const InertNote *inert;
 };
 
 enum { LIGHT_GONIOMETRIC_OUTPUTS = 5 }; /* at most */

@@ -547,14 +547,14 @@ static void print_light(Printer *p, const Light *light) {
         add_flag(p, "orient", light->orient);
     }
     add_flag(p, "goniometric function", light->goniometric != NULL);
-    if (light->goniometric && light->kind == LIGHT_POINT) add_vector(p, "point_at", light->point_at);
+    if (light->lamp) add_vector(p, "ies, turned to", light->lamp_turns[0]);
+    if ((light->goniometric || light->lamp) && light->kind == LIGHT_POINT) add_vector(p, "point_at", light->point_at);
     add_flag(p, "media_interaction off", light->unscattered);
     add_flag(p, "media_attenuation", light->through_air);
     add_flag(p, "parallel", light->parallel && light->kind != LIGHT_PARALLEL);
     add_flag(p, "shadowless", light->shadowless);
     add_flag(p, "grouped", light->group != NULL);
     add_flag(p, "projected", light->projected_through != NULL);
-    add_inert(p, light->inert);
     end_line(p);
 }
 

@@ -136,6 +136,70 @@ static void matter_is_lit_by_the_lobe(void **state) {
     }
 }
 
+/* A picture of a scene beside which a lamp's file stands; heights 0 60 90 and turns 0 to 90: (1 - height / 90) (1 + turn / 90) / 2. */
+static Picture render_with_lamp(const Bench *b, const VtsOptions *o, const char *text) {
+    char path[128];
+    snprintf(path, sizeof path, "%s/lamp.ies", b->folder);
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    fputs("IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 3 1 2 0 0 0 1 1 60\n0 60 90\n0 30 90\n90 30 0\n120 40 0\n180 60 0\n", f);
+    fclose(f);
+    Picture p = bench_render(b, o, text);
+    remove(path);
+    return p;
+}
+
+static double lamp_at(Vec3 away, Vec3 down, Vec3 across, Vec3 aside) {
+    double height = acos(double_clamp(vec3_dot(away, down), -1, 1)) / VTS_RADIANS, turn = fabs(atan2(vec3_dot(away, aside), vec3_dot(away, across))) / VTS_RADIANS;
+    if (turn > 90) turn = 180 - turn;
+    return height < 90 ? (1 - height / 90) * (1 + turn / 90) / 2 : 0;
+}
+
+/* Hung, aimed, turned, and aimed straight up: all around by the frame that each should have. */
+static void measured_lamps_shine_as_they_hang(void **state) {
+    const double h = sqrt(0.5);
+    const struct { const char *lamp; Vec3 down, across, aside; } cases[] = {
+        {"", {0, -1, 0}, {1, 0, 0}, {0, 0, 1}},
+        {"rotate 90*y", {0, -1, 0}, {0, 0, -1}, {1, 0, 0}},
+        {"point_at z", {0, 0, 1}, {1, 0, 0}, {0, 1, 0}},
+        {"point_at x", {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+        {"point_at <3, -3, 0>", {h, -h, 0}, {h, h, 0}, {0, 0, 1}},
+        {"point_at y", {0, 1, 0}, {1, 0, 0}, {0, 0, -1}},
+        {"scale <-2, 1, 1> rotate 90*x", {0, 0, -1}, {-1, 0, 0}, {0, -1, 0}},
+    };
+    for (size_t i = 0; i < VTS_ARRAY_COUNT(cases); i++) {
+        char text[2048];
+        VtsOptions o = options_of_size(2 * ROWS, ROWS);
+        o.samples = 1;
+        snprintf(text, sizeof text, WITHIN "light_source { 0 rgb 1 ies \"lamp.ies\" %s }\n", cases[i].lamp);
+        Picture p = render_with_lamp(*state, &o, text);
+        for (int y = 0; y < ROWS; y++)
+            for (int x = 0; x < 2 * ROWS; x++) {
+                double want = lamp_at(towards(x, y), cases[i].down, cases[i].across, cases[i].aside), got = (double)pixel_at(&p, x, y)[0];
+                if (fabs(got - want) > 1e-4) fail_msg("'%s' at %d, %d: %g, not %g", cases[i].lamp, x, y, got, want);
+            }
+        picture_free(&p);
+    }
+}
+
+/* On a plane below it: the table's light by Lambert's law, and by the distance where that is asked for. */
+static void a_floor_is_lit_by_the_table(void **state) {
+    enum { SIDE = 48 };
+    VtsOptions o = options_of_size(SIDE, SIDE);
+    o.samples = 1;
+    Picture p = render_with_lamp(*state, &o,
+                                 LOOK_DOWN(3, 6) "light_source { <0.5, 2, 0>, rgb 1 ies \"lamp.ies\" fade_distance 0.01 fade_power 2 }\n"
+                                                 "plane { y, 0 pigment { rgb 1 } finish { ambient 0 diffuse 1 } }\n");
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+            Vec3 way = vec3(6 * ((x + .5) / SIDE - .5) - 0.5, -2, 6 * (.5 - (y + .5) / SIDE));
+            double far = vec3_length(way), table = lamp_at(vec3_scale(way, 1 / far), vec3(0, -1, 0), vec3(1, 0, 0), vec3(0, 0, 1));
+            double want = table * 2 / far * 2 / (1 + far * far / 1e-4), got = (double)pixel_at(&p, x, y)[0];
+            if (fabs(got / want - 1) > 2e-3) fail_msg("at %d, %d: %g, not %g", x, y, got, want);
+        }
+    picture_free(&p);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lobes_have_their_flux),
@@ -144,6 +208,8 @@ int main(void) {
         cmocka_unit_test(lamps_do_not_swallow_light),
         cmocka_unit_test(discs_light_as_lambert_says),
         cmocka_unit_test(matter_is_lit_by_the_lobe),
+        cmocka_unit_test(measured_lamps_shine_as_they_hang),
+        cmocka_unit_test(a_floor_is_lit_by_the_table),
     };
     return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
 }

@@ -98,16 +98,27 @@ static void open_next(SkinFront *f) {
     if (slot >= 0) f->free_slots &= ~((uint64_t)1 << slot);
 }
 
-const SkinSegment *skin_front_next(SkinFront *f, uint32_t *skin, const SkinMarch **march) {
-    if (f->last != SIZE_MAX && !skin_march_next(f->open[f->last].march, &f->segments[f->last])) close_open(f, f->last);
+static size_t nearest_open(const SkinFront *f) {
     size_t nearest = SIZE_MAX;
     for (size_t i = 0; i < f->open_count; i++)
         if (nearest == SIZE_MAX || is_nearer(f, i, nearest)) nearest = i;
-    while (f->ahead_first < f->ahead_end && (nearest == SIZE_MAX || f->ahead[f->ahead_first].t <= f->segments[nearest].t0)) {
+    return nearest;
+}
+
+/* Whether what lies ahead comes before what is open. Of those that begin together no more are opened than there is room for: each would put off another without end. */
+static bool opens_next(const SkinFront *f, size_t nearest) {
+    if (f->ahead_first == f->ahead_end) return false;
+    if (nearest == SIZE_MAX) return true;
+    double t = f->ahead[f->ahead_first].t, open = f->segments[nearest].t0;
+    return t < open || (t == open && f->free_slots);
+}
+
+const SkinSegment *skin_front_next(SkinFront *f, uint32_t *skin, const SkinMarch **march) {
+    if (f->last != SIZE_MAX && !skin_march_next(f->open[f->last].march, &f->segments[f->last])) close_open(f, f->last);
+    size_t nearest = nearest_open(f);
+    while (opens_next(f, nearest)) {
         open_next(f);
-        nearest = SIZE_MAX; /* one may have been put off */
-        for (size_t i = 0; i < f->open_count; i++)
-            if (nearest == SIZE_MAX || is_nearer(f, i, nearest)) nearest = i;
+        nearest = nearest_open(f); /* one may have been put off */
     }
     f->last = nearest;
     if (nearest == SIZE_MAX) return NULL;

@@ -138,6 +138,7 @@ static void a_front_meets_what_each_march_meets(void **state) {
 static void more_may_overlap_than_there_are_marches(void **state) {
     (void)state;
     check_front(0.05, VTS_INFINITY, 0, 10);
+    check_front(0.001, VTS_INFINITY, 3.1, 40); /* within all of them: all begin at once */
 }
 
 int main(void) {

@@ -32,7 +32,7 @@ film() {
     /^#/ { next }
     !named { for (i = 1; i <= NF; i++) column[$i] = i; named = 1; next }
     { split(most, part, "/"); limit = part[1] / part[2]; asked = $column["knob"] ~ /max_error/ ? "asked" : "as it is"; flicker = $column["flicker"]
-      printf "%-8s %-9s %8.1f s   rmse %.5f   flicker %.5f of %.5f%s\n", name, asked, $column["cpu_s"], $column["rmse"], flicker, limit, flicker > limit ? "   FAILS" : ""
+      printf "%-8s %-9s %8.1f s   rmse %.5f   flicker %.5f of %.5f%s\n", name, asked, $column["cpu_s"], $column["rmse"], flicker, limit, (flicker > limit ? "   FAILS" : "")
       if (flicker > limit) failed = 1 }
     END { exit failed }' "$out/$name.csv" || failed=1
 }

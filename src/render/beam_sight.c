@@ -111,9 +111,6 @@ static void see_facet(const BeamTracer *tr, Sight *sight) {
     sight->color = vec3f_mul(facet_color(tr, &plane, own, sight), copy->tint);
 }
 
-/* Of one of so many samples, in pixels: of the width of its share 0.7, as in sampler.c. */
-static double sample_width(double samples) { return samples > 1 ? 0.7 / sqrt(samples) : 1; }
-
 /* Whether what a surface looks like may change within a pixel. */
 static bool look_varies(const SurfaceHit *hit) { return hit->share_count || !hit->look->uniform || hit->look->texture->normal; }
 

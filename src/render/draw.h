@@ -8,6 +8,8 @@
 
 #include "base/random.h"
 
+#include <math.h>
+
 typedef struct Draw {
     uint64_t pixel; /* a hash of the pixel and the seed */
     uint32_t index; /* of the sample in the pixel */
@@ -45,5 +47,9 @@ static inline void draw_pair(const Draw *draw, uint32_t use, double *u, double *
     *u = draw_scramble(draw_reverse(index), (uint32_t)bits) * 0x1p-32;
     *v = draw_scramble(second, (uint32_t)(bits >> 32)) * 0x1p-32;
 }
+
+/* How wide one of so many samples of a pixel is, in pixels: narrower than the mesh of their net. Wider ones, which blur what is at a pixel's border, are
+ * wrong by more than narrower ones are noisy. */
+static inline double sample_width(double samples) { return samples > 1 ? 0.7 / sqrt(samples) : 1; }
 
 #endif

@@ -11,6 +11,8 @@
 #include <string.h>
 
 enum { EDGE = CONTRAST_EDGE, CELLS = CONTRAST_CELLS };
+/* From a cell to the eight around it. */
+static const int AROUND[] = {-EDGE - 1, -EDGE, -EDGE + 1, -1, 1, EDGE - 1, EDGE, EDGE + 1};
 /* Where so much of the light comes from explicit surfaces, their edges are worth samples; where less, skins hide them. */
 static const float EDGE_WORTH = 1.0f / 64, ALL_EXPLICIT = 0.999f;
 enum { FIRST_NET = 4 };
@@ -20,8 +22,6 @@ static const double EDGE_ENOUGH = 0.25;
 /* Where a pixel is wider than this part of a texel's tile its line of sight tells little of what it sees of a skin: other copies, and the ground's own
  * shape, lie beside it. */
 static const double WIDE = 0.5;
-/* Samples of a net are so wide, against its mesh: wider ones, which blur what is at a pixel's border, are wrong by more than narrower ones are noisy. */
-static const double SAMPLE_WIDTH = 0.7;
 /* Middles are guessed where this is found to be no further off than so many times the error that is accepted, unless the guesses take
  * more than this part of it. */
 static const double ALIKE = 1, GUESSES_MAY = 0.25;
@@ -254,7 +254,7 @@ static void add_sample(Sampler *sp, Cell *cell, const Aim *aim) {
 static void see_more(Sampler *sp, int index, int count) {
     Cell *cell = &sp->cells[index];
     int px, py, half = cell->net ? cell->net : (count + 1) / 2;
-    double width = count > 1 ? SAMPLE_WIDTH / sqrt(count) : 1;
+    double width = sample_width(count);
     place_of(sp, index, &px, &py);
     cell->checked = cell->net == 0;
     cell->edged = cell->traced = false;
@@ -309,7 +309,7 @@ static int trace_edge(Sampler *sp, int index) {
         float x, y;
         Sighting s;
         edge_place(&edge.fit, taken++, &x, &y);
-        see(sp, &(Aim){px, py, taken, 0.5 + (double)x, 0.5 + (double)y, SAMPLE_WIDTH / 2, 1.0 / FIRST_NET}, cell, NULL, &s);
+        see(sp, &(Aim){px, py, taken, 0.5 + (double)x, 0.5 + (double)y, sample_width(FIRST_NET), 1.0 / FIRST_NET}, cell, NULL, &s);
         holds = pixel_edge_add(&edge, x, y, &s.seen);
     }
     cell->edged = false;
@@ -409,10 +409,9 @@ static bool turned_out(const Sampler *sp, const Cell *cell, Vec3f before) {
 
 /* A pixel that turned out to be other than its middle may be part of something thin, which goes on beside it. */
 static double look_around(Sampler *sp, int index) {
-    static const int around[] = {-EDGE - 1, -EDGE, -EDGE + 1, -1, 1, EDGE - 1, EDGE, EDGE + 1};
     double change = 0;
     for (int k = 0; k < 8; k++) {
-        int other = index + around[k], row = other / EDGE, column = other % EDGE;
+        int other = index + AROUND[k], row = other / EDGE, column = other % EDGE;
         Cell *cell = &sp->cells[other];
         if (row < 1 || row > sp->rows || column < 1 || column > sp->columns || cell->net || cell->traced ||
             !cell->refinable)
@@ -529,10 +528,9 @@ static const Middle *shared_middle(const Sampler *sp, const Middle *const shared
 
 /* Whether the explicit surface of a pixel ends between its middle and those around. */
 static bool ends_near(const Sampler *sp, int index) {
-    static const int around[] = {-EDGE - 1, -EDGE, -EDGE + 1, -1, 1, EDGE - 1, EDGE, EDGE + 1};
     const Cell *cell = &sp->cells[index];
     for (int k = 0; k < 8; k++)
-        if (sp->cells[index + around[k]].object != cell->object) return true;
+        if (sp->cells[index + AROUND[k]].object != cell->object) return true;
     return false;
 }
 

@@ -71,16 +71,14 @@ VistaView vista_view(const Vista *vista, const Ray corners[4], uint32_t object) 
 
 static double distance_to(const Box3 *box, Vec3 p) { return vec3_length(vec3_sub(vec3_max(box->min, vec3_min(box->max, p)), p)); }
 
-static double part(Vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
-
 /* How wide the piece is at least where it is nearest to the eye. What is flat along an axis, as a floor is, shows more than its thickness to an eye
  * that stands off its plane: with h from the eye to the plane and b between two edges, which are n and f away, the sine of the angle that it fills is
  * h·b/(n·f). */
 static double width_seen(const VistaPiece *piece, Vec3 eye) {
     Vec3 size = vec3_sub(piece->box.max, piece->box.min), low = vec3_sub(piece->box.min, eye), high = vec3_sub(eye, piece->box.max);
     int flat = size.x <= size.y && size.x <= size.z ? 0 : size.y <= size.z ? 1 : 2;
-    double off = fmax(part(low, flat), part(high, flat)), side = fmin(part(size, (flat + 1) % 3), part(size, (flat + 2) % 3));
-    if (piece->width < part(size, flat) || !(off > 0)) return piece->width; /* thin in other places than its box */
+    double off = fmax(vec3_get(low, flat), vec3_get(high, flat)), side = fmin(vec3_get(size, (flat + 1) % 3), vec3_get(size, (flat + 2) % 3));
+    if (piece->width < vec3_get(size, flat) || !(off > 0)) return piece->width; /* thin in other places than its box */
     Vec3 to_far = vec3(fmax(fabs(low.x), fabs(high.x)), fmax(fabs(low.y), fabs(high.y)), fmax(fabs(low.z), fabs(high.z)));
     return fmax(piece->width, off * side / vec3_length(to_far));
 }

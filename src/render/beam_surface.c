@@ -56,6 +56,7 @@ void beam_see_surfaces(BeamTracer *tr) {
         for (int column = -1; column <= tr->columns; column++)
             see_surface(tr, column + 0.5, row + 0.5, &tr->pixels[(row + 1) * BEAM_EDGE + column + 1]);
     tr->surface_count = 0;
+    int32_t nothing = BEAM_NOTHING; /* one for all samples that meet none */
     for (int row = 0; row < tr->rows; row++)
         for (int column = 0; column < tr->columns; column++) {
             const SeenSurface *p = &tr->pixels[(row + 1) * BEAM_EDGE + column + 1];
@@ -67,9 +68,13 @@ void beam_see_surfaces(BeamTracer *tr) {
                 double sx = (double)s->x[i], sy = (double)s->y[i];
                 const SeenSurface *at = p;
                 if (!smooth) {
-                    tr->surface[i] = (int32_t)tr->surface_count;
-                    at = &tr->surfaces[tr->surface_count++];
-                    see_surface(tr, sx, sy, &tr->surfaces[tr->surface[i]]);
+                    int32_t next = (int32_t)tr->surface_count;
+                    see_surface(tr, sx, sy, &tr->surfaces[next]);
+                    if (!tr->surfaces[next].found && nothing != BEAM_NOTHING) next = nothing;
+                    else tr->surface_count++;
+                    if (!tr->surfaces[next].found) nothing = next;
+                    tr->surface[i] = next;
+                    at = &tr->surfaces[next];
                 }
                 s->key[i] = at->found ? (float)(at->key_0 + at->key_x * sx + at->key_y * sy) : tr->beam.perspective ? 0 : -INFINITY;
             }

@@ -251,7 +251,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     if (status != COMPILE_OK) return status;
     out->skin_tree = tree_over_skins(out);
     if (out->volumes && !options->exact && !volumes_light_kept(out)) return COMPILE_INTERRUPTED;
-    radiosity_build(out);
+    if (!radiosity_build(out)) return COMPILE_INTERRUPTED;
     beam_pilot(out);
     beam_worth(out);
     status = detail == DETAIL_AUTO ? choose_detail_by_price(options, diags, out) : COMPILE_OK;

@@ -30,8 +30,8 @@ static inline bool radiosity_is_on(const SurfaceTracer *tracer) { return tracer-
 /* The mean light from all sides, by the cosine, times the scene's brightness; nothing, and the place noted, where the tracer asks. */
 Vec3f radiosity_light(SurfaceTracer *tracer, const RadiosityPlace *place, uint64_t seed);
 
-/* Gathers for all that the eye sees, when all else is compiled, if the scene wants it and has no skins. radiosity_build.c */
-void radiosity_build(CompiledScene *compiled);
+/* Gathers for all that the eye sees, when all else is compiled, if the scene wants it and has no skins. False when interrupted. radiosity_build.c */
+bool radiosity_build(CompiledScene *compiled);
 
 /* ---- parts ---- */
 

@@ -60,6 +60,11 @@ static void add_place(Builder *b, const RadiosityPlace *place) {
 
 /* ---- what lines of sight meet ---- */
 
+static bool is_stopped(const Builder *b) {
+    const atomic_bool *interrupted = b->compiled->options->interrupted;
+    return interrupted && *interrupted;
+}
+
 static void ask_sight(void *context, size_t index, int worker) {
     Builder *b = context;
     const CompiledScene *compiled = b->compiled;
@@ -70,6 +75,7 @@ static void ask_sight(void *context, size_t index, int worker) {
     RadiosityAsk ask = {b->asked[index], 0, ASKED};
     SurfaceHit hit;
     b->asked_count[index] = 0;
+    if (is_stopped(b)) return;
     if (vec3_length_squared(cone.direction) == 0) return;
     const Ray ray = {cone.origin, cone.direction};
     if (!hierarchy_meet_wide(compiled->hierarchy, RAY_SEES, &ray, cone_width(&cone), 1e-9, VTS_INFINITY,
@@ -112,6 +118,7 @@ static size_t ask_net(Builder *b) {
 
 static void gather_at(void *context, size_t index, int worker) {
     Builder *b = context;
+    if (is_stopped(b)) return;
     const RadiosityPlace *place = &b->places[index];
     SurfaceTracer tracer = tracer_of(b, worker, random_hash(index, b->begin, 3, (uint64_t)place->gathers));
     RadiosityEntry *entry = &b->entries[b->begin + index];
@@ -154,6 +161,7 @@ static bool limit_by(void *context, uint32_t item) {
 
 static void limit_entry(void *context, size_t index, int worker) {
     Builder *b = context;
+    if (is_stopped(b)) return;
     const RadiosityEntry *entry = &b->entries[index];
     Limit l = {b, entry, entry->radius};
     Vec3 far = vec3_splat(entry->radius / b->reach);
@@ -194,6 +202,8 @@ typedef struct Search {
 
 static void search_from(void *context, size_t index, int worker) {
     Search *s = context;
+    s->count[index] = 0;
+    if (is_stopped(s->builder)) return;
     int most = SEARCH.rows * SEARCH.columns;
     RadiosityAsk ask = {s->found + index * (size_t)most, 0, most};
     SurfaceTracer tracer = tracer_of(s->builder, worker, random_hash(index, 11, 13, 17));
@@ -250,9 +260,9 @@ static void build_seen(Builder *b) {
     }
 }
 
-void radiosity_build(CompiledScene *compiled) {
+bool radiosity_build(CompiledScene *compiled) {
     Arena *arena = compiled->arena;
-    if (!compiled->scene->settings.radiosity.on || compiled->skin_count) return;
+    if (!compiled->scene->settings.radiosity.on || compiled->skin_count) return true;
     RadiosityKept *kept = arena_new(arena, RadiosityKept);
     *kept = (RadiosityKept){.seen = {.reach = RADIOSITY_REACH}};
     Builder b = {.compiled = compiled,
@@ -266,4 +276,5 @@ void radiosity_build(CompiledScene *compiled) {
     if (compiled->scene->settings.radiosity.bounces > 1) build_others(&b);
     kept->others_known = true;
     build_seen(&b);
+    return !is_stopped(&b);
 }

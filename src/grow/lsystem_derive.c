@@ -122,7 +122,8 @@ static Fit fit_of(Derivation *d, const Production *p, size_t i, double *weight) 
     if (!matches(d, p, i)) return FIT_NOT;
     if (p->guard) tape_eval(p->guard, d->inputs, guard, d->scratch);
     *weight = guard[1];
-    if (isfinite(guard[0]) && isfinite(guard[1]) && guard[1] >= 0) return guard[0] != 0 ? FIT_YES : FIT_NOT;
+    if (guard[0] == 0) return FIT_NOT; /* and what its weight would be is nobody's business */
+    if (isfinite(guard[0]) && isfinite(guard[1]) && guard[1] >= 0) return FIT_YES;
     diag_error(d->diags, p->source->span, "the %s of the production \"%s\" is no finite number%s in iteration %d",
                isfinite(guard[0]) ? "weight" : "condition", p->source->text, isfinite(guard[1]) && guard[1] < 0 ? " above zero" : "", d->iteration);
     return FIT_BROKEN;

@@ -12,6 +12,8 @@ typedef struct Expression {
     LSystemReader *reader;
     LSystemScope *scope;
     TapeBuilder *tape;
+    TapeRef counts;  /* whether what is being read counts: the right side of & does where the left one is true, that of | where not */
+    TapeRef faulty;  /* whether what counted has divided by zero */
     int depth;
 } Expression;
 
@@ -93,6 +95,17 @@ static const struct {
     {"degrees", 1, TAPE_DEGREES}, {"radians", 1, TAPE_RADIANS},
 };
 
+static TapeRef is_zero(Expression *e, TapeRef value) {
+    return tape_binary(e->tape, TAPE_EQ, value, tape_constant(e->tape, 0), e->reader->source->span);
+}
+
+/* A divisor of zero is a fault where it counts. */
+static void check_divisor(Expression *e, TapeRef divisor) {
+    Span span = e->reader->source->span;
+    TapeRef fault = tape_binary(e->tape, TAPE_AND, e->counts, is_zero(e, divisor), span);
+    e->faulty = tape_binary(e->tape, TAPE_OR, e->faulty, fault, span);
+}
+
 static bool read_arguments(Expression *e, TapeRef *out, int count) {
     for (int i = 0; i < count; i++) {
         if (i > 0 && !lsystem_take(e->reader, ',')) return lsystem_fail(e->reader, "a comma is missing");
@@ -120,6 +133,7 @@ static bool read_function(Expression *e, const char *name, TapeRef *out) {
         if (strcmp(functions[i].name, name) != 0) continue;
         if (!read_arguments(e, arguments, functions[i].arity)) return false;
         Span span = e->reader->source->span;
+        if (functions[i].op == TAPE_MOD) check_divisor(e, arguments[1]);
         *out = functions[i].arity == 1 ? tape_unary(e->tape, functions[i].op, arguments[0], span)
                                        : tape_binary(e->tape, functions[i].op, arguments[0], arguments[1], span);
         return true;
@@ -178,6 +192,16 @@ static bool read_unary(Expression *e, TapeRef *out) {
     return done;
 }
 
+static bool read_right(Expression *e, const Operator *op, TapeRef left, TapeRef *out) {
+    TapeRef counted = e->counts;
+    bool decides = op->op == TAPE_AND || op->op == TAPE_OR;
+    if (decides) e->counts = tape_binary(e->tape, TAPE_AND, counted, op->op == TAPE_AND ? left : is_zero(e, left), e->reader->source->span);
+    bool done = read_level(e, op->level + 1, out);
+    e->counts = counted;
+    if (done && (op->op == TAPE_DIV || op->op == TAPE_MOD)) check_divisor(e, *out);
+    return done;
+}
+
 static bool read_level(Expression *e, int level, TapeRef *out) {
     if (level == UNARY_LEVEL) return read_unary(e, out);
     if (!read_level(e, level + 1, out)) return false;
@@ -187,12 +211,19 @@ static bool read_level(Expression *e, int level, TapeRef *out) {
         if (!op) return true;
         TapeRef right;
         e->reader->at += strlen(op->text);
-        if (!read_level(e, level + 1, &right)) return false;
+        if (!read_right(e, op, *out, &right)) return false;
         *out = tape_binary(e->tape, op->op, *out, right, e->reader->source->span);
     }
 }
 
+/* Comparisons and min() would hide the infinity that a division by zero makes: 0/0 is added there. */
 bool lsystem_expression(LSystemReader *reader, LSystemScope *scope, TapeBuilder *tape, TapeRef *out) {
-    Expression e = {reader, scope, tape, 0};
-    return read_level(&e, 0, out);
+    Expression e = {reader, scope, tape, tape_constant(tape, 1), tape_constant(tape, 0), 0};
+    double known;
+    if (!read_level(&e, 0, out)) return false;
+    if (tape_is_constant(tape, e.faulty, &known) && known == 0) return true;
+    Span span = reader->source->span;
+    TapeRef sound = tape_binary(tape, TAPE_EQ, e.faulty, tape_constant(tape, 0), span);
+    *out = tape_binary(tape, TAPE_ADD, *out, tape_binary(tape, TAPE_DIV, tape_constant(tape, 0), sound, span), span);
+    return true;
 }

@@ -161,6 +161,7 @@ static void polygons_have_their_area(void **state) {
         {"{F+F+F-F+F+F+(0)F(1)+F}", 3},                /* an L: not convex */
         {"[{.][+f.][f.]}", 0.5},                          /* corners from branches */
         {"{f(3)+f(3)+f(3)+f(3)+&{f+f+f+f}}", 10},         /* one within another */
+        {"{f(3)+f(3)+f(3)+f(3)+(135)f(1.4142135623730951)+(45)f-f-f-f+(45)f(1.4142135623730951)}", 8}, /* a hole, and a cut to it */
         {"{f}{f f f}", 0},                                /* none: too few corners, and a line */
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

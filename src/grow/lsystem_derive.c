@@ -182,13 +182,18 @@ typedef struct Growth {
     bool changed;
 } Growth;
 
-static bool too_large(const Derivation *d, const Growth *growth) {
-    uint64_t most = d->system->source->most_segments;
-    if (growth->segments <= most && growth->letters / LSYSTEM_LETTERS <= most + 4096 && growth->letters < UINT32_MAX && growth->parameters < UINT32_MAX) return false;
+/* What added most letters in this iteration. */
+static const LSystemText *busiest(const Derivation *d) {
     size_t worst = 0;
     for (size_t k = 1; k < d->system->production_count; k++)
         if (d->letters_added[k] > d->letters_added[worst]) worst = k;
-    const LSystemText *text = d->system->production_count ? d->system->productions[worst].source : &d->system->source->axiom;
+    return d->system->production_count ? d->system->productions[worst].source : &d->system->source->axiom;
+}
+
+static bool too_large(const Derivation *d, const Growth *growth) {
+    uint64_t most = d->system->source->most_segments;
+    if (growth->segments <= most && growth->letters / LSYSTEM_LETTERS <= most + 4096 && growth->letters < UINT32_MAX && growth->parameters < UINT32_MAX) return false;
+    const LSystemText *text = busiest(d);
     if (growth->segments > most)
         diag_error(d->diags, text->span, "the L-system grows past %llu segments in iteration %d, most of all by \"%s\"", (unsigned long long)most,
                    d->iteration, text->text);
@@ -317,7 +322,9 @@ bool lsystem_derive(const LSystem *system, Arena *arena, DiagList *diags, const 
         if (!growth.changed) break;
         work += (double)growth.letters;
         if (work > MOST_WORK) {
-            diag_error(diags, system->source->axiom.span, "the L-system is still at work after %.0f letters, in iteration %d", work, d.iteration);
+            const LSystemText *text = busiest(&d);
+            diag_error(diags, text->span, "the L-system is still at work after %.0f letters, in iteration %d, most of all by \"%s\"", work, d.iteration,
+                       text->text);
             return false;
         }
         LSystemWord next = word_for(&space, arena, d.iteration & 1, &growth);

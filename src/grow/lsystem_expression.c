@@ -21,8 +21,10 @@ static bool read_level(Expression *e, int level, TapeRef *out);
 
 bool lsystem_fail(LSystemReader *reader, const char *what) {
     const LSystemText *source = reader->source;
+    int shown = int_min((int)strlen(reader->at), 20);
+    while (shown > 0 && ((unsigned char)reader->at[shown] & 0xc0) == 0x80) shown--; /* no character is cut */
     if (reader->at < reader->end)
-        diag_error(reader->diags, source->span, "%s before '%.20s' in \"%s\"", what, reader->at, source->text);
+        diag_error(reader->diags, source->span, "%s before '%.*s' in \"%s\"", what, shown, reader->at, source->text);
     else
         diag_error(reader->diags, source->span, "%s at the end of \"%s\"", what, source->text);
     return false;

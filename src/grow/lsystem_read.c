@@ -30,8 +30,9 @@ static LetterList letters_begin(LSystemReader *reader) {
 
 static LSystemLetters letters_end(const LetterList *list) { return (LSystemLetters){list->letters, list->parameter_counts, list->count}; }
 
-/* One letter, any character but those that have another meaning. */
+/* One letter, any character of ASCII but those that have another meaning. */
 static bool read_letter(LSystemReader *reader, char *letter) {
+    if ((unsigned char)*reader->at >= 0x80) return lsystem_fail(reader, "letters are those of ASCII: there is another");
     if (strchr("(),<>:", *reader->at)) return lsystem_fail(reader, "a letter is missing");
     *letter = *reader->at++;
     return true;

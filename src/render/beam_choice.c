@@ -3,8 +3,11 @@
 #include "render/beam_afford.h"
 #include "render/beam_worth.h"
 
-/* Voxels are asked about where geometry takes so many times as long as they are likely to: for each pixel, and for building them, in seconds. */
-static const double DEAR = 1.5, VOXELS_A_PIXEL = 3e-5, BUILDING = 0.5;
+/* Voxels are asked about where geometry takes so many times as long as they are likely to: for each pixel, and for building them, in seconds; for building, besides, by the square
+ * of their resolution. */
+static const double DEAR = 1.5, VOXELS_A_PIXEL = 3e-5, BUILDING = 0.5, BUILDING_FINE = 7e-6;
+/* Voxels that are built to be asked, and may then not be wanted, take no more of the time than this part of what geometry takes. */
+static const double ASKED_SHARE = 1.0 / 8;
 /* How the noise of what is small beside a pixel falls with the samples. */
 static const double NOISE_POWER = 0.6;
 /* The blocks of both drawings as planned. */
@@ -15,11 +18,18 @@ static bool is_open(const CompiledScene *compiled) {
     return !compiled->options->film || compiled->tells; /* frames are drawn alike */
 }
 
+/* What building voxels is likely to take. */
+static double building_seconds(const CompiledScene *compiled) {
+    double finest = 0;
+    for (size_t i = 0; i < compiled->texel_count; i++) finest = fmax(finest, int_min(compiled->texels[i]->finest_seen, TEXEL_LARGEST_RESOLUTION));
+    return compiled->voxels ? 0 : BUILDING + BUILDING_FINE * finest * finest;
+}
+
 bool beam_choice_open(CompiledScene *compiled, BeamPrice *planned) {
     if (!is_open(compiled)) return false;
-    double pixels = (double)compiled->view.width * compiled->view.height, likely = VOXELS_A_PIXEL * pixels + (compiled->voxels ? 0 : BUILDING);
+    double pixels = (double)compiled->view.width * compiled->view.height, building = building_seconds(compiled);
     *planned = (BeamPrice){beam_seconds(compiled, false, compiled->allot_samples), hypot(compiled->allot_error, beam_voxels_error(compiled))};
-    return planned->seconds > DEAR * likely;
+    return planned->seconds > DEAR * (VOXELS_A_PIXEL * pixels + building) && building <= ASKED_SHARE * planned->seconds;
 }
 
 /* How far voxels alone are from what is planned: up to chance, which may make it less than nothing. */

@@ -1,18 +1,19 @@
 #!/usr/bin/env python3
 """The light of stands drawn from voxels alone, relative to `vts reference`.
 
-    bench/stands.py [--vts PATH] [--kinds LIST] [--pixels LIST] [--views LIST] [--suns LIST] [--sides LIST] [--rays N] [--tiling plain|wang]
-                    [--truth FILE] [--terms]
+    bench/stands.py [--vts PATH] [--kinds LIST] [--pixels LIST] [--views LIST] [--suns LIST] [--sides LIST] [--turns LIST] [--rays N]
+                    [--tiling plain|wang] [--truth FILE] [--terms]
 
 Endless stands of one kind fill the picture (20 x 15 pixels, orthographic): wood is red, what is green is green, the ground is blue, and so the three are
 told apart. For each kind, height of the eye (degrees above the horizon), height of the sun and side of it (degrees from behind the viewer: 0 behind, 180
-before him) and number of pixels to a tile (no whole ones: each pixel would see the same of its tile) a line has the mean light of the reference and what voxels make of it: all light; then of wood, green
+before him), turn of both around the vertical (degrees: at 0 the eye looks along rows of the tiles) and number of pixels to a tile (no whole ones: each pixel would see the same of its tile) a line has the mean light of the reference and what voxels make of it: all light; then of wood, green
 and ground by themselves where they make at least a twentieth. With --terms each picture is drawn twice more: what is seen of the three (`seen`, all
 of them equally bright), and how bright it would be without shadows (`facing`), so that the light of each can be told apart into what is seen, how it
 faces the sun, and how much is lit. --truth keeps the references' means in a file and takes them from there: they do not change with voxels.
 Last come, for each number of pixels, the least ratio, the greatest, and the share within 0.9 and 1.1.
 """
 import argparse
+import itertools
 import json
 import math
 import os
@@ -47,9 +48,9 @@ KINDS = {
 }
 SCENE = """%(kind)s
 global_settings { assumed_gamma 1 }
-#declare Eye = vrotate(-z, <%(up)s, 0, 0>);
+#declare Eye = vrotate(vrotate(-z, <%(up)s, 0, 0>), <0, %(turn)s, 0>);
 camera { orthographic location 4000*Eye*Tile/25 look_at 0 right x*20*Tile/%(pixels)s up y*15*Tile/%(pixels)s }
-light_source { 1e7*vrotate(vrotate(-z, <%(sun)s, 0, 0>), <0, %(side)s, 0>), rgb 1 parallel point_at 0 %(shadows)s }
+light_source { 1e7*vrotate(vrotate(-z, <%(sun)s, 0, 0>), <0, %(turn)s + %(side)s, 0>), rgb 1 parallel point_at 0 %(shadows)s }
 #declare Wide = 40*Tile*max(1, 6/%(pixels)s)/sin(radians(%(up)s));
 #declare Field = surface { patch_grid 1, 1 function(u, v) { <Wide*(u - 0.5), 0, Wide*(v - 0.5)> } texture { pigment { rgb <0, 0, 1> } finish { WOODEN } } }
 object { Field }
@@ -60,8 +61,8 @@ FINISHES = {"lit": ("ambient 0 diffuse 0.7, 0.4", "ambient 0 diffuse 0.7"), "fac
 
 
 def means(options, folder, cell, term, exact):
-    kind, up, sun, side, pixels = cell
-    text = SCENE % dict(kind=KINDS[kind], up=up, sun=sun, side=side, pixels=pixels, shadows="shadowless" if term == "facing" else "",
+    kind, up, sun, side, turn, pixels = cell
+    text = SCENE % dict(kind=KINDS[kind], up=up, sun=sun, side=side, turn=turn, pixels=pixels, shadows="shadowless" if term == "facing" else "",
                         laid="Texel", tiling="tiling wang" if options.tiling == "wang" else "")
     text = text.replace("FINISH", FINISHES[term][0]).replace("WOODEN", FINISHES[term][1])
     scene, picture = os.path.join(folder, "s.vts"), os.path.join(folder, "s.pfm")
@@ -98,6 +99,7 @@ def main():
     p.add_argument("--views", default="60,25,12")
     p.add_argument("--suns", default="60,30,10")
     p.add_argument("--sides", default="30,150")
+    p.add_argument("--turns", default="0")
     p.add_argument("--rays", type=int, default=64)
     p.add_argument("--tiling", default="plain")
     p.add_argument("--truth")
@@ -107,21 +109,18 @@ def main():
     truth = json.load(open(options.truth)) if options.truth and os.path.exists(options.truth) else {}
     all_ratios = {}
     with tempfile.TemporaryDirectory() as folder:
-        for kind in options.kinds.split(","):
-            for up in options.views.split(","):
-                for sun in options.suns.split(","):
-                    for side in options.sides.split(","):
-                        for pixels in options.pixels.split(","):
-                            for term in ["lit", "seen", "facing"] if options.terms else ["lit"]:
-                                cell = (kind, up, "45", "0", pixels) if term == "seen" else (kind, up, sun, side, pixels)
-                                asked = cell[:4] + (TRUTH_PIXELS,)
-                                key = " ".join([term, options.tiling, str(options.rays), *asked])
-                                true = kept(truth, options.truth, key, lambda: means(options, folder, asked, term, True))
-                                mine = means(options, folder, cell, term, False)
-                                print("%-6s eye %2s sun %2s side %3s  %4s px %6s  %.4f  %s" %
-                                      (kind, up, sun, side, pixels, term, sum(true), ratios(mine, true)), flush=True)
-                                if term == "lit":
-                                    all_ratios.setdefault(pixels, []).append(sum(mine) / sum(true))
+        lists = [options.kinds, options.views, options.suns, options.sides, options.turns, options.pixels]
+        for cell in itertools.product(*[a.split(",") for a in lists]):
+            for term in ["lit", "seen", "facing"] if options.terms else ["lit"]:
+                kind, up, sun, side, turn, pixels = cell if term != "seen" else (*cell[:2], "45", "0", *cell[4:])
+                asked = (kind, up, sun, side, turn)
+                key = " ".join([term, options.tiling, str(options.rays), *asked])
+                true = kept(truth, options.truth, key, lambda: means(options, folder, (*asked, TRUTH_PIXELS), term, True))
+                mine = means(options, folder, (*asked, pixels), term, False)
+                print("%-6s eye %2s sun %2s side %3s turn %4s  %4s px %6s  %.4f  %s" %
+                      (kind, up, sun, side, turn, pixels, term, sum(true), ratios(mine, true)), flush=True)
+                if term == "lit":
+                    all_ratios.setdefault(pixels, []).append(sum(mine) / sum(true))
     for pixels, r in all_ratios.items():
         print("%s pixels a tile: %.2f to %.2f, mean %.3f, rms of log %.3f, within a tenth %d of %d" %
               (pixels, min(r), max(r), sum(r) / len(r), math.sqrt(sum(math.log(x) ** 2 for x in r) / len(r)), sum(0.9 <= x <= 1.1 for x in r), len(r)))

@@ -48,7 +48,8 @@ static const float SHADOW_WORTH = 1.0f / 512;
 enum { MOST_SHADOW_POINTS = 2 };
 /* Between the first matter that is seen and what lies deeper light may fall to nothing: of so much light one shadow in the middle is not enough. */
 static const float SHADOWS_PER_LIGHT = 24;
-
+/* Less visibility than this does not tell how it falls. */
+static const float DARKEST_OF_FALL = 0.002f;
 
 void tracer_init(Tracer *tracer, const CompiledScene *compiled, Arena *arena) {
     *tracer = (Tracer){.compiled = compiled,
@@ -240,6 +241,15 @@ static float record_visibility(Tracer *tr, const Light *light, const Cone *cone,
     return visible > 0 ? clear * visible * skin_light_through(&tr->light, &shadow, ray.distance, (int)r->skin, to_eye) : 0;
 }
 
+/* The visibility at t, known at 0 and 1. Light falls exponentially with the matter that it has passed, and in voxels that are as large as the layer is high to
+ * a third and less from one record to the next: before the first place that is asked there is far more of it. Where anything is quite dark there is an
+ * edge between the two, of which nothing is known. */
+static float visibility_beside(float a, float b, float t) {
+    t = float_clamp(t, -1, 2);
+    if (!(float_min(a, b) > DARKEST_OF_FALL)) return float_max(0, a + (b - a) * float_clamp(t, 0, 1));
+    return float_min(a * powf(b / a, t), float_max(1, float_max(a, b)));
+}
+
 /* Light of one source over the records with shadows. Visibility is found at a few records, at equal shares of the light
  * that is to be tested, and interpolated over that share in between: neighbours along a cone have nearly the same shadow. */
 static Vec3f add_shadowed(Tracer *tr, const Cone *cone, size_t count, size_t light_index) {
@@ -279,10 +289,8 @@ static Vec3f add_shadowed(Tracer *tr, const Cone *cone, size_t count, size_t lig
         float light_here = luminance(direct[i * stride]), middle = passed + light_here / 2;
         float visible = 1;
         if (points) {
-            while (k + 1 < points && at[k + 1] <= middle) k++;
-            visible = seen[k];
-            if (middle > at[k] && k + 1 < points && at[k + 1] > at[k])
-                visible += (seen[k + 1] - seen[k]) * (middle - at[k]) / (at[k + 1] - at[k]);
+            while (k + 2 < points && at[k + 1] <= middle) k++;
+            visible = k + 1 < points && at[k + 1] > at[k] ? visibility_beside(seen[k], seen[k + 1], (middle - at[k]) / (at[k + 1] - at[k])) : seen[k];
         }
         sum = vec3f_madd(sum, direct[i * stride], visible);
         passed += light_here;

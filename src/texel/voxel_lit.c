@@ -15,6 +15,8 @@ enum { MOST_EYE_SIDE = 10, MOST_EYE_RAYS = MOST_EYE_SIDE * MOST_EYE_SIDE, GROUND
 static const float EYE_STEP = 1.6f, LIT_STEP = 2, LAYER_STEP = 0.3f;
 /* Where the renderer's shadows take voxels of some level, the eye's are finer by so many: by the eye's levels powers for matter are kept. */
 static const float FINER_TO_EYE = 1.5f;
+/* Cones of the eye that are thinner than the finest voxels are followed by the light's, until these are, too, so many levels later. */
+enum { LEVELS_BEYOND = 2 };
 /* Light that is less than this makes no difference. */
 static const float DARK_BELOW = 1.0f / 256;
 /* Shares are held within these before they are compared. */
@@ -180,7 +182,7 @@ static void face_all(const LitWay *to_eye, Vec3f p, const Vec3f *lights, int at,
 }
 
 static void find_places(const PowerWork *work, int from_top, int eye, LitPlaces *out) {
-    float top = (float)(work->layer->levels - 1), lod = top - (float)from_top;
+    float top = (float)(work->layer->levels - 1), wanted = top - (float)from_top, lod = float_max(0, wanted);
     Vec3f d = work->d[eye], beside = direction_beside(d);
     LitWay to_eye = way_along(work->among, lod, d, EYE_STEP);
     out->count = 0, out->all = 0;
@@ -191,7 +193,7 @@ static void find_places(const PowerWork *work, int from_top, int eye, LitPlaces 
         float part = (float)((ray + 1) * 0.6180339887 - floor((ray + 1) * 0.6180339887));
         float weight = look_down(&to_eye, place_of(work, ray, side, lot), part, &at);
         if (!(weight > 0)) continue;
-        float coarser = float_min(top, floorf(lod + FINER_TO_EYE) + (float)(ray & 1)); /* by turns, which is half of the work of both */
+        float coarser = float_clamp(floorf(wanted + FINER_TO_EYE) + (float)(ray & 1), 0, top); /* by turns, which is half of the work of both */
         for (int light = 0; light <= PAIR_NODES; light++) {
             LitWay way = way_along(work->among, coarser, light < PAIR_NODES ? work->d[light] : beside, LIT_STEP);
             out->share[light][out->count] = light_at(&way, at, light_facing(vec3f_dot(d, way.d)));
@@ -283,9 +285,10 @@ static void find_ground_powers(PowerWork *work, int from_top) {
 
 static void find_powers(void *context, size_t number, int worker) {
     (void)worker;
+    PowerWork *work = context;
     int from_top = (int)number / (PAIR_NODES + 1), node = (int)number % (PAIR_NODES + 1);
-    if (node < PAIR_NODES) find_matter_powers(context, from_top, node);
-    else find_ground_powers(context, from_top);
+    if (node < PAIR_NODES) find_matter_powers(work, from_top, node);
+    else if (from_top < work->layer->levels) find_ground_powers(work, from_top);
 }
 
 /* Where eye and light are nearly one, what holds a little beside that is taken for all directions. */
@@ -319,12 +322,13 @@ bool voxel_layer_find_powers(VoxelLayer *layer, const LitTruth *truth, const Lit
     voxel_layer_forget_powers(layer);
     for (int i = 0; i < PAIR_NODES; i++) work.d[i] = pair_direction(i);
     if (!pair_opens(truth->views, PAIR_NODES, truth->grid, work.open)) return false;
-    bool done = pool_run(pool, (size_t)(levels * (PAIR_NODES + 1)), find_powers, &work);
-    for (int i = 0; i < levels; i++) {
+    int known = levels == layer->levels ? int_min(levels + LEVELS_BEYOND, TRIM_LEVELS) : levels;
+    bool done = pool_run(pool, (size_t)(known * (PAIR_NODES + 1)), find_powers, &work);
+    for (int i = 0; i < known; i++) {
         lay_peak(layer->pairs.matter[i], truth->lit_beside, work.matter_beside[i], 1);
         for (int side = 0; side < 2; side++) flatten_peak(layer->pairs.facing[side][i]);
         flatten_peak(layer->pairs.ground[i]);
-        if (truth->open_beside >= 0) lay_peak(layer->pairs.ground[i], truth->open_beside, work.ground_beside[i], certainty(truth->triangles, SOME_TRIANGLES));
+        if (truth->open_beside >= 0 && i < levels) lay_peak(layer->pairs.ground[i], truth->open_beside, work.ground_beside[i], certainty(truth->triangles, SOME_TRIANGLES));
     }
     return done;
 }
@@ -334,8 +338,9 @@ bool voxel_layer_find_powers(VoxelLayer *layer, const LitTruth *truth, const Lit
 typedef uint8_t PairCodes[PAIR_NODES * PAIR_NODES];
 
 static float power_at(const VoxelLayer *layer, const PairCodes *codes, float lod, const PairPlace *place) {
-    float from_top = float_clamp((float)(layer->levels - 1) - lod, 0, TRIM_LEVELS - 1);
-    int level = int_min((int)from_top, TRIM_LEVELS - 2);
+    int known = int_min(layer->levels + LEVELS_BEYOND, TRIM_LEVELS);
+    float from_top = float_clamp((float)(layer->levels - 1) - lod, 0, (float)(known - 1));
+    int level = int_clamp((int)from_top, 0, TRIM_LEVELS - 2);
     float t = from_top - (float)level, sum = 0;
     for (int i = 0; i < PAIR_CORNERS; i++)
         sum += place->weight[i] * ((1 - t) * (float)codes[level][place->entry[i]] + t * (float)codes[level + 1][place->entry[i]]);

@@ -1,5 +1,5 @@
 /* What eye and light have in common, against rays through the triangles. */
-#include "texel/voxel_pairs.h"
+#include "texel/voxel_lit.h"
 
 #include "base/random.h"
 
@@ -20,7 +20,7 @@ typedef struct Meadow {
 } Meadow;
 
 /* Triangles that stand anywhere in a unit cube, `wide` at the foot, all leaning a little. */
-static void grow(Meadow *m, int blades, float wide) {
+static void grow(Meadow *m, int blades, float wide, int resolution) {
     static uint32_t triangles[DENSE][3];
     m->blades = blades;
     for (int i = 0; i < blades; i++) {
@@ -33,7 +33,7 @@ static void grow(Meadow *m, int blades, float wide) {
         for (int k = 0; k < 3; k++) triangles[i][k] = (uint32_t)(3 * i + k);
     }
     TexelMesh mesh = {.vertices = m->vertices, .vertex_count = 3 * (size_t)blades, .triangles = (const uint32_t(*)[3])triangles, .triangle_count = (size_t)blades};
-    TexelBuildOptions options = {.resolution = 32, .extent = {1, 1, 1}, .cyclic = TEXEL_CYCLIC_X | TEXEL_CYCLIC_Z};
+    TexelBuildOptions options = {.resolution = resolution, .extent = {1, 1, 1}, .cyclic = TEXEL_CYCLIC_X | TEXEL_CYCLIC_Z};
     m->layer = voxel_layer_build(&mesh, &options, NULL);
     assert_non_null(m->layer);
 }
@@ -77,7 +77,7 @@ static void shares_are_those_of_rays(void **state) {
     } ways[] = {{{0.3, 1, 0.2}, {0.9, 1, -0.4}}, {{-0.8, 1, 0.5}, {0.7, 1, -0.2}}, {{0.8, 1, 0.3}, {0.8, 1, 0.31}}, {{0.8, 1, 0.3}, {0.7, 1, 0.45}}, {{0.1, 1, -1.2}, {0.8, 1, -0.7}}};
     Meadow m;
     int close = 0;
-    grow(&m, BLADES, 0.12f);
+    grow(&m, BLADES, 0.12f, 32);
     for (size_t i = 0; i < VTS_ARRAY_COUNT(ways); i++) {
         Vec3 eye = vec3_normalize(ways[i].eye), light = vec3_normalize(ways[i].light);
         Shares truth = shares_of(&m, 60, eye, light);
@@ -100,7 +100,7 @@ static void shares_of_dense_matter_are_those_of_rays(void **state) {
     static const Vec3 ways[][2] = {{{0.3, 1, 0.2}, {0.9, 1, -0.4}}, {{-0.8, 1, 0.5}, {0.7, 1, -0.2}}, {{0.1, 1, -1.2}, {0.8, 1, -0.7}}};
     Meadow m;
     double off = 0;
-    grow(&m, DENSE, 0.04f);
+    grow(&m, DENSE, 0.04f, 32);
     for (size_t i = 0; i < VTS_ARRAY_COUNT(ways); i++) {
         Vec3 eye = vec3_normalize(ways[i][0]), light = vec3_normalize(ways[i][1]);
         Shares truth = shares_of(&m, 24, eye, light);
@@ -115,18 +115,31 @@ static void shares_of_dense_matter_are_those_of_rays(void **state) {
 static void wide_blades_have_a_wide_spot(void **state) {
     (void)state;
     Meadow thin, wide;
-    grow(&thin, BLADES, 0.04f);
-    grow(&wide, BLADES, 0.16f);
+    grow(&thin, BLADES, 0.04f, 32);
+    grow(&wide, BLADES, 0.16f, 32);
     assert_true(thin.layer->pairs.spot > 0 && wide.layer->pairs.spot > 1.5f * thin.layer->pairs.spot);
     voxel_layer_destroy(thin.layer);
     voxel_layer_destroy(wide.layer);
+}
+
+/* Cones of the eye may be thinner than the finest voxels. */
+static void finest_voxels_have_powers_for_thin_cones(void **state) {
+    (void)state;
+    const Vec3f eye = pair_direction(1), light = pair_direction(0);
+    Meadow m;
+    grow(&m, DENSE, 0.04f, 8);
+    float fine = voxel_layer_matter_power(m.layer, 0, eye, light), finer = voxel_layer_matter_power(m.layer, -8, eye, light);
+    print_message("powers: eye's and light's voxels the finest %.3f, the cones thinner by far %.3f\n", (double)fine, (double)finer);
+    assert_true(fabsf(logf(fine)) > 0.05f);
+    assert_float_equal(logf(finer), logf(fine), 0.25f * fabsf(logf(fine)));
+    voxel_layer_destroy(m.layer);
 }
 
 static void odd_directions_are_harmless(void **state) {
     (void)state;
     static const Vec3f odd[] = {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, {NAN, 1, 0}, {INFINITY, 1, 0}, {0, 1e-30f, 0}, {1e30f, 1e30f, 0}};
     Meadow m;
-    grow(&m, BLADES, 0.1f);
+    grow(&m, BLADES, 0.1f, 32);
     for (size_t i = 0; i < VTS_ARRAY_COUNT(odd); i++)
         for (size_t k = 0; k < VTS_ARRAY_COUNT(odd); k++) {
             float lit = voxel_layer_lit_pair(m.layer, odd[i], odd[k]), spot = voxel_layer_spot(m.layer, odd[i], odd[k]);
@@ -141,6 +154,6 @@ static void odd_directions_are_harmless(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(shares_are_those_of_rays), cmocka_unit_test(shares_of_dense_matter_are_those_of_rays), cmocka_unit_test(wide_blades_have_a_wide_spot),
-                                       cmocka_unit_test(odd_directions_are_harmless)};
+                                       cmocka_unit_test(finest_voxels_have_powers_for_thin_cones), cmocka_unit_test(odd_directions_are_harmless)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

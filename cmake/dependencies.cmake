@@ -8,10 +8,30 @@ pkg_check_modules(ZLIB REQUIRED IMPORTED_TARGET zlib) # which FreeType needs, to
 pkg_check_modules(ASSIMP REQUIRED IMPORTED_TARGET assimp)
 
 # GeographicLib: newer packages bring a config file, Debian 12 only a .pc file.
+# Where there is an archive of it that fits into a shared library it is taken, and libstdc++ goes the same way: nothing else
+# asks for it, and its many symbols cost every start more than a millisecond.
 find_package(GeographicLib CONFIG QUIET)
-if(NOT TARGET GeographicLib::GeographicLib)
+set(GEOGRAPHICLIB_OPTIONS -static-libstdc++ -static-libgcc -Wl,--exclude-libs,ALL)
+find_library(GEOGRAPHICLIB_ARCHIVE NAMES ${CMAKE_STATIC_LIBRARY_PREFIX}GeographicLib${CMAKE_STATIC_LIBRARY_SUFFIX} ${CMAKE_STATIC_LIBRARY_PREFIX}Geographic${CMAKE_STATIC_LIBRARY_SUFFIX})
+if(GEOGRAPHICLIB_ARCHIVE AND NOT VTS_SANITIZE AND NOT VTS_FUZZ)
+  include(CheckCXXSourceCompiles)
+  set(CMAKE_REQUIRED_LINK_OPTIONS -shared ${GEOGRAPHICLIB_OPTIONS})
+  set(CMAKE_REQUIRED_LIBRARIES ${GEOGRAPHICLIB_ARCHIVE})
+  check_cxx_source_compiles("#include <GeographicLib/Geodesic.hpp>
+    double f() { double x; return GeographicLib::Geodesic::WGS84().Inverse(0, 0, 1, 1, x); }" GEOGRAPHICLIB_ARCHIVE_FITS)
+  unset(CMAKE_REQUIRED_LIBRARIES)
+  unset(CMAKE_REQUIRED_LINK_OPTIONS)
+endif()
+if(GEOGRAPHICLIB_ARCHIVE_FITS)
+  add_library(vts_geographiclib INTERFACE)
+  target_link_libraries(vts_geographiclib INTERFACE ${GEOGRAPHICLIB_ARCHIVE})
+  target_link_options(vts_geographiclib INTERFACE ${GEOGRAPHICLIB_OPTIONS})
+  set(VTS_GEOGRAPHICLIB vts_geographiclib)
+elseif(TARGET GeographicLib::GeographicLib)
+  set(VTS_GEOGRAPHICLIB GeographicLib::GeographicLib)
+else()
   pkg_check_modules(GEOGRAPHICLIB REQUIRED IMPORTED_TARGET geographiclib)
-  add_library(GeographicLib::GeographicLib ALIAS PkgConfig::GEOGRAPHICLIB)
+  set(VTS_GEOGRAPHICLIB PkgConfig::GEOGRAPHICLIB)
 endif()
 
 # OpenImageIO through its .pc file: Debian's exported CMake target names an include folder and a program of packages that

@@ -3,7 +3,7 @@ install(TARGETS vts vts_lib
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   PUBLIC_HEADER DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(TARGETS vts_oiio vts_geotiff vts_mesh
+install(TARGETS vts_oiio vts_geotiff vts_embree vts_freetype vts_mesh
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/vts
   RUNTIME DESTINATION ${CMAKE_INSTALL_LIBDIR}/vts)
 foreach(folder stdlib examples)

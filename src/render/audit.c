@@ -70,7 +70,7 @@ static bool make_truth(CompiledScene *compiled, CompiledScene *truth) {
     }
     if (compiled->skin_count == 0) return true;
     if (!make_texels(compiled, &unheard)) return false;
-    truth->exact = exact_skins_build(compiled->skins, compiled->skin_count, hierarchy_device(compiled->hierarchy));
+    truth->exact = exact_skins_build(compiled->skins, compiled->skin_count, hierarchy_embree(compiled->hierarchy));
     return truth->exact != NULL;
 }
 

@@ -40,6 +40,7 @@ typedef struct RigidTexel {
 } RigidTexel;
 
 struct RigidCopies {
+    const EmbreeShim *rtc;
     RTCScene scene;
     Vec3 origin;         /* from which places count: the eye, around which they must be finest */
     Box3 bounds;
@@ -154,7 +155,7 @@ bool skin_is_rigid(const CompiledSkin *skin) {
 
 typedef struct Building {
     CompiledScene *compiled;
-    RTCDevice device;
+    const Embree *embree;
     RigidCopies *out;
     struct {
         RigidCopy *items;
@@ -223,11 +224,12 @@ static RigidTexel *texel_like(Building *b, const RigidTexel *like, const BeamTex
     *texel = *like;
     texel->beam = beam;
     texel->next = b->out->texels;
-    rtcRetainScene(texel->scene);
+    b->embree->rtc->RetainScene(texel->scene);
     return b->out->texels = texel;
 }
 
 static RigidTexel *texel_of(Building *b, const BeamTexel *beam) {
+    const EmbreeShim *rtc = b->embree->rtc;
     for (RigidTexel *t = b->out->texels; t; t = t->next)
         if (t->beam == beam) return t;
     for (RigidTexel *t = b->out->texels; t; t = t->next)
@@ -236,28 +238,29 @@ static RigidTexel *texel_of(Building *b, const BeamTexel *beam) {
     uint32_t *facets = arena_new_array(b->compiled->arena, uint32_t, beam->triangle_count);
     size_t vertices = 0;
     for (size_t c = 0; c < beam->cluster_count; c++) vertices += (size_t)beam->clusters[c].vertex_count;
-    *texel = (RigidTexel){beam, rtcNewScene(b->device), false, facets, b->out, b->out->texels};
+    *texel = (RigidTexel){beam, rtc->NewScene(b->embree->device), false, facets, b->out, b->out->texels};
     b->out->texels = texel;
-    RTCGeometry geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices);
-    unsigned *t = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), beam->triangle_count);
+    RTCGeometry geometry = rtc->NewGeometry(b->embree->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    float *v = rtc->SetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices);
+    unsigned *t = rtc->SetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), beam->triangle_count);
     if (v && t) fill_texel(beam, v, t, facets);
-    rtcSetGeometryUserData(geometry, texel);
-    rtcSetSceneFlags(texel->scene, RTC_SCENE_FLAG_ROBUST);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(texel->scene, geometry, 0);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(texel->scene);
+    rtc->SetGeometryUserData(geometry, texel);
+    rtc->SetSceneFlags(texel->scene, RTC_SCENE_FLAG_ROBUST);
+    rtc->CommitGeometry(geometry);
+    rtc->AttachGeometryByID(texel->scene, geometry, 0);
+    rtc->ReleaseGeometry(geometry);
+    rtc->CommitScene(texel->scene);
     return texel;
 }
 
 /* Hits of whole copies are not asked for: that takes time. */
 static void have_cut(RigidTexel *texel) {
-    RTCGeometry geometry = rtcGetGeometry(texel->scene, 0);
-    rtcSetGeometryIntersectFilterFunction(geometry, leave_cut_off);
-    rtcSetGeometryOccludedFilterFunction(geometry, leave_cut_off);
-    rtcCommitGeometry(geometry);
-    rtcCommitScene(texel->scene);
+    const EmbreeShim *rtc = texel->copies->rtc;
+    RTCGeometry geometry = rtc->GetGeometry(texel->scene, 0);
+    rtc->SetGeometryIntersectFilterFunction(geometry, leave_cut_off);
+    rtc->SetGeometryOccludedFilterFunction(geometry, leave_cut_off);
+    rtc->CommitGeometry(geometry);
+    rtc->CommitScene(texel->scene);
     texel->cut = true;
 }
 
@@ -285,6 +288,7 @@ static void put_column(float *out, Vec3 v) {
 }
 
 static void add_copy(Building *b, const RigidCopy *r) {
+    const EmbreeShim *rtc = b->embree->rtc;
     const Vec3 *foot = r->cell->foot.c, high = r->cell->height.c[0];
     float columns[12];
     Vec3 from = vec3_madd(vec3_madd(vec3_madd(foot[0], foot[1], r->a_0), foot[2], r->b_0), high, r->w_0);
@@ -294,12 +298,12 @@ static void add_copy(Building *b, const RigidCopy *r) {
     put_column(columns + 9, vec3_sub(from, b->out->origin));
     RigidTexel *texel = texel_of(b, r->copy.texel->beam);
     if (r->cut && !texel->cut) have_cut(texel);
-    RTCGeometry geometry = rtcNewGeometry(b->device, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(geometry, texel->scene);
-    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(b->out->scene, geometry, (unsigned)b->copies.count);
-    rtcReleaseGeometry(geometry);
+    RTCGeometry geometry = rtc->NewGeometry(b->embree->device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtc->SetGeometryInstancedScene(geometry, texel->scene);
+    rtc->SetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+    rtc->CommitGeometry(geometry);
+    rtc->AttachGeometryByID(b->out->scene, geometry, (unsigned)b->copies.count);
+    rtc->ReleaseGeometry(geometry);
     *list_push(b->compiled->arena, &b->copies) = *r;
 }
 
@@ -356,15 +360,15 @@ RigidCopies *rigid_copies_build(CompiledScene *compiled) {
         if (skin->rigid) skin->exact_to = exact_to; /* a ray ends at one distance */
     }
     if (!tiles || too_many) return NULL;
-    RTCDevice device = hierarchy_device(compiled->hierarchy);
+    const Embree *embree = hierarchy_embree(compiled->hierarchy);
     RigidCopies *out = arena_new(compiled->arena, RigidCopies);
-    *out = (RigidCopies){.scene = rtcNewScene(device), .origin = compiled->view.camera.location, .bounds = box3_empty(),
-                         .lanes = bundle_lanes(device)};
-    Building b = {.compiled = compiled, .device = device, .out = out};
-    rtcSetSceneFlags(out->scene, RTC_SCENE_FLAG_ROBUST);
+    *out = (RigidCopies){.rtc = embree->rtc, .scene = embree->rtc->NewScene(embree->device), .origin = compiled->view.camera.location, .bounds = box3_empty(),
+                         .lanes = bundle_lanes(embree)};
+    Building b = {.compiled = compiled, .embree = embree, .out = out};
+    embree->rtc->SetSceneFlags(out->scene, RTC_SCENE_FLAG_ROBUST);
     for (size_t i = 0; i < compiled->skin_count; i++)
         if (compiled->skins[i].rigid) add_skin(&b, out->skin = &compiled->skins[i]);
-    rtcCommitScene(out->scene);
+    embree->rtc->CommitScene(out->scene);
     out->items = b.copies.items;
     out->count = b.copies.count;
     return out;
@@ -372,8 +376,8 @@ RigidCopies *rigid_copies_build(CompiledScene *compiled) {
 
 void rigid_copies_destroy(RigidCopies *copies) {
     if (!copies) return;
-    rtcReleaseScene(copies->scene);
-    for (RigidTexel *t = copies->texels; t; t = t->next) rtcReleaseScene(t->scene);
+    copies->rtc->ReleaseScene(copies->scene);
+    for (RigidTexel *t = copies->texels; t; t = t->next) copies->rtc->ReleaseScene(t->scene);
 }
 
 bool rigid_meets(const RigidCopies *copies, const Beam *beam) { return beam_meets_box(beam, &copies->bounds); }
@@ -419,7 +423,7 @@ static uint32_t mark_of(Seeing *s, uint32_t copy, uint32_t triangle) {
 
 static void take_hits(Seeing *s, RayBundle *bundle) {
     BeamSamples *samples = &s->draft->beam->samples;
-    if (bundle->count) bundle_intersect(bundle, s->copies->scene);
+    if (bundle->count) bundle_intersect(bundle, s->copies->rtc, s->copies->scene);
     for (int i = 0; i < bundle->count; i++) {
         uint32_t at = bundle->sample[i], copy = bundle_hit(bundle, HIT_COPY, i)->number;
         float t = bundle_cell(bundle, RAY_FAR, i)->real, key = s->draft->beam->perspective ? 1 / t : -t;
@@ -474,7 +478,7 @@ uint64_t rigid_see(const RigidCopies *copies, BeamDraft *draft, Vec3 corner, Vec
 /* ---- shadows ---- */
 
 static void hide_hits(const RigidCopies *copies, RayBundle *bundle, uint8_t *hidden) {
-    if (bundle->count) bundle_occlude(bundle, copies->scene);
+    if (bundle->count) bundle_occlude(bundle, copies->rtc, copies->scene);
     for (int i = 0; i < bundle->count; i++)
         if (bundle_cell(bundle, RAY_FAR, i)->real < 0) hidden[bundle->sample[i]] = 1;
     bundle_clear(bundle);

@@ -45,6 +45,7 @@ typedef struct ClusterTriangleList {
 
 struct Cluster {
     RTCScene scene; /* NULL where there are few items */
+    const struct Embree *embree; /* whose scene that is */
     Vec3 origin;   /* Embree's floats count from here */
     Box3 bounds;   /* of what Embree knows */
     Box3 box;      /* of everything, infinite where something is endless */

@@ -257,7 +257,7 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     status = detail == DETAIL_AUTO ? choose_detail_by_price(options, diags, out) : COMPILE_OK;
     if (status != COMPILE_OK) return status;
     budget_trial(out);
-    if (options->exact && out->skin_count) out->exact = exact_skins_build(out->skins, out->skin_count, hierarchy_device(out->hierarchy));
+    if (options->exact && out->skin_count) out->exact = exact_skins_build(out->skins, out->skin_count, hierarchy_embree(out->hierarchy));
     if (options->exact && out->skin_count && !out->exact) memory_budget_fail(options->memory);
     out->build_seconds = stopwatch_wall() - start;
     out->options = NULL;

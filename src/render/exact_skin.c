@@ -1,10 +1,10 @@
 #include "render/exact_skin.h"
 
+#include "render/embree_module.h"
 #include "render/embree_ray.h"
 #include "render/skin_cross.h"
 #include "render/skin_fold.h"
 
-#include <embree3/rtcore.h>
 #include <stdlib.h>
 
 /* A cell as the hierarchy knows it. */
@@ -18,6 +18,7 @@ typedef struct ExactCell {
 } ExactCell;
 
 struct ExactSkins {
+    const EmbreeShim *rtc;
     RTCScene scene;
     ExactCell *cells;
     size_t cell_count;
@@ -421,31 +422,31 @@ static bool collect_cells(ExactSkins *exact, const CompiledSkin *skins, size_t c
     return true;
 }
 
-ExactSkins *exact_skins_build(const CompiledSkin *skins, size_t count, void *embree_device) {
+ExactSkins *exact_skins_build(const CompiledSkin *skins, size_t count, const Embree *embree) {
     ExactSkins *exact = calloc(1, sizeof *exact);
     if (!exact || !collect_cells(exact, skins, count)) {
         free(exact);
         return NULL;
     }
-    RTCDevice device = embree_device;
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)exact->cell_count);
-    rtcSetGeometryUserData(geometry, exact);
-    rtcSetGeometryBoundsFunction(geometry, bound_exactly, NULL);
-    rtcSetGeometryIntersectFunction(geometry, intersect_exactly);
-    rtcSetGeometryOccludedFunction(geometry, occlude_exactly);
-    rtcCommitGeometry(geometry);
-    exact->scene = rtcNewScene(device);
-    rtcSetSceneFlags(exact->scene, RTC_SCENE_FLAG_ROBUST);
-    rtcAttachGeometry(exact->scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(exact->scene);
+    const EmbreeShim *rtc = exact->rtc = embree->rtc;
+    RTCGeometry geometry = rtc->NewGeometry(embree->device, RTC_GEOMETRY_TYPE_USER);
+    rtc->SetGeometryUserPrimitiveCount(geometry, (unsigned)exact->cell_count);
+    rtc->SetGeometryUserData(geometry, exact);
+    rtc->SetGeometryBoundsFunction(geometry, bound_exactly, NULL);
+    rtc->SetGeometryIntersectFunction(geometry, intersect_exactly);
+    rtc->SetGeometryOccludedFunction(geometry, occlude_exactly);
+    rtc->CommitGeometry(geometry);
+    exact->scene = rtc->NewScene(embree->device);
+    rtc->SetSceneFlags(exact->scene, RTC_SCENE_FLAG_ROBUST);
+    rtc->AttachGeometry(exact->scene, geometry);
+    rtc->ReleaseGeometry(geometry);
+    rtc->CommitScene(exact->scene);
     return exact;
 }
 
 void exact_skins_destroy(ExactSkins *exact) {
     if (!exact) return;
-    rtcReleaseScene(exact->scene);
+    exact->rtc->ReleaseScene(exact->scene);
     free(exact->cells);
     free(exact);
 }
@@ -496,7 +497,7 @@ bool exact_skins_intersect(const ExactSkins *exact, const Ray *ray, double t_min
     Walk w;
     struct RTCRayHit rayhit = {.hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
     if (!begin_walk(&w, exact, ray, t_min, t_max, false, counters, &rayhit.ray)) return false;
-    rtcIntersect1(exact->scene, &w.context, &rayhit);
+    exact->rtc->Intersect1(exact->scene, &w.context, &rayhit);
     if (!w.found) return false;
     *hit = describe(&w);
     return true;
@@ -506,6 +507,6 @@ bool exact_skins_occluded(const ExactSkins *exact, const Ray *ray, double t_min,
     Walk w;
     struct RTCRay shadow;
     if (!begin_walk(&w, exact, ray, t_min, t_max, true, counters, &shadow)) return false;
-    rtcOccluded1(exact->scene, &w.context, &shadow);
+    exact->rtc->Occluded1(exact->scene, &w.context, &shadow);
     return w.found;
 }

@@ -21,8 +21,9 @@ typedef struct SkinHit {
     Vec3 place_normal; /* the normal there, unit or zero */
 } SkinHit;
 
+struct Embree;
 /* The cells of all skins, whose texels were compiled as exact, under one hierarchy. The skins must stay. NULL when memory is out. */
-ExactSkins *exact_skins_build(const CompiledSkin *skins, size_t count, void *embree_device);
+ExactSkins *exact_skins_build(const CompiledSkin *skins, size_t count, const struct Embree *embree);
 /* Also of NULL. */
 void exact_skins_destroy(ExactSkins *exact);
 

@@ -1,6 +1,7 @@
 #include "render/hierarchy.h"
 
 #include "render/blockers.h"
+#include "render/embree_module.h"
 #include "render/embree_ray.h"
 #include "render/hit.h"
 #include "render/thin.h"
@@ -8,7 +9,7 @@
 #include "shape/intersect.h"
 
 struct Hierarchy {
-    RTCDevice device;
+    Embree embree;
     ClusterSet set;
     const Cluster *all;
     bool clear; /* something lets light through */
@@ -174,20 +175,22 @@ static void occlude_item(const struct RTCOccludedFunctionNArguments *args) {
     if (meet_item(query, &cluster->items.items[args->primID])) ((struct RTCRay *)(void *)args->ray)->tfar = -INFINITY;
 }
 
-static void attach(RTCScene scene, RTCGeometry geometry, const Cluster *cluster, unsigned id) {
-    rtcSetGeometryUserData(geometry, (void *)(uintptr_t)cluster);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene, geometry, id);
-    rtcReleaseGeometry(geometry);
+static void attach(const Cluster *cluster, RTCGeometry geometry, unsigned id) {
+    const EmbreeShim *rtc = cluster->embree->rtc;
+    rtc->SetGeometryUserData(geometry, (void *)(uintptr_t)cluster);
+    rtc->CommitGeometry(geometry);
+    rtc->AttachGeometryByID(cluster->scene, geometry, id);
+    rtc->ReleaseGeometry(geometry);
 }
 
-static void attach_solids(RTCDevice device, const Cluster *cluster) {
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)cluster->loose);
-    rtcSetGeometryBoundsFunction(geometry, bound_item, NULL);
-    rtcSetGeometryIntersectFunction(geometry, intersect_item);
-    rtcSetGeometryOccludedFunction(geometry, occlude_item);
-    attach(cluster->scene, geometry, cluster, SOLIDS);
+static void attach_solids(const Cluster *cluster) {
+    const EmbreeShim *rtc = cluster->embree->rtc;
+    RTCGeometry geometry = rtc->NewGeometry(cluster->embree->device, RTC_GEOMETRY_TYPE_USER);
+    rtc->SetGeometryUserPrimitiveCount(geometry, (unsigned)cluster->loose);
+    rtc->SetGeometryBoundsFunction(geometry, bound_item, NULL);
+    rtc->SetGeometryIntersectFunction(geometry, intersect_item);
+    rtc->SetGeometryOccludedFunction(geometry, occlude_item);
+    attach(cluster, geometry, SOLIDS);
 }
 
 static void put_vertex(const Cluster *cluster, float *out, Vec3 p) {
@@ -197,18 +200,20 @@ static void put_vertex(const Cluster *cluster, float *out, Vec3 p) {
 
 /* The mesh's own triangles serve Embree. */
 static bool share_mesh(const Cluster *cluster, RTCGeometry geometry) {
+    const EmbreeShim *rtc = cluster->embree->rtc;
     const MeshData *mesh = cluster->mesh;
-    float *v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh->vertex_count);
+    float *v = rtc->SetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh->vertex_count);
     if (!v) return false;
     for (size_t i = 0; i < mesh->vertex_count; i++) put_vertex(cluster, v + 3 * i, mesh->vertices[i]);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh->triangles, 0, sizeof *mesh->triangles, mesh->triangle_count);
+    rtc->SetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh->triangles, 0, sizeof *mesh->triangles, mesh->triangle_count);
     return true;
 }
 
 static bool fill_single(const Cluster *cluster, RTCGeometry geometry) {
+    const EmbreeShim *rtc = cluster->embree->rtc;
     const size_t count = cluster->triangles.count;
-    float *vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * count);
-    unsigned *indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), count);
+    float *vertices = rtc->SetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * count);
+    unsigned *indices = rtc->SetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), count);
     if (!vertices || !indices) return false;
     for (size_t i = 0; i < cluster->triangles.count; i++) {
         const ClusterTriangle *t = &cluster->triangles.items[i];
@@ -223,30 +228,33 @@ static bool fill_single(const Cluster *cluster, RTCGeometry geometry) {
     return true;
 }
 
-static bool attach_triangles(RTCDevice device, const Cluster *cluster) {
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+static bool attach_triangles(const Cluster *cluster) {
+    const EmbreeShim *rtc = cluster->embree->rtc;
+    RTCGeometry geometry = rtc->NewGeometry(cluster->embree->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     if (!(cluster->mesh ? share_mesh : fill_single)(cluster, geometry)) {
-        rtcReleaseGeometry(geometry);
+        rtc->ReleaseGeometry(geometry);
         return false;
     }
-    rtcSetGeometryIntersectFilterFunction(geometry, filter_triangle);
-    rtcSetGeometryOccludedFilterFunction(geometry, filter_triangle);
-    attach(cluster->scene, geometry, cluster, TRIANGLES);
+    rtc->SetGeometryIntersectFilterFunction(geometry, filter_triangle);
+    rtc->SetGeometryOccludedFilterFunction(geometry, filter_triangle);
+    attach(cluster, geometry, TRIANGLES);
     return true;
 }
 
 /* Of more triangles than this Embree keeps the numbers of their vertices in place of copies. */
 enum { VAST = 2000000 };
 
-static bool commit(RTCDevice device, Cluster *cluster) {
+static bool commit(const Embree *embree, Cluster *cluster) {
+    const EmbreeShim *rtc = embree->rtc;
     bool ok = true;
-    cluster->scene = rtcNewScene(device);
+    cluster->embree = embree;
+    cluster->scene = rtc->NewScene(embree->device);
     const bool vast = cluster->mesh && cluster->mesh->triangle_count > VAST;
-    rtcSetSceneFlags(cluster->scene, vast ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT : RTC_SCENE_FLAG_ROBUST);
-    if (cluster->loose) attach_solids(device, cluster);
-    if (cluster->mesh ? cluster->mesh->triangle_count : cluster->triangles.count) ok = attach_triangles(device, cluster);
-    rtcCommitScene(cluster->scene);
-    return ok && rtcGetDeviceError(device) == RTC_ERROR_NONE;
+    rtc->SetSceneFlags(cluster->scene, vast ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT : RTC_SCENE_FLAG_ROBUST);
+    if (cluster->loose) attach_solids(cluster);
+    if (cluster->mesh ? cluster->mesh->triangle_count : cluster->triangles.count) ok = attach_triangles(cluster);
+    rtc->CommitScene(cluster->scene);
+    return ok && rtc->GetDeviceError(embree->device) == RTC_ERROR_NONE;
 }
 
 /* ---- what the eye can see ---- */
@@ -286,9 +294,11 @@ static bool is_few(const Hierarchy *h) {
 }
 
 bool hierarchy_start_embree(Hierarchy *h, DiagList *diags) {
-    if (!h->device) h->device = rtcNewDevice("threads=1,set_affinity=0");
-    if (!h->device) diag_error(diags, (Span){0}, "Embree cannot be started on this machine");
-    return h->device != NULL;
+    StrBuf why = {0};
+    bool runs = h->embree.device || embree_start(&h->embree, &why);
+    if (!runs) diag_error(diags, (Span){0}, "Embree cannot be started on this machine%s", why.size ? why.data : "");
+    strbuf_free(&why);
+    return runs;
 }
 
 Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags) {
@@ -309,7 +319,7 @@ Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags) {
     /* From here on nothing is taken from the arena: if memory ran out, the device would be lost. */
     if (!is_few(h) && !hierarchy_start_embree(h, diags)) return NULL;
     for (size_t i = 0; i < h->set.clusters.count; i++)
-        if (!h->set.clusters.items[i]->few && !commit(h->device, h->set.clusters.items[i])) {
+        if (!h->set.clusters.items[i]->few && !commit(&h->embree, h->set.clusters.items[i])) {
             hierarchy_destroy(h);
             diag_error(diags, (Span){0}, "there is not enough memory for the objects");
             return NULL;
@@ -320,8 +330,8 @@ Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags) {
 void hierarchy_destroy(Hierarchy *h) {
     if (!h) return;
     for (size_t i = 0; i < h->set.clusters.count; i++)
-        if (h->set.clusters.items[i]->scene) rtcReleaseScene(h->set.clusters.items[i]->scene);
-    if (h->device) rtcReleaseDevice(h->device);
+        if (h->set.clusters.items[i]->scene) h->embree.rtc->ReleaseScene(h->set.clusters.items[i]->scene);
+    embree_stop(&h->embree);
 }
 
 size_t hierarchy_object_count(const Hierarchy *h) { return h->set.part_count; }
@@ -340,7 +350,7 @@ double hierarchy_coarseness(const Hierarchy *h, Vec3 point) {
 bool hierarchy_is_plain(const Hierarchy *h) { return h->plain; }
 void hierarchy_work(const Hierarchy *h, SolidWork *sum) { shape_tracer_work(h->set.shapes, sum); }
 bool hierarchy_is_clear(const Hierarchy *h) { return h->clear; }
-void *hierarchy_device(const Hierarchy *h) { return h->device; }
+const Embree *hierarchy_embree(const Hierarchy *h) { return &h->embree; }
 
 /* ---- rays ---- */
 
@@ -406,10 +416,10 @@ static bool cluster_meet(Query *query) {
     if ((met && query->any) || !to_embree(query, &rayhit.ray)) return met;
     rtcInitIntersectContext(&query->context);
     if (query->any) {
-        rtcOccluded1(query->cluster->scene, &query->context, &rayhit.ray);
+        query->cluster->embree->rtc->Occluded1(query->cluster->scene, &query->context, &rayhit.ray);
         return rayhit.ray.tfar < 0;
     }
-    rtcIntersect1(query->cluster->scene, &query->context, &rayhit);
+    query->cluster->embree->rtc->Intersect1(query->cluster->scene, &query->context, &rayhit);
     if (rayhit.hit.geomID == TRIANGLES) keep_triangle(query, &rayhit);
     return met || rayhit.hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }

@@ -72,8 +72,8 @@ const struct Blockers *hierarchy_blockers(const Hierarchy *hierarchy);
 /* Starts Embree if it is not yet, which takes as long as thousands of rays: a hierarchy of few things does without, skins do not. False
  * after a diagnostic. */
 bool hierarchy_start_embree(Hierarchy *hierarchy, DiagList *diags);
-/* Embree's; NULL until it is started. */
-void *hierarchy_device(const Hierarchy *hierarchy);
+/* Embree, which lives as long as the hierarchy; its device is NULL until it is started. */
+const struct Embree *hierarchy_embree(const Hierarchy *hierarchy);
 
 /* A box around everything that is drawn, empty if nothing is; false when there is something endless. */
 bool hierarchy_bounds(const Hierarchy *hierarchy, Box3 *box);

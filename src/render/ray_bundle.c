@@ -5,8 +5,8 @@
 #include <string.h>
 
 /* Sixteen at once are a tenth faster where the machine has them, but coherent ones never came back from rtcOccluded16 of Embree 3.13 among mirrored copies. */
-int bundle_lanes(RTCDevice device) {
-    return rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? MOST_LANES : 1;
+int bundle_lanes(const Embree *embree) {
+    return embree->rtc->GetDeviceProperty(embree->device, RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? MOST_LANES : 1;
 }
 
 RayBundle bundle_for(int lanes) {
@@ -44,19 +44,19 @@ void bundle_add(RayBundle *bundle, Vec3f origin, Vec3f direction, float near, fl
     bundle->valid[i] = -1;
 }
 
-void bundle_intersect(RayBundle *bundle, RTCScene scene) {
+void bundle_intersect(RayBundle *bundle, const EmbreeShim *rtc, RTCScene scene) {
     struct RTCIntersectContext context;
     void *rays = bundle->cells;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT; /* in place of a half more time */
-    if (bundle->lanes == MOST_LANES) rtcIntersect8(bundle->valid, scene, &context, rays);
-    else rtcIntersect1(scene, &context, rays);
+    if (bundle->lanes == MOST_LANES) rtc->Intersect8(bundle->valid, scene, &context, rays);
+    else rtc->Intersect1(scene, &context, rays);
 }
 
-void bundle_occlude(RayBundle *bundle, RTCScene scene) {
+void bundle_occlude(RayBundle *bundle, const EmbreeShim *rtc, RTCScene scene) {
     struct RTCIntersectContext context;
     void *rays = bundle->cells;
     rtcInitIntersectContext(&context); /* ways from places behind each other are not coherent: taken so, they take a seventh longer */
-    if (bundle->lanes == MOST_LANES) rtcOccluded8(bundle->valid, scene, &context, rays);
-    else rtcOccluded1(scene, &context, rays);
+    if (bundle->lanes == MOST_LANES) rtc->Occluded8(bundle->valid, scene, &context, rays);
+    else rtc->Occluded1(scene, &context, rays);
 }

@@ -3,8 +3,8 @@
 #define VTS_RENDER_RAY_BUNDLE_H
 
 #include "base/vec.h"
+#include "render/embree_module.h"
 
-#include <embree3/rtcore.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -30,15 +30,15 @@ typedef struct RayBundle {
 } RayBundle;
 
 /* Rays that the machine takes at once: MOST_LANES or 1. */
-int bundle_lanes(RTCDevice device);
+int bundle_lanes(const Embree *embree);
 /* An empty one. */
 RayBundle bundle_for(int lanes);
 void bundle_clear(RayBundle *bundle);
 /* There must be room: count < lanes. Left out are rays that Embree cannot take. */
 void bundle_add(RayBundle *bundle, Vec3f origin, Vec3f direction, float near, float far, uint32_t sample);
 /* Until the next bundle_clear(): RAY_FAR and the hit of each ray; RAY_FAR below 0 where something was met. */
-void bundle_intersect(RayBundle *bundle, RTCScene scene);
-void bundle_occlude(RayBundle *bundle, RTCScene scene);
+void bundle_intersect(RayBundle *bundle, const EmbreeShim *rtc, RTCScene scene);
+void bundle_occlude(RayBundle *bundle, const EmbreeShim *rtc, RTCScene scene);
 
 static inline RayCell *bundle_cell(RayBundle *bundle, int field, int ray) { return &bundle->cells[field * bundle->lanes + ray]; }
 static inline RayCell *bundle_hit(RayBundle *bundle, int field, int ray) { return bundle_cell(bundle, RAY_FIELDS + field, ray); }

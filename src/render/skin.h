@@ -153,7 +153,8 @@ bool skin_enter(const CompiledSkin *skin, const Ray *ray, double t_min, double t
 /* Embree's bounds of the cell args->primID of the CompiledSkin args->geometryUserPtr. */
 struct RTCBoundsFunctionArguments;
 void skin_bound_cell(const struct RTCBoundsFunctionArguments *args);
-CellTree *cell_tree_build(CompiledSkin *skin, void *embree_device);
+struct Embree;
+CellTree *cell_tree_build(CompiledSkin *skin, const struct Embree *embree);
 void cell_tree_destroy(CellTree *tree);
 
 /* ---- texture space: skin_place.c ---- */

@@ -550,7 +550,6 @@ bool skin_compile(const Skin *skin, CompiledScene *compiled, DiagList *diags, Co
 }
 
 bool skin_finish(CompiledSkin *skin, const CompileOptions *options, CompiledScene *compiled) {
-    void *device = hierarchy_device(compiled->hierarchy);
     for (size_t i = 0; i < skin->texel_count; i++) {
         PlacedTexel *placed = &skin->texels[i];
         for (size_t k = 0; k < placed->family_size; k++) {
@@ -561,5 +560,5 @@ bool skin_finish(CompiledSkin *skin, const CompileOptions *options, CompiledScen
             placed->finest_extent = texel->extent;
         }
     }
-    return options->exact || skin->box || (skin->tree = cell_tree_build(skin, device)) != NULL;
+    return options->exact || skin->box || (skin->tree = cell_tree_build(skin, hierarchy_embree(compiled->hierarchy))) != NULL;
 }

@@ -1,10 +1,10 @@
 /* World ↔ skin space: evaluating and inverting the mapping of a cell, going from cell to cell, entering the layer. */
 #include "render/skin.h"
 
+#include "render/embree_module.h"
 #include "render/embree_ray.h"
 #include "render/skin_box.h"
 
-#include <embree3/rtcore.h>
 #include <stdlib.h>
 
 enum { NEWTON_STEPS = 12, MOST_HOPS = 64 };
@@ -199,6 +199,7 @@ bool skin_cell_holds(const SkinCell *cell, Vec3 world, double tolerance, SkinPoi
 
 /* Embree's hierarchy over the cells, each a user primitive. */
 struct CellTree {
+    const EmbreeShim *rtc;
     RTCScene scene;
 };
 
@@ -249,26 +250,26 @@ static void intersect_cell(const struct RTCIntersectFunctionNArguments *args) {
     rayhit->hit.primID = args->primID;
 }
 
-CellTree *cell_tree_build(CompiledSkin *skin, void *embree_device) {
+CellTree *cell_tree_build(CompiledSkin *skin, const Embree *embree) {
     CellTree *tree = calloc(1, sizeof *tree);
     if (!tree) return NULL;
-    RTCDevice device = embree_device;
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, (unsigned)skin->cell_count);
-    rtcSetGeometryUserData(geometry, skin);
-    rtcSetGeometryBoundsFunction(geometry, skin_bound_cell, NULL);
-    rtcSetGeometryIntersectFunction(geometry, intersect_cell);
-    rtcCommitGeometry(geometry);
-    tree->scene = rtcNewScene(device);
-    rtcAttachGeometry(tree->scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(tree->scene);
+    const EmbreeShim *rtc = tree->rtc = embree->rtc;
+    RTCGeometry geometry = rtc->NewGeometry(embree->device, RTC_GEOMETRY_TYPE_USER);
+    rtc->SetGeometryUserPrimitiveCount(geometry, (unsigned)skin->cell_count);
+    rtc->SetGeometryUserData(geometry, skin);
+    rtc->SetGeometryBoundsFunction(geometry, skin_bound_cell, NULL);
+    rtc->SetGeometryIntersectFunction(geometry, intersect_cell);
+    rtc->CommitGeometry(geometry);
+    tree->scene = rtc->NewScene(embree->device);
+    rtc->AttachGeometry(tree->scene, geometry);
+    rtc->ReleaseGeometry(geometry);
+    rtc->CommitScene(tree->scene);
     return tree;
 }
 
 void cell_tree_destroy(CellTree *tree) {
     if (!tree) return;
-    rtcReleaseScene(tree->scene);
+    tree->rtc->ReleaseScene(tree->scene);
     free(tree);
 }
 
@@ -287,7 +288,7 @@ int skin_first_pieces(const CompiledSkin *skin, const Ray *ray, double t_min, do
                 .dir_x = (float)ray->direction.x, .dir_y = (float)ray->direction.y, .dir_z = (float)ray->direction.z,
                 .tnear = float_below(double_max(t_min, 0)), .tfar = float_above(t_max), .mask = 0xFFFFFFFFu},
         .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
-    if (embree_takes(&rayhit.ray)) rtcIntersect1(skin->tree->scene, &query.context, &rayhit);
+    if (embree_takes(&rayhit.ray)) skin->tree->rtc->Intersect1(skin->tree->scene, &query.context, &rayhit);
     return query.count;
 }
 

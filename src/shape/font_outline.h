@@ -17,7 +17,7 @@ typedef struct FontLine {
 } FontLine;
 
 /* Sets the UTF-8 text in a font of TrueType or its relatives as POV-Ray does: the first glyph's left side at x = 0, kerning between
- * neighbours. False when the file is no font. */
+ * neighbours. False when the file is no font, or FreeType's module is not found. */
 bool font_outline(const char *path, const char *text, Arena *arena, FontLine *out);
 /* A font of the system to use instead of one that is missing, by its name ("timrom.ttf"); NULL: there is none. */
 const char *font_substitute(const char *name);

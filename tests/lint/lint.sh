@@ -42,10 +42,11 @@ rule_includes() {
 }
 
 rule_headers() {
-  local header
+  local header foreign
+  foreign=$(pkg-config --cflags freetype2) # whose headers lie in a folder of their own
   find src -name '*.h' | sort | while read -r header; do
     printf '#include "%s"\n' "${header#src/}" |
-      "$compiler" -std=c17 -Wall -Wextra -Wpedantic -Werror -D_POSIX_C_SOURCE=200809L -DVTS_VERSION='""' -Isrc -fsyntax-only -x c - 2>&1
+      "$compiler" -std=c17 -Wall -Wextra -Wpedantic -Werror -D_POSIX_C_SOURCE=200809L -DVTS_VERSION='""' -Isrc $foreign -fsyntax-only -x c - 2>&1
   done
 }
 

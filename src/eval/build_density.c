@@ -196,6 +196,7 @@ const DensityField *density_read(Reader *parent, const EvalBlock *block) {
         reader.failed |= !grid;
         if (grid) use_grid(draft, grid);
     }
+    if (!reader.failed) pattern_check(&reader, pigment);
     if (!reader_end_nested(parent, &reader)) return NULL;
     if (!pigment->noise_generator) pigment->noise_generator = build_noise_generator(context);
     pigment_measure(pigment);

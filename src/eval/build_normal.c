@@ -267,6 +267,7 @@ static const Normal *normal_read(Reader *reader) {
     reader->value_target = draft;
     if (!reader_run(reader)) return NULL;
     Pigment *pattern = &draft->pattern.pigment;
+    if (!pattern_check(reader, pattern)) return NULL;
     if (!pattern->noise_generator) pattern->noise_generator = build_noise_generator(reader->context);
     if (is_flat(draft)) draft->normal.form = NORMAL_BUMPS, draft->normal.amount = 0;
     if (draft->slopes.count) {

@@ -239,12 +239,34 @@ static void read_colouring(Reader *reader, const Word *word, int most, int *type
         reader_error(reader, word->arguments[0].span, "'%s' has types 0 to %d", word->text, most);
 }
 
+/* One of a pavement's looks, which have types 0 to `most`. */
+static void read_pavement_look(Reader *reader, const Word *word, int most, int *look) {
+    if (!word_arguments(reader, word, 1, 1) || !word_int(reader, word, 0, look)) return;
+    if (*look < 0 || *look > most) reader_error(reader, word->arguments[0].span, "'%s' has types 0 to %d", word->text, most);
+}
+
+static void read_form(Reader *reader, const Word *word, void *target) {
+    Pigment *pigment = &((PigmentDraft *)target)->pigment;
+    if (pigment->kind == PATTERN_PAVEMENT) read_pavement_look(reader, word, 3, &pigment->pavement.form);
+    else if (word_arguments(reader, word, 1, 1)) word_vector(reader, word, 0, &pigment->crackle.form);
+}
+
 static void read_exterior(Reader *reader, const Word *word, void *target) {
+    Pigment *pigment = &((PigmentDraft *)target)->pigment;
+    if (pigment->kind == PATTERN_PAVEMENT) {
+        read_pavement_look(reader, word, 2, &pigment->pavement.exterior);
+        return;
+    }
     FractalSettings *f = &((PigmentDraft *)target)->pigment.fractal;
     read_colouring(reader, word, 8, &f->exterior, &f->exterior_factor);
 }
 
 static void read_interior(Reader *reader, const Word *word, void *target) {
+    Pigment *pigment = &((PigmentDraft *)target)->pigment;
+    if (pigment->kind == PATTERN_PAVEMENT) {
+        read_pavement_look(reader, word, 2, &pigment->pavement.interior);
+        return;
+    }
     FractalSettings *f = &((PigmentDraft *)target)->pigment.fractal;
     read_colouring(reader, word, 6, &f->interior, &f->interior_factor);
 }
@@ -310,9 +332,15 @@ static void read_tiling(Reader *reader, const Word *word, void *target) {
         inert_add(reader->context, &draft->pigment.inert, "tiling", word->span);
 }
 
-static void read_pavement(Reader *reader, const Word *word, void *target) {
-    read_pattern(reader, word, target);
-    inert_add(reader->context, &((PigmentDraft *)target)->pigment.inert, "pavement", word->span);
+bool pattern_check(Reader *reader, const Pigment *pigment) {
+    const PavementSettings *p = &pigment->pavement;
+    int count = pavement_count(p->sides, p->tiles);
+    if (pigment->kind != PATTERN_PAVEMENT || (p->pattern >= 1 && p->pattern <= count)) return true;
+    if (count == 0)
+        reader_error(reader, reader->block->word_span, "a 'pavement' has number_of_sides 3 or 4 and up to 6 tiles, or 6 and up to 5: found %d and %d", p->sides, p->tiles);
+    else
+        reader_error(reader, reader->block->word_span, "a 'pavement' of these sides and tiles has patterns 1 to %d, found %d", count, p->pattern);
+    return false;
 }
 
 static void read_pigment_pattern(Reader *reader, const Word *word, void *target) {
@@ -433,7 +461,7 @@ const WordRule pattern_rules[] = {
     PATTERN("average"),
     PATTERN("aoi"),
     CUSTOM("tiling", read_tiling),
-    CUSTOM("pavement", read_pavement),
+    PATTERN("pavement"),
     CUSTOM("magnet", read_magnet),
     CUSTOM("function", read_function_body),
     CUSTOM("pigment_pattern", read_pigment_pattern),
@@ -452,20 +480,20 @@ const WordRule pattern_setting_rules[] = {
     {"brick_size", WORD_VECTOR, FIELD(brick_size), NULL, false},
     {"mortar", WORD_FLOAT, FIELD(mortar), NULL, false},
     {"agate_turb", WORD_FLOAT, FIELD(agate_turbulence), NULL, false},
-    {"form", WORD_VECTOR, FIELD(crackle.form), NULL, false},
     {"offset", WORD_FLOAT, FIELD(crackle.offset), NULL, false},
     {"solid", WORD_FLAG, FIELD(crackle.solid), NULL, false},
     {"control0", WORD_FLOAT, FIELD(control0), NULL, false},
     {"control1", WORD_FLOAT, FIELD(control1), NULL, false},
     {"interpolate", WORD_INT, FIELD(interpolation), NULL, false},
-    {"number_of_sides", WORD_IGNORED, 0, NULL, false},
-    {"number_of_tiles", WORD_IGNORED, 0, NULL, false},
-    {"pattern", WORD_IGNORED, 0, NULL, false},
+    {"number_of_sides", WORD_INT, FIELD(pavement.sides), NULL, false},
+    {"number_of_tiles", WORD_INT, FIELD(pavement.tiles), NULL, false},
+    {"pattern", WORD_INT, FIELD(pavement.pattern), NULL, false},
     CUSTOM("metric", read_metric),
     CUSTOM("octaves", read_octaves),
     CUSTOM("noise_generator", read_noise_generator),
     CUSTOM("altitude", read_altitude),
     CUSTOM("exponent", read_exponent),
+    CUSTOM("form", read_form),
     CUSTOM("exterior", read_exterior),
     CUSTOM("interior", read_interior),
     CUSTOM("ramp_wave", read_wave),

@@ -44,6 +44,8 @@ void map_entries_sort(ColorMapEntry *entries, const void **list, size_t count);
 
 /* The word of a pattern, or NULL. */
 const char *pattern_word(PatternKind kind);
+/* Whether the settings of a pattern that was read whole fit each other; reports it if not. */
+bool pattern_check(Reader *reader, const Pigment *pigment);
 /* Whether a setting (`mortar`) belongs to the pattern of this word (NULL: unknown, everything does); reports it if not. Words that
  * are no settings of certain patterns pass. */
 bool pattern_takes(Reader *reader, const char *pattern, const Word *setting);

@@ -219,7 +219,7 @@ static const Pigment *read_from(Reader *reader, const Pigment *start) {
         draft->pigment.entries = draft->items;
         draft->pigment.entry_count = draft->count;
     }
-    if (!check_map(reader, draft)) return NULL;
+    if (!check_map(reader, draft) || !pattern_check(reader, &draft->pigment)) return NULL;
     pigment_measure(&draft->pigment);
     if (!check_size(reader, &draft->pigment)) return NULL;
     pigment_rehash(&draft->pigment);

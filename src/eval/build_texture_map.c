@@ -208,6 +208,7 @@ static const Pigment *map_pattern(Reader *reader, TextureDraft *draft) {
 static const Texture *texture_of_map(Reader *reader, TextureDraft *draft) {
     Arena *arena = reader->context->arena;
     fill_list(reader, draft);
+    if (!pattern_check(reader, &draft->pattern.pigment)) return NULL;
     const Pigment *pattern = map_pattern(reader, draft);
     TextureMap *map = arena_new(arena, TextureMap);
     *map = (TextureMap){.pattern = pattern, .textures = draft->textures.items, .count = draft->textures.count};

@@ -3,6 +3,7 @@
 #include "pattern/values.h"
 
 #include "pattern/numbers.h"
+#include "pattern/pavement.h"
 #include "pattern/picture_map.h"
 #include "pattern/pigment.h"
 #include "pattern/tiling.h"
@@ -36,7 +37,8 @@ PatternTraits pattern_traits(PatternKind kind) {
     case PATTERN_PIGMENT: return (PatternTraits){.sampled = true};
     case PATTERN_IMAGE: return (PatternTraits){.bounded = true};
     case PATTERN_DENSITY:
-    case PATTERN_TILING: return (PatternTraits){.sampled = true};
+    case PATTERN_TILING:
+    case PATTERN_PAVEMENT: return (PatternTraits){.sampled = true};
     default: return (PatternTraits){.bounded = true};
     }
 }
@@ -294,7 +296,7 @@ Spread pattern_value(const Pigment *pigment, const Spot *spot) {
     case PATTERN_PIGMENT: return exactly(source_gray(pigment, spot));
     case PATTERN_DENSITY: return exactly(density_number(pigment, spot->p));
     case PATTERN_TILING: return exactly(tiling_number(pigment->number, spot->p));
-    case PATTERN_PAVEMENT: return exactly(0.5);
+    case PATTERN_PAVEMENT: return exactly(pavement_number(&pigment->pavement, spot->p));
     case PATTERN_IMAGE: return exactly(pigment->image ? picture_map_value(pigment->image, spot) : 0);
     default: return exactly(0);
     }

@@ -93,6 +93,17 @@ typedef struct CrackleSettings {
     bool solid;
 } CrackleSettings;
 
+enum { PAVEMENT_MOST_TILES = 6 };
+
+/* pavement: POV-Ray's numbers; `pattern` from 1 to pavement_count(). Looks: 0 sharp, 1 bevelled, 2 round; form 3: squares' corners each by itself. */
+typedef struct PavementSettings {
+    int sides, tiles, pattern; /* 3, 1, 1 */
+    int exterior, interior, form;
+} PavementSettings;
+
+/* How many pieces of so many triangles, squares or hexagons there are; 0: those sides and tiles make no pavement. */
+int pavement_count(int sides, int tiles);
+
 /* Numbers in [0, 1] at the cells of the unit cube, x fastest. */
 typedef struct DensityGrid {
     Hash128 hash;
@@ -173,6 +184,7 @@ struct Pigment {
     size_t warp_count;
     FractalSettings fractal;
     CrackleSettings crackle;
+    PavementSettings pavement;
     double agate_turbulence;         /* 1 */
     double control0, control1;       /* quilted: 1, 1 */
     int number;                      /* arms of a spiral, kind of a tiling */

@@ -22,6 +22,7 @@ Pigment pigment_default(void) {
                        .mortar = 0.5,
                        .wave_exponent = 1,
                        .fractal = {.exponent = 2, .exterior = 1, .exterior_factor = 1, .interior_factor = 1},
+                       .pavement = {.sides = 3, .tiles = 1, .pattern = 1},
                        .crackle = {.form = {-1, 1, 0}, .metric = 2},
                        .agate_turbulence = 1,
                        .control0 = 1,

@@ -12,6 +12,11 @@ static double work_of_entries(const Pigment *pigment) {
     return pigment->kind == PATTERN_AVERAGE ? sum : double_min(sum, 2 * most);
 }
 
+int pavement_count(int sides, int tiles) {
+    static const int counts[][PAVEMENT_MOST_TILES] = {[3] = {1, 1, 1, 3, 4, 12}, [4] = {1, 1, 2, 5, 12, 35}, [6] = {1, 1, 3, 7, 22, 0}};
+    return sides >= 3 && sides <= 6 && tiles >= 1 && tiles <= PAVEMENT_MOST_TILES ? counts[sides][tiles - 1] : 0;
+}
+
 void pigment_measure(Pigment *pigment) {
     int inner = 0;
     for (size_t i = 0; i < pigment->entry_count; i++)

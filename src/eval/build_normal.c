@@ -88,13 +88,6 @@ static void read_facets(Reader *reader, const Word *word, void *target) {
     word_arguments(reader, word, 0, 0);
 }
 
-/* Everything that follows is the normal in the plane of u and v. */
-static void read_uv(Reader *reader, const Word *word, void *target) {
-    double on = 1;
-    if (word_arguments(reader, word, 0, 1) && word->count) word_float(reader, word, 0, &on);
-    ((NormalDraft *)target)->uv = on != 0;
-}
-
 /* ---- the block ---- */
 
 static NormalForm form_of(const char *word) {
@@ -237,7 +230,7 @@ static const WordRule rules[] = {
     {"bump_map", WORD_CUSTOM, 0, read_bump_map, false},
     {"normal_map", WORD_CUSTOM, 0, read_normal_map, false},
     {"slope_map", WORD_CUSTOM, 0, read_slope_map, false},
-    {"uv_mapping", WORD_CUSTOM, 0, read_uv, false},
+    {"uv_mapping", WORD_FLAG, offsetof(NormalDraft, uv), NULL, false},
 };
 
 static NormalDraft *begin(Reader *reader) {

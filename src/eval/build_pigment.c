@@ -75,6 +75,11 @@ static void take_map(PigmentDraft *draft, const ColorMap *map) {
     draft->pigment.entry_count = map->count;
 }
 
+static bool is_uv_mapping(const BlockItem *item) {
+    Word word;
+    return item_as_word(item, &word) && strcmp(word.text, "uv_mapping") == 0;
+}
+
 static bool on_value(Reader *reader, const Argument *value, void *target) {
     PigmentDraft *draft = target;
     bool block_pattern = pattern_block_count(draft->pigment.kind) > 0 && !draft->pigment.entries;
@@ -84,7 +89,7 @@ static bool on_value(Reader *reader, const Argument *value, void *target) {
         draft->pigment.kind = PATTERN_SOLID;
         return argument_color(reader, value, "'pigment'", &draft->pigment.color);
     case VALUE_PIGMENT:
-        if (reader->block->items[0].kind == ITEM_WORD)
+        if (reader->block->items[0].kind == ITEM_WORD && !(reader->next <= 2 && is_uv_mapping(&reader->block->items[0])))
             reader_error(reader, value->span, "the pattern or colour of a pigment comes first, and only once");
         draft->pigment = *value->value.as.pigment;
         return true;
@@ -161,7 +166,7 @@ static bool check_order(Reader *reader) {
         Word word = {.text = ""};
         bool kind = gives_kind(item, &word);
         if ((kind && begun && !(listing && is_value(item, VALUE_COLOR))) ||
-            (is_value(item, VALUE_PIGMENT) && i > first && !listing)) {
+            (is_value(item, VALUE_PIGMENT) && i > first + is_uv_mapping(&reader->block->items[first]) && !listing)) {
             reader_error(reader, item->span, "the pattern or colour of a pigment comes first, and only once");
             return false;
         }

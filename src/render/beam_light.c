@@ -12,7 +12,7 @@ static Vec3f tone_of(const Sight *sight, const Light *light, LightRay *ray) {
     *ray = light_ray(light, sight->point);
     NdfShade shade = sheet_shade(sight->normal, sight->view, vec3f_from(ray->direction), &sight->look->sheet);
     if (shade.diffuse <= 0 && shade.highlight <= 0) return vec3f(0, 0, 0);
-    return vec3f_mul(shade_tone(&shade, sight->look, sight->color), ray->color);
+    return light_tone(ray, &shade, sight->look, sight->color);
 }
 
 /* Puts the samples of a sight on the list of points whose shadows are wanted. */

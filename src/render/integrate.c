@@ -118,8 +118,8 @@ static void shade_group(const Tracer *tr, const Cone *cone, const Group *group, 
             if (!(sum->weight > 0)) continue;
             SheetLook sheet = look_in_light(&sum->look->sheet, factor);
             NdfShade shade = ndf_shade(tr->compiled->quadrature, &sum->s, view, vec3f_from(rays[l].direction), &sheet);
-            Vec3f tone = shade_tone(&shade, sum->look, vec3f_scale(sum->color, 1 / sum->weight));
-            direct[l] = vec3f_madd(direct[l], vec3f_mul(tone, rays[l].color), sum->weight);
+            Vec3f tone = light_tone(&rays[l], &shade, sum->look, vec3f_scale(sum->color, 1 / sum->weight));
+            direct[l] = vec3f_madd(direct[l], tone, sum->weight);
         }
     }
     record->ambient = ambient;

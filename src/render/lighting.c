@@ -68,6 +68,7 @@ LightRay light_ray_from(const Light *light, Vec3 point, Vec3 place) {
     if (light->kind == LIGHT_CYLINDER) factor *= cylinder_factor(light, to);
     if (light->goniometric && !light_is_parallel(light)) factor *= goniometric_factor(light, ray.direction);
     if (light->lamp && !light_is_parallel(light)) factor *= lamp_factor(light, ray.direction);
+    ray.highlights = !light->shadowless;
     ray.color = vec3f_scale(limited(vec3f_from_color(light->color)), (float)fmin(factor, (double)BRIGHTEST));
     return ray;
 }
@@ -139,9 +140,11 @@ bool light_shines_on(const Light *light, const LightGroup *group) {
     return false;
 }
 
-Vec3f shade_tone(const NdfShade *shade, const Look *look, Vec3f color) {
+Vec3f light_tone(const LightRay *ray, const NdfShade *shade, const Look *look, Vec3f color) {
     Vec3f metal = vec3f_add(vec3f_scale(color, look->metallic), vec3f_scale(vec3f(1, 1, 1), 1 - look->metallic));
-    return vec3f_madd(vec3f_scale(color, shade->diffuse), metal, shade->highlight);
+    Vec3f tone = vec3f_scale(color, shade->diffuse);
+    if (ray->highlights) tone = vec3f_madd(tone, metal, shade->highlight);
+    return vec3f_mul(tone, ray->color);
 }
 
 Vec3f sky_radiance(const Scene *scene, Vec3 direction, double spread) {

@@ -8,6 +8,7 @@ typedef struct LightRay {
     Vec3 direction;  /* unit, towards the light */
     double distance; /* VTS_INFINITY for parallel light */
     Vec3f color;     /* arriving, unshadowed */
+    bool highlights; /* whether it makes any: lights without shadows make none, as in POV-Ray */
 } LightRay;
 
 /* From its middle: what a light without an area sends, and what the highlights and tones of all lights are calculated with. */
@@ -30,8 +31,8 @@ bool light_shines_on(const Light *light, const LightGroup *group);
 /* Whether nothing is dark for it: without shadows, a light that is projected through something still lights nothing beside that. */
 static inline bool light_comes_everywhere(const Light *light) { return light->shadowless && !light->projected_through; }
 
-/* What matter of this pigment colour sends to the eye for one unit of light: `shade` of its normals. */
-Vec3f shade_tone(const NdfShade *shade, const Look *look, Vec3f color);
+/* What matter of this pigment colour sends to the eye of light that comes unshadowed: `shade` of its normals. */
+Vec3f light_tone(const LightRay *ray, const NdfShade *shade, const Look *look, Vec3f color);
 
 /* Sky sphere and background along a unit direction; `spread` is the angle over which the sky is averaged. */
 Vec3f sky_radiance(const Scene *scene, Vec3 direction, double spread);

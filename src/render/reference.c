@@ -126,7 +126,7 @@ static Vec3f shade(const Sample *s, const Facet *facet) {
         LightRay ray = light_ray(&scene->lights[l], point);
         NdfShade amount = sheet_shade(vec3f_from(facet->normal), view, vec3f_from(ray.direction), &facet->look->sheet);
         if (amount.diffuse <= 0 && amount.highlight <= 0) continue;
-        Vec3f tone = vec3f_mul(shade_tone(&amount, facet->look, facet->color), ray.color);
+        Vec3f tone = light_tone(&ray, &amount, facet->look, facet->color);
         sum = vec3f_add(sum, vec3f_mul(tone, lit(s, &scene->lights[l], &ray, facet)));
     }
     return sum;

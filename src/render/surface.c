@@ -187,7 +187,7 @@ static Vec3f lit_along(const SurfaceTracer *tracer, const Meeting *m, const Ligh
     *lit = sum;
     if (!(most_of(way->color) > 0)) return sum;
     for (int i = 0; i < m->layer_count; i++) {
-        Vec3f one = surface_layer_light(&m->layers[i], m->leg->cone.direction, way->direction, m->hit->both_sides,
+        Vec3f one = surface_layer_light(&m->layers[i], m->leg->cone.direction, way, m->hit->both_sides,
                                         tracer->compiled->scene->settings.irid_wavelength, random_mix(m->seed + number), &diffuse);
         sum = vec3f_add(sum, one);
     }
@@ -258,6 +258,12 @@ static Vec3f mirrored_light(SurfaceTracer *tracer, Meeting *m, Vec3 normal, floa
     return follow(tracer, &leg, NULL, false);
 }
 
+/* A thin layer colours what is mirrored as it does light: measured, POV-Ray's documentation tells of light alone. */
+static Vec3f thin_mirror(const SurfaceTracer *tracer, const Meeting *m, const SurfaceLayer *layer) {
+    Vec3 view = m->leg->cone.direction;
+    return surface_thin_layer(layer, view, fabs(vec3_dot(layer->normal, view)), tracer->compiled->scene->settings.irid_wavelength);
+}
+
 static float power_of(float x, double exponent) { return x > 0 ? (float)pow((double)x, exponent) : 0; }
 
 static Vec3f mirror(SurfaceTracer *tracer, Meeting *m, bool all_of_it) {
@@ -277,7 +283,7 @@ static Vec3f mirror(SurfaceTracer *tracer, Meeting *m, bool all_of_it) {
         Vec3f light = mirrored_light(tracer, m, layer->normal, most_of(share));
         double exponent = f->reflection_exponent > 0 ? 1 / f->reflection_exponent : 1;
         if (exponent != 1) light = vec3f(power_of(light.x, exponent), power_of(light.y, exponent), power_of(light.z, exponent));
-        sum = vec3f_add(sum, vec3f_mul(light, share));
+        sum = vec3f_add(sum, vec3f_mul(vec3f_mul(light, thin_mirror(tracer, m, layer)), share));
     }
     return sum;
 }
@@ -288,7 +294,7 @@ static Vec3f bent_light(SurfaceTracer *tracer, Meeting *m, double ratio, bool *a
     if (vec3_dot(normal, m->leg->cone.direction) > 0) normal = vec3_negate(normal);
     if (!surface_bent(m->leg->cone.direction, normal, 1 / ratio, &direction)) {
         *all_of_it = true;
-        return vec3f_mul(m->faded, mirrored_light(tracer, m, normal, most_of(m->faded)));
+        return vec3f_mul(vec3f_mul(m->faded, thin_mirror(tracer, m, &m->layers[0])), mirrored_light(tracer, m, normal, most_of(m->faded)));
     }
     double bend = vec3_dot(direction, normal) - vec3_dot(m->leg->cone.direction, normal) / ratio; /* n cos i - cos t */
     Leg leg;

@@ -91,9 +91,12 @@ typedef struct SurfaceLayer {
 /* The thickness of a finish's thin layer at a place of the scene. */
 double surface_film(const Finish *finish, Vec3 point);
 
-/* What a layer sends along −view of light that comes from `to_light`, for each unit of it; `view` is the ray's direction.
+/* What a thin layer makes of light that comes or is mirrored under this cosine: a factor, 1 where the finish has none. */
+Vec3f surface_thin_layer(const SurfaceLayer *layer, Vec3 view, double cosine, Vec3 wavelengths);
+
+/* What a layer sends along −view of light that comes this way, for each unit of it; `view` is the ray's direction.
  * `both_sides`: of `double_illuminate`. `place`: where, for grain and thickness. *diffuse gets the factor of the pigment's colour in it. */
-Vec3f surface_layer_light(const SurfaceLayer *layer, Vec3 view, Vec3 to_light, bool both_sides, Vec3 wavelengths, uint64_t seed, float *diffuse);
+Vec3f surface_layer_light(const SurfaceLayer *layer, Vec3 view, const LightRay *way, bool both_sides, Vec3 wavelengths, uint64_t seed, float *diffuse);
 
 /* ---- surface_bend.c: directions and shares of what is mirrored and bent; pure ---- */
 

@@ -42,14 +42,16 @@ double surface_film(const Finish *finish, Vec3 point) {
 }
 
 /* Waves that a thin layer gives back from its top and from its bottom meet in step or against it: a factor of the light. */
-static Vec3f thin_layer(const SurfaceLayer *layer, Vec3 view, double cosine, Vec3 wavelengths) {
+Vec3f surface_thin_layer(const SurfaceLayer *layer, Vec3 view, double cosine, Vec3 wavelengths) {
     const Finish *f = layer->finish;
+    if (!(f->irid > 0)) return vec3f(1, 1, 1);
     double way = layer->film * (cosine - vec3_dot(view, layer->normal));
     return vec3f(in_step(f->irid, way, wavelengths.x), in_step(f->irid, way, wavelengths.y), in_step(f->irid, way, wavelengths.z));
 }
 
-Vec3f surface_layer_light(const SurfaceLayer *layer, Vec3 view, Vec3 to_light, bool both_sides, Vec3 wavelengths, uint64_t seed, float *diffuse_out) {
+Vec3f surface_layer_light(const SurfaceLayer *layer, Vec3 view, const LightRay *way, bool both_sides, Vec3 wavelengths, uint64_t seed, float *diffuse_out) {
     const Finish *f = layer->finish;
+    const Vec3 to_light = way->direction;
     double cosine = vec3_dot(layer->normal, to_light);
     bool back = cosine <= 0 && !both_sides;
     double amount = back ? f->transmission : f->diffuse;
@@ -61,10 +63,10 @@ Vec3f surface_layer_light(const SurfaceLayer *layer, Vec3 view, Vec3 to_light, b
     if (f->crand > 0) diffuse -= f->crand * random_unit(seed);
     *diffuse_out = (float)diffuse;
     Vec3f sum = vec3f_scale(layer->color, *diffuse_out);
-    if (!back && (f->phong > 0 || f->specular > 0)) {
+    if (!back && way->highlights && (f->phong > 0 || f->specular > 0)) {
         double bright = highlight(layer, view, to_light);
         if (bright > 0) sum = vec3f_madd(sum, highlight_color(f, layer->color, cosine), (float)bright);
     }
-    if (!back && f->irid > 0) sum = vec3f_mul(sum, thin_layer(layer, view, cosine, wavelengths));
+    if (!back) sum = vec3f_mul(sum, surface_thin_layer(layer, view, cosine, wavelengths));
     return vec3f_mul(sum, layer->above);
 }

@@ -196,25 +196,22 @@ static void even_row(void *context, size_t row, int worker) {
     }
 }
 
-static bool even_out(const Around *a) {
-    ArenaMark mark = arena_mark(&a->compiled->scratch);
-    const VolumeLight *light = a->volume->light;
+static bool even_out(CompiledScene *compiled, const CompiledVolume *volume) {
+    ArenaMark mark = arena_mark(&compiled->scratch);
+    const VolumeLight *light = volume->light;
     size_t bins = volume_bins(light);
-    Evening e = {a->volume, arena_push_array_(&a->compiled->scratch, bins, sizeof *e.factors)};
-    bool done = pool_run(a->compiled->options->pool, (size_t)light->bins[1] * (size_t)light->bins[2], even_row, &e);
+    Evening e = {volume, arena_push_array_(&compiled->scratch, bins, sizeof *e.factors)};
+    bool done = pool_run(compiled->options->pool, (size_t)light->bins[1] * (size_t)light->bins[2], even_row, &e);
     for (size_t i = 0; done && i < bins * (size_t)light->harmonics; i++)
         for (int c = 0; c < 3; c++) light->kept[i][c] *= e.factors[i / (size_t)light->harmonics][c];
-    arena_reset_to(&a->compiled->scratch, mark);
+    arena_reset_to(&compiled->scratch, mark);
     return done;
 }
 
 static bool look_all(Around *a, CompiledVolume *v) {
     const int *n = v->light->bins;
     a->volume = v;
-    if (!pool_run(a->compiled->options->pool, (size_t)n[1] * (size_t)n[2], look_row, a)) return false;
-    for (int round = 0; round < ROUNDS; round++)
-        if (!even_out(a)) return false;
-    return true;
+    return pool_run(a->compiled->options->pool, (size_t)n[1] * (size_t)n[2], look_row, a);
 }
 
 /* What bins were seen to get takes the place of what paths brought them. */
@@ -242,5 +239,9 @@ bool volumes_look_around(CompiledScene *compiled, Tracer **tracers) {
         for (size_t i = 0; i < set->count; i++)
             if (!look_all(&a, &set->items[i])) return false;
     }
+    /* For views alone: what bins send each other is their matter's mean. */
+    for (size_t i = 0; i < set->count; i++)
+        for (int round = 0; round < ROUNDS; round++)
+            if (!even_out(compiled, &set->items[i])) return false;
     return !(compiled->options->interrupted && *compiled->options->interrupted);
 }

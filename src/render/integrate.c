@@ -62,9 +62,12 @@ void tracer_init(Tracer *tracer, const CompiledScene *compiled, Arena *arena) {
 
 /* ---- matter of skins ---- */
 
+/* Members of a family hold the same leaves. */
+static bool shaded_alike(const Look *a, const Look *b) { return a->texture == b->texture; }
+
 static MatterSum *sum_of(Group *group, const Look *look) {
     for (int i = 0; i < group->sum_count; i++)
-        if (group->sums[i].look == look) return &group->sums[i];
+        if (shaded_alike(group->sums[i].look, look)) return &group->sums[i];
     if (group->sum_count == MOST_MATTER_SUMS) return &group->sums[MOST_MATTER_SUMS - 1];
     MatterSum *sum = &group->sums[group->sum_count++];
     *sum = (MatterSum){.look = look};

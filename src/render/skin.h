@@ -95,6 +95,7 @@ typedef struct PlacedTexel {
 typedef struct SkinBox SkinBox;   /* skin_box.h */
 typedef struct CellTree CellTree; /* hierarchy over the cells' bounds, for entering the layer */
 typedef struct TileSet TileSet; /* skin_rim.h */
+typedef struct JointCopies JointCopies; /* skin_joint.h */
 typedef struct ExactSkins ExactSkins; /* hierarchy over what is in the cells of all skins, for the reference: exact_skin.h */
 
 typedef struct CompiledSkin {
@@ -108,6 +109,7 @@ typedef struct CompiledSkin {
     bool overlaps;       /* sheets lie over one another: a cell is folded, or neighbours are turned opposite ways */
     const SkinBox *box; /* it is a straight one, else NULL */
     CellTree *tree;   /* NULL in the reference, and of a box */
+    const JointCopies *joint; /* NULL: no voxels, or none that know what eye and light have in common */
     const BoxTree *boxes; /* over the cells' bounds, for beams; NULL: the skin is drawn from voxels alone */
     bool rigid;           /* its copies are whole and not bent: beam_rigid.h draws them */
     double exact_to;      /* distance from the eye at which voxels take the place of exact geometry; VTS_INFINITY: never */

@@ -8,6 +8,7 @@
 #include "render/beam_rigid.h"
 #include "render/matter_color.h"
 #include "render/skin_box.h"
+#include "render/skin_joint.h"
 #include "render/skin_rim.h"
 #include "render/skin_wind.h"
 #include "scene/scene_hash.h"
@@ -560,5 +561,6 @@ bool skin_finish(CompiledSkin *skin, const CompileOptions *options, CompiledScen
             placed->finest_extent = texel->extent;
         }
     }
+    if (!options->exact) skin->joint = skin_joint_copies(skin, compiled->arena);
     return options->exact || skin->box || (skin->tree = cell_tree_build(skin, hierarchy_embree(compiled->hierarchy))) != NULL;
 }

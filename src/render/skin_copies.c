@@ -123,6 +123,7 @@ static Vec3 span_rate(const MarchSpan *span, double t) { return vec3_madd(span->
 
 double skin_copies_empty_way(SkinMarch *m, double t) {
     const MarchSpan *span = &m->span;
+    if (span->coarsest && m->skin->texel_count) return 0; /* steps as long as copies would hardly find a gap */
     Vec3 x = skin_span_at(span, t), rate = span_rate(span, t);
     double rest = double_min(span->t1 - t, span->straight), gap = rest;
     for (size_t i = 0; i < m->skin->texel_count; i++) {

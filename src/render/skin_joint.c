@@ -13,7 +13,7 @@ static const float LEVELS_BLURRED = 3, MOST_LEVELS_BLURRED = 8, LEVELS_OF_TRIANG
 /* A direction of the scene, in a copy of the texel. */
 static Vec3f in_texel(const SkinJoint *at, int copy, Vec3 d) {
     const TexturePlace *place = &at->place;
-    return texel_copy_rate(&at->copies[copy], vec3(vec3_dot(place->grad_u, d), vec3_dot(place->grad_v, d), vec3_dot(place->grad_w, d)));
+    return texel_copy_rate(&at->of->copies[copy], vec3(vec3_dot(place->grad_u, d), vec3_dot(place->grad_v, d), vec3_dot(place->grad_w, d)));
 }
 
 static float blurred(float levels_from_top, const BuiltTexel *texel) {
@@ -24,9 +24,9 @@ static float blurred(float levels_from_top, const BuiltTexel *texel) {
 static bool turned_alike(const TexelCopy *a, const TexelCopy *b) { return a->xu == b->xu && a->xv == b->xv && a->zu == b->zu && a->zv == b->zv; }
 
 /* Some copies of the first that there is, and how many: another member of the family is much the same. */
-static int some_copies(const PlacedTexel *placed, TexelCopy copies[JOINT_COPIES]) {
+static int some_copies(const PlacedTexel *placed, TexelCopy copies[MOST_JOINT_COPIES]) {
     int count = 0;
-    for (int64_t i = 0; i < JOINT_COPIES; i++) {
+    for (int64_t i = 0; i < MOST_JOINT_COPIES; i++) {
         TexelCopy *copy = &copies[count];
         if (!texel_copy_of(placed, i & 1, i >> 1, copy) || copy->texel->matter_count == 0) continue;
         if (count == 0 || (copy->texel == copies[0].texel && !turned_alike(copy, &copies[0]))) count++;
@@ -44,37 +44,48 @@ static const VoxelLayer *main_layer(const BuiltTexel *texel) {
     return most;
 }
 
-void skin_joint_find(const SkinMarch *march, SkinJoint *joint) {
-    joint->layer = NULL;
-    if (march->sheets || march->settings->opacity != OPACITY_CORRELATED) return;
-    for (size_t i = 0; i < march->skin->texel_count; i++) {
-        TexelCopy copies[JOINT_COPIES];
-        int count = some_copies(&march->skin->texels[i], copies);
+const JointCopies *skin_joint_copies(const CompiledSkin *skin, Arena *arena) {
+    JointCopies best = {.count = 0};
+    TexelCopy copies[MOST_JOINT_COPIES], of_best[MOST_JOINT_COPIES];
+    for (size_t i = 0; i < skin->texel_count; i++) {
+        int count = some_copies(&skin->texels[i], copies);
         if (!count) continue;
         const VoxelLayer *layer = main_layer(copies[0].texel);
-        if (joint->layer && voxels_of(layer) <= voxels_of(joint->layer)) continue;
-        joint->layer = layer;
-        joint->count = count;
-        joint->lod = march->span.fits[i].lod;
-        memcpy(joint->copies, copies, (size_t)count * sizeof *copies);
+        if (best.count && voxels_of(layer) <= voxels_of(best.layer)) continue;
+        best = (JointCopies){.layer = layer, .texel = i, .count = count};
+        memcpy(of_best, copies, (size_t)count * sizeof *copies);
     }
+    if (!best.count) return NULL;
+    TexelCopy *kept = arena_new_array(arena, TexelCopy, (size_t)best.count);
+    memcpy(kept, of_best, (size_t)best.count * sizeof *kept);
+    JointCopies *joint = arena_new(arena, JointCopies);
+    *joint = best;
+    joint->copies = kept;
+    return joint;
+}
+
+void skin_joint_find(const SkinMarch *march, SkinJoint *joint) {
+    joint->of = NULL;
+    if (march->sheets || march->settings->opacity != OPACITY_CORRELATED || !march->skin->joint) return;
+    joint->of = march->skin->joint;
+    joint->lod = march->span.fits[joint->of->texel].lod;
     joint->place = march->span.place;
 }
 
 /* Finer or coarser than any voxels the cone's may be. */
-static float within_voxels(const SkinJoint *joint) { return float_clamp(joint->lod, 0, (float)(joint->layer->levels - 1)); }
+static float within_voxels(const SkinJoint *joint) { return float_clamp(joint->lod, 0, (float)(joint->of->layer->levels - 1)); }
 
 float skin_joint_ground(const SkinMarch *march, Vec3 to_eye, float through) {
     double height = march->stretch.start.w / GROUND_HEIGHT - 1;
     SkinJoint joint;
     if (march->entries != 1 || march->stretch.t0 > 1e-6 * (double)march->span.voxel_world || height >= 1) return through;
     skin_joint_find(march, &joint);
-    if (!joint.layer) return through;
-    float lod = within_voxels(&joint), coarse = blurred((float)(joint.layer->levels - 1) - lod, joint.copies[0].texel), seen = 0;
-    for (int i = 0; i < joint.count; i++) {
+    if (!joint.of) return through;
+    float lod = within_voxels(&joint), coarse = blurred((float)(joint.of->layer->levels - 1) - lod, joint.of->copies[0].texel), seen = 0;
+    for (int i = 0; i < joint.of->count; i++) {
         Vec3f eye = in_texel(&joint, i, to_eye), light = in_texel(&joint, i, march->cone->direction);
-        float share = powf(through, voxel_layer_ground_power(joint.layer, lod, eye, light));
-        seen += (share + (1 - share) * voxel_layer_spot(joint.layer, eye, light) * coarse) / (float)joint.count;
+        float share = powf(through, voxel_layer_ground_power(joint.of->layer, lod, eye, light));
+        seen += (share + (1 - share) * voxel_layer_spot(joint.of->layer, eye, light) * coarse) / (float)joint.of->count;
     }
     return through + (seen - through) * (float)double_min(1, 1 - height);
 }
@@ -83,17 +94,17 @@ float skin_joint_matter(const SkinMarch *march, Vec3 to_eye, float share) {
     SkinJoint joint;
     float mean = 0;
     skin_joint_find(march, &joint);
-    if (!joint.layer) return share;
-    for (int i = 0; i < joint.count; i++)
-        mean += powf(share, voxel_layer_matter_power(joint.layer, joint.lod, in_texel(&joint, i, to_eye), in_texel(&joint, i, march->cone->direction))) / (float)joint.count;
+    if (!joint.of) return share;
+    for (int i = 0; i < joint.of->count; i++)
+        mean += powf(share, voxel_layer_matter_power(joint.of->layer, joint.lod, in_texel(&joint, i, to_eye), in_texel(&joint, i, march->cone->direction))) / (float)joint.of->count;
     return mean;
 }
 
 void skin_joint_facing(const SkinJoint *joint, Vec3 to_eye, Vec3 to_light, float factor[2]) {
-    factor[0] = factor[1] = joint->layer ? 0 : 1;
-    for (int i = 0; joint->layer && i < joint->count; i++) {
+    factor[0] = factor[1] = joint->of ? 0 : 1;
+    for (int i = 0; joint->of && i < joint->of->count; i++) {
         float of_copy[2];
-        voxel_layer_facing(joint->layer, joint->lod, in_texel(joint, i, to_eye), in_texel(joint, i, to_light), of_copy);
-        for (int side = 0; side < 2; side++) factor[side] += of_copy[side] / (float)joint->count;
+        voxel_layer_facing(joint->of->layer, joint->lod, in_texel(joint, i, to_eye), in_texel(joint, i, to_light), of_copy);
+        for (int side = 0; side < 2; side++) factor[side] += of_copy[side] / (float)joint->of->count;
     }
 }

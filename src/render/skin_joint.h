@@ -12,12 +12,20 @@ float skin_joint_ground(const SkinMarch *march, Vec3 to_eye, float through);
  * voxels are. The march is one to the light from a place in the layer. */
 float skin_joint_matter(const SkinMarch *march, Vec3 to_eye, float share);
 
-/* The layer that tells what eye and light have in common at a place of the skin. */
-enum { JOINT_COPIES = 4 };
+/* The layer of a skin that tells what eye and light have in common, and some copies of it that are turned differently: the mean of what these tell holds for all. */
+enum { MOST_JOINT_COPIES = 4 };
+struct JointCopies {
+    const VoxelLayer *layer;
+    size_t texel; /* of the skin, to which it belongs */
+    int count;    /* of copies, at least 1 */
+    const TexelCopy *copies;
+};
+/* Of a skin whose voxels are built; NULL where no layer tells. Lives in the arena. */
+const JointCopies *skin_joint_copies(const CompiledSkin *skin, Arena *arena);
+
+/* That at a place of the skin. */
 typedef struct SkinJoint {
-    const VoxelLayer *layer; /* NULL: nothing does */
-    TexelCopy copies[JOINT_COPIES]; /* that are turned differently: the mean of what these tell holds for all */
-    int count;
+    const JointCopies *of; /* NULL: nothing tells */
     TexturePlace place;
     float lod; /* of the cone's voxels */
 } SkinJoint;

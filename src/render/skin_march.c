@@ -108,11 +108,13 @@ static void fit_span(const SkinMarch *m, const TexturePlace *place, double t, Ma
     Vec3 d = m->cone->direction;
     double width = ldexp(cone_diameter(m->cone, t) * (double)m->settings->voxel_width, m->coarser);
     float side = INFINITY, finest = INFINITY, stride = INFINITY;
+    span->coarsest = true;
     for (size_t i = 0; i < m->skin->texel_count; i++) {
         const PlacedTexel *placed = &m->skin->texels[i];
         float speed;
         span->fits[i] = fit_voxels(place, placed->finest_extent, placed->finest_voxel, d, width, &speed);
         if (m->settings->slab) span->fits[i] = coarsest_voxels(placed);
+        span->coarsest &= span->fits[i].lod >= (float)(placed->levels - 1);
         span->fits[i].width *= 1 / m->settings->voxel_width;
         span->fits[i].coarsening = exp2f(float_min(span->fits[i].lod, (float)(placed->levels - 1)));
         if (!(speed > 0)) continue;

@@ -107,6 +107,7 @@ typedef struct MarchSpan {
     float voxel_world; /* side of the finest voxels wanted along the cone, scene units */
     float finest_world; /* of the finest voxels there are */
     bool leaves;       /* the layer ends at t1 */
+    bool coarsest;     /* of no texel there are voxels as wide as the cone: one stands for the whole */
 } MarchSpan;
 
 typedef struct SkinMarch {

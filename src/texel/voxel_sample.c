@@ -166,10 +166,26 @@ static bool finish(const float sums[SUMS], VoxelSample *out) {
     return true;
 }
 
-static void add_level(const VoxelLayer *layer, int level, Vec3f p, float factor, float sums[SUMS]) {
+/* Of a level of one voxel, which holds its value all over the layer. */
+static void add_single(const VoxelLayer *layer, const VoxelLevel *level, Vec3f p, float factor, float sums[SUMS]) {
+    const float at[3] = {p.x * level->per_side[0], p.y * level->per_side[1], p.z * level->per_side[2]};
+    float lanes[SUMS][4];
+    if (!level->code_count) return;
+    for (int k = 0; k < 3; k++)
+        if (layer->cyclic[k] ? !(fabsf(at[k]) < 1e9f) : !(at[k] >= 0 && at[k] <= 1)) return;
+    const uint32_t diagonal[4] = {level->codes[0].diagonal}, rest[4] = {level->codes[0].rest};
+    decode_four(diagonal, rest, (const float[4]){factor}, lanes);
+    for (int i = 0; i < SUMS; i++) sums[i] += lanes[i][0];
+}
+
+static void add_level(const VoxelLayer *layer, int number, Vec3f p, float factor, float sums[SUMS]) {
+    const VoxelLevel *level = &layer->level[number];
+    if (level->size[0] == 1 && level->size[1] == 1 && level->size[2] == 1) {
+        add_single(layer, level, p, factor * level->density_unit, sums);
+        return;
+    }
     Corners corners;
-    if (gather(&layer->level[level], layer->cyclic, p, &corners))
-        add_corners(&corners, factor * layer->level[level].density_unit, sums);
+    if (gather(level, layer->cyclic, p, &corners)) add_corners(&corners, factor * level->density_unit, sums);
 }
 
 bool voxel_layer_sample(const VoxelLayer *layer, int level, Vec3f p, VoxelSample *out) {

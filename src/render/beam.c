@@ -1,5 +1,7 @@
 #include "render/beam.h"
 
+#include <string.h>
+
 Vec3 beam_vector(const Beam *beam, Vec3 v) {
     return vec3(vec3_dot(beam->rows[0], v), vec3_dot(beam->rows[1], v), vec3_dot(beam->rows[2], v));
 }
@@ -36,26 +38,21 @@ bool beam_meets_box(const Beam *beam, const Box3 *box) {
 
 /* ---- drawing ---- */
 
-/* A triangle's barycentric coordinates and its key as functions of the way from its first corner: e1 = a1·dx + b1·dy, e2 likewise, e0 = 1 + a0·dx + b0·dy.
+/* A triangle's barycentric coordinates and its key as functions of the way from its first corner: e1 = a1·dx + b1·dy, e2 likewise, e0 = 1 − e1 − e2.
  * From the origin of the samples they would lose the digits that a narrow blade's shadow on itself needs. */
 typedef struct Triangle {
     float x, y, key; /* of the corner */
-    float a[3], b[3];
+    float a1, b1, a2, b2;
     float key_x, key_y;
 } Triangle;
 
 static bool set_up(const Vec3f p[3], Triangle *t) {
-    float area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
+    float x1 = p[1].x - p[0].x, y1 = p[1].y - p[0].y, x2 = p[2].x - p[0].x, y2 = p[2].y - p[0].y, area = x1 * y2 - x2 * y1;
     if (!(fabsf(area) > 1e-20f)) return false;
-    float inverse = 1 / area;
-    for (int i = 0; i < 3; i++) {
-        const Vec3f *from = &p[(i + 1) % 3], *to = &p[(i + 2) % 3];
-        t->a[i] = (from->y - to->y) * inverse;
-        t->b[i] = (to->x - from->x) * inverse;
-    }
-    t->x = p[0].x, t->y = p[0].y, t->key = p[0].z;
-    t->key_x = t->a[1] * (p[1].z - p[0].z) + t->a[2] * (p[2].z - p[0].z);
-    t->key_y = t->b[1] * (p[1].z - p[0].z) + t->b[2] * (p[2].z - p[0].z);
+    float inverse = 1 / area, key1 = p[1].z - p[0].z, key2 = p[2].z - p[0].z;
+    *t = (Triangle){.x = p[0].x, .y = p[0].y, .key = p[0].z, .a1 = y2 * inverse, .b1 = -x2 * inverse, .a2 = -y1 * inverse, .b2 = x1 * inverse};
+    t->key_x = t->a1 * key1 + t->a2 * key2;
+    t->key_y = t->b1 * key1 + t->b2 * key2;
     return true;
 }
 
@@ -64,41 +61,47 @@ static const float HAIR = 1e-3f;
 
 static int bin_below(float x, int most) { return x > 0 ? x < (float)most ? (int)x : most : 0; }
 
-/* Samples begin … end − 1 against the triangle. Written so that compilers make vectors of it. */
-static bool cover(const BeamSamples *s, const Triangle *t, uint32_t begin, uint32_t end, float most, float exact_to, uint32_t mark) {
-    const float *restrict x = s->x, *restrict y = s->y;
-    const float *restrict limit = s->limit;
-    float *restrict key = s->key;
-    uint32_t *restrict marks = s->mark;
-    float a0 = t->a[0], b0 = t->b[0], a1 = t->a[1], b1 = t->b[1], a2 = t->a[2], b2 = t->b[2];
-    float kx = t->key_x, ky = t->key_y, k0 = t->key, x0 = t->x, y0 = t->y;
-    uint32_t any = 0;
-    for (uint32_t i = begin; i < end; i++) {
-        float dx = x[i] - x0, dy = y[i] - y0;
-        float e0 = 1 + (a0 * dx + b0 * dy), e1 = a1 * dx + b1 * dy, e2 = a2 * dx + b2 * dy, k = k0 + (kx * dx + ky * dy);
-        uint32_t in = (uint32_t)(e0 >= 0) & (uint32_t)(e1 >= 0) & (uint32_t)(e2 >= 0) & (uint32_t)(k > key[i]) &
-                      (uint32_t)(k * exact_to >= limit[i]) & (uint32_t)(k <= most);
-        uint32_t mask = 0u - in;
-        key[i] = in ? k : key[i];
-        marks[i] = (mark & mask) | (marks[i] & ~mask);
-        any |= in;
-    }
-    return any;
+typedef float Floats __attribute__((vector_size(4 * BEAM_LANES)));
+typedef int32_t Masks __attribute__((vector_size(4 * BEAM_LANES)));
+typedef int64_t Pairs __attribute__((vector_size(4 * BEAM_LANES)));
+
+static Floats floats_at(const float *from) {
+    Floats f;
+    memcpy(&f, from, sizeof f);
+    return f;
 }
 
-/* The same of a light's beam: samples keep their own keys. */
-static bool shade(const BeamSamples *s, const Triangle *t, uint32_t begin, uint32_t end, float most, float exact_to) {
-    const float *restrict x = s->x, *restrict y = s->y, *restrict key = s->key, *restrict limit = s->limit;
-    uint32_t *restrict marks = s->mark;
-    float a0 = t->a[0], b0 = t->b[0], a1 = t->a[1], b1 = t->b[1], a2 = t->a[2], b2 = t->b[2];
-    float kx = t->key_x, ky = t->key_y, k0 = t->key, x0 = t->x, y0 = t->y;
-    for (uint32_t i = begin; i < end; i++) {
-        float dx = x[i] - x0, dy = y[i] - y0;
-        float e0 = 1 + (a0 * dx + b0 * dy), e1 = a1 * dx + b1 * dy, e2 = a2 * dx + b2 * dy, k = k0 + (kx * dx + ky * dy);
-        marks[i] |= (uint32_t)(e0 >= 0) & (uint32_t)(e1 >= 0) & (uint32_t)(e2 >= 0) & (uint32_t)(k > key[i]) &
-                    (uint32_t)(exact_to >= limit[i]) & (uint32_t)(k <= most);
+static bool any_of(Masks m) {
+    Pairs p;
+    memcpy(&p, &m, sizeof p);
+    return p[0] | p[1];
+}
+
+/* Samples begin … end − 1 against the triangle, and some after them where they are not as many as go together: those are met in vain or as they ought to be. Hardly any triangle
+ * that is seen from far away meets one, so that most is left out. Of a light's beam samples keep their own keys. */
+static bool cover(const Beam *beam, const Triangle *t, uint32_t begin, uint32_t end, uint32_t mark) {
+    const BeamSamples *s = &beam->samples;
+    const Floats none = {0};
+    const float most = beam->perspective ? INFINITY : (float)beam->nearest, exact_to = beam->exact_to;
+    bool any = false;
+    for (uint32_t i = begin; i < end; i += BEAM_LANES) {
+        Floats dx = floats_at(s->x + i) - t->x, dy = floats_at(s->y + i) - t->y;
+        Floats e1 = t->a1 * dx + t->b1 * dy, e2 = t->a2 * dx + t->b2 * dy;
+        Masks in = (e1 >= 0) & (e2 >= 0) & (e1 + e2 <= 1);
+        if (!any_of(in)) continue;
+        Floats k = t->key + (t->key_x * dx + t->key_y * dy), key = floats_at(s->key + i);
+        in &= (k > key) & (k <= most) & ((beam->light ? none + exact_to : k * exact_to) >= floats_at(s->limit + i));
+        if (!any_of(in)) continue;
+        any = true;
+        Masks marks;
+        memcpy(&marks, s->mark + i, sizeof marks);
+        marks = (marks & ~in) | ((int32_t)mark & in);
+        memcpy(s->mark + i, &marks, sizeof marks);
+        if (beam->light) continue;
+        Masks keys = ((Masks)key & ~in) | ((Masks)k & in);
+        memcpy(s->key + i, &keys, sizeof keys);
     }
-    return true;
+    return any;
 }
 
 /* The range of x that the triangle has between two heights. */
@@ -122,6 +125,7 @@ static bool holds_samples(const BeamSamples *s, int x0, int x1, int y0, int y1) 
 }
 
 bool beam_draw_seen(Beam *beam, Vec3f a, Vec3f b, Vec3f c, uint32_t mark) {
+    enum { FEW_BINS = 3 }; /* in a row: narrowing it takes longer than looking at all that is in them */
     const BeamSamples *s = &beam->samples;
     float left = float_min(a.x, float_min(b.x, c.x)), right = float_max(a.x, float_max(b.x, c.x));
     float top = float_min(a.y, float_min(b.y, c.y)), bottom = float_max(a.y, float_max(b.y, c.y));
@@ -131,8 +135,7 @@ bool beam_draw_seen(Beam *beam, Vec3f a, Vec3f b, Vec3f c, uint32_t mark) {
     Triangle t;
     Vec3f corners[3] = {a, b, c};
     if (!holds_samples(s, x0, x1, y0, y1) || !set_up(corners, &t)) return false;
-    bool large = y1 > y0 && x1 > x0;
-    float most = beam->perspective ? INFINITY : (float)beam->nearest;
+    const bool large = y1 > y0 && x1 - x0 >= FEW_BINS;
     bool any = false;
     for (int row = y0; row <= y1; row++) {
         const uint32_t *first = s->first + row * s->columns;
@@ -141,8 +144,7 @@ bool beam_draw_seen(Beam *beam, Vec3f a, Vec3f b, Vec3f c, uint32_t mark) {
             if (!(right + HAIR >= 0 && left - HAIR <= (float)s->columns)) continue;
             x0 = bin_below(left - HAIR, s->columns - 1), x1 = bin_below(right + HAIR, s->columns - 1);
         }
-        if (beam->light) any |= shade(s, &t, first[x0], first[x1 + 1], most, beam->exact_to);
-        else any |= cover(s, &t, first[x0], first[x1 + 1], most, beam->exact_to, mark);
+        any |= cover(beam, &t, first[x0], first[x1 + 1], mark);
     }
     return any;
 }

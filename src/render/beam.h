@@ -13,9 +13,12 @@
 #include "base/arena.h"
 #include "base/vec.h"
 
+/* Samples are taken so many at a time. */
+enum { BEAM_LANES = 4 };
+
 /* Sorted by bin: those of bin (column, row) are numbers first[row·columns + column] up to the next bin's. */
 typedef struct BeamSamples {
-    int columns, rows;
+    int columns, rows; /* behind the samples the other arrays have BEAM_LANES − 1 more entries, of keys that are INFINITY */
     uint32_t *first; /* [columns·rows + 1] */
     float *x, *y;    /* in bins */
     float *key;      /* of the nearest so far; of a light's beam, of the point itself */

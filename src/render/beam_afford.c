@@ -96,6 +96,8 @@ static double seconds_of(const CompiledScene *compiled, const BeamWork *w, doubl
            times * (RAY * (double)w->rays + sample * (double)w->samples);
 }
 
+double beam_price_in_samples(uint64_t triangles, uint64_t nodes) { return (TRIANGLE * (double)triangles + NODE * (double)nodes) / SAMPLE; }
+
 static double pixels_of(const Probe *probes, int count) {
     double pixels = 0;
     for (int i = 0; i < count; i++) pixels += (double)(probes[i].x1 - probes[i].x0) * (probes[i].y1 - probes[i].y0);

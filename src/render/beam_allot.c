@@ -8,9 +8,10 @@ static const double FALL = 1.3;
 static const double HALVES_TO_SQUARE = 0.42 * 0.42;
 /* What a pixel's neighbours tell counts as much as so many samples of its own: a few may have missed what is thin. */
 static const double NEIGHBOURS = 12;
-/* No pass takes a pixel farther than this, against what it has: few samples do not tell enough for more. */
-enum { GROWTH = 4 };
-/* Nor is one made for less than these parts of what a pixel or all of them have. */
+/* No pass takes a pixel farther than this, against what it has: few samples do not tell enough for more. But where the pass itself takes longer than its samples, another would be
+ * dearer than some that are too many. */
+enum { GROWTH = 4, DEAR_GROWTH = 12 };
+/* Nor is one made for less than these parts of what a pixel has, or of what all have taken. */
 static const double LEAST_PART = 0.25, LEAST_PASS = 0.04;
 enum { HALVINGS = 60 };
 
@@ -43,23 +44,31 @@ static double noise_around(const Allotment *a, int i) {
     return (a->taken[i] * (double)a->noise[i] + NEIGHBOURS * sum / count) / (a->taken[i] + NEIGHBOURS);
 }
 
-static int ask(const Allotment *a, const AllotPlan *plan, int i) {
+static int ask(const Allotment *a, const AllotPlan *plan, int i, int growth) {
     if (a->taken[i] < plan->first) return plan->first - a->taken[i];
     if (!(plan->worth > 0)) return 0;
     double wanted = samples_at(noise_around(a, i), plan, plan->worth);
-    int more = int_min((int)ceil(wanted) - a->taken[i], (GROWTH - 1) * a->taken[i]);
+    int more = int_min((int)ceil(wanted) - a->taken[i], (growth - 1) * a->taken[i]);
     return more >= 2 && more >= LEAST_PART * a->taken[i] ? more : 0;
 }
 
-bool allot_next(Allotment *a, const AllotPlan *plan, const float *apart, int most_in_pass) {
+static double ask_all(Allotment *a, const AllotPlan *plan, int growth) {
+    double asked = 0;
+    for (int i = 0; i < a->columns * a->rows; i++) asked += a->asked[i] = ask(a, plan, i, growth);
+    return asked;
+}
+
+bool allot_next(Allotment *a, const AllotPlan *plan, const float *apart, int most_in_pass, double price) {
     int pixels = a->columns * a->rows;
-    double taken = 0, asked = 0, room = (double)most_in_pass * pixels;
+    double taken = 0, room = (double)most_in_pass * pixels;
+    a->paid += price;
     for (int i = 0; i < pixels; i++) {
         learn(a, i, (double)apart[i]);
         taken += a->taken[i] += a->asked[i];
     }
-    for (int i = 0; i < pixels; i++) asked += a->asked[i] = ask(a, plan, i);
-    if (!(asked >= LEAST_PASS * taken) || !(asked > 0)) return false;
+    double asked = ask_all(a, plan, GROWTH);
+    if (asked < price) asked = ask_all(a, plan, DEAR_GROWTH);
+    if (!(asked >= LEAST_PASS * (taken + a->paid)) || !(asked > 0)) return false;
     for (int i = 0; i < pixels && asked > room; i++) {
         a->asked[i] = (int)(a->asked[i] * (room / asked));
         if (a->asked[i] < 2) a->asked[i] = 0;

@@ -22,14 +22,16 @@ typedef struct Allotment {
     int columns, rows;
     int taken[ALLOT_PIXELS]; /* samples, before the pass that is being made */
     int asked[ALLOT_PIXELS]; /* in that pass */
+    double paid;             /* what the passes have taken besides, in samples */
     float noise[ALLOT_PIXELS]; /* as the passes have told, the mean of them weighed by their samples */
 } Allotment;
 
 /* The first pass, of `most_in_pass` samples a pixel at most. */
 void allot_begin(Allotment *allotment, const AllotPlan *plan, int columns, int rows, int most_in_pass);
 /* Ends a pass: `apart` has for each pixel the square of how far the means of its odd and even samples are apart. Lays the next one, of
- * most_in_pass samples a pixel at most, on the average; false when there is none. */
-bool allot_next(Allotment *allotment, const AllotPlan *plan, const float *apart, int most_in_pass);
+ * most_in_pass samples a pixel at most, on the average; false when there is none. `price` is what a pass takes however few its samples are, in samples: where that is
+ * much, fewer passes are made of more samples each. */
+bool allot_next(Allotment *allotment, const AllotPlan *plan, const float *apart, int most_in_pass, double price);
 /* The mean square of the error that is to be expected of a pixel on the average, with the samples that it has. */
 double allot_error(const Allotment *allotment);
 /* The noise of one sample of pixels whose mean square is `error` with n of them. */

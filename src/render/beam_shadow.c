@@ -4,22 +4,13 @@
 
 #include <string.h>
 
-enum { POINTS_IN_BIN = 4, MOST_BINS_ACROSS = 128, LEAST_HALVED = 64 };
+enum { POINTS_IN_BIN = 4, LEAST_HALVED = 64 };
 /* The share of a window's bins that hold points. */
 static const double LEAST_FILLED = 0.4;
 
 void shadow_scratch_init(ShadowScratch *s, uint32_t points, Arena *arena) {
-    *s = (ShadowScratch){.capacity = points,
-                         .seen = arena_new_array(arena, Vec3f, points),
-                         .order = arena_new_array(arena, uint32_t, points),
-                         .sorted = arena_new_array(arena, uint32_t, points),
-                         .bin = arena_new_array(arena, uint32_t, points),
-                         .first = arena_new_array(arena, uint32_t, MOST_BINS_ACROSS * MOST_BINS_ACROSS + 1),
-                         .mark = arena_new_array(arena, uint32_t, points),
-                         .x = arena_new_array(arena, float, points),
-                         .y = arena_new_array(arena, float, points),
-                         .key = arena_new_array(arena, float, points),
-                         .limit = arena_new_array(arena, float, points)};
+    *s = (ShadowScratch){.seen = arena_new_array(arena, Vec3f, points), .order = arena_new_array(arena, uint32_t, points)};
+    beam_bins_init(&s->bins, points, MOST_BINS_ACROSS * MOST_BINS_ACROSS, arena);
 }
 
 /* The rectangle around the points as the beam sees them, and the range of their keys. */
@@ -73,32 +64,22 @@ static double fit_bins(Beam *beam, const Window *w, double *left, double *top) {
 static int sort_points(ShadowScratch *scratch, Beam *beam, const ShadowPoints *in, const uint32_t *order, const Window *w) {
     double left, top, side = fit_bins(beam, w, &left, &top);
     float per_bin = (float)(1 / side), x0 = (float)left, y0 = (float)top;
-    BeamSamples *s = &beam->samples;
-    int bins = s->columns * s->rows, filled = 0;
-    *s = (BeamSamples){s->columns, s->rows, scratch->first, scratch->x, scratch->y, scratch->key, scratch->limit, scratch->mark};
-    memset(s->first, 0, ((size_t)bins + 1) * sizeof *s->first);
-    uint32_t *bin_of = scratch->bin, *sorted = scratch->sorted, count = w->count;
-    for (uint32_t i = 0; i < count; i++) {
+    const int columns = beam->samples.columns, rows = beam->samples.rows;
+    const BeamBins *bins = &scratch->bins;
+    for (uint32_t i = 0; i < w->count; i++) {
         Vec3f q = scratch->seen[order[i]];
-        int column = int_clamp((int)((q.x - x0) * per_bin), 0, s->columns - 1), row = int_clamp((int)((q.y - y0) * per_bin), 0, s->rows - 1);
-        bin_of[i] = (uint32_t)(row * s->columns + column);
-        s->first[bin_of[i] + 1]++;
+        int column = int_clamp((int)((q.x - x0) * per_bin), 0, columns - 1), row = int_clamp((int)((q.y - y0) * per_bin), 0, rows - 1);
+        bins->bin[i] = (uint32_t)(row * columns + column);
     }
-    for (int b = 0; b < bins; b++) {
-        filled += s->first[b + 1] > 0;
-        s->first[b + 1] += s->first[b];
+    int filled = beam_bins_sort(&scratch->bins, columns, rows, w->count);
+    for (uint32_t i = 0; i < w->count; i++) {
+        uint32_t point = order[bins->order[i]];
+        Vec3f q = scratch->seen[point];
+        bins->x[i] = (q.x - x0) * per_bin, bins->y[i] = (q.y - y0) * per_bin, bins->key[i] = q.z;
+        bins->mark[i] = 0;
+        bins->limit[i] = in->distance[point];
     }
-    for (uint32_t i = count; i-- > 0;) { /* fills each bin from its end; `first` comes back to the beginnings */
-        Vec3f q = scratch->seen[order[i]];
-        uint32_t at = --s->first[bin_of[i] + 1];
-        s->x[at] = (q.x - x0) * per_bin, s->y[at] = (q.y - y0) * per_bin, s->key[at] = q.z;
-        s->mark[at] = 0;
-        s->limit[at] = in->distance[order[i]];
-        sorted[at] = order[i];
-    }
-    /* Now first[b + 1] is where bin b begins. */
-    memmove(s->first, s->first + 1, (size_t)bins * sizeof *s->first);
-    s->first[bins] = count;
+    beam->samples = beam_bins_samples(bins, columns, rows);
     return filled;
 }
 
@@ -144,7 +125,7 @@ static void cast(ShadowScratch *scratch, const CompiledScene *compiled, const Be
     beam_close(&beam);
     scratch->draft.beam = &beam;
     beam_draw_cells(&scratch->draft, compiled, beam_gather(&scratch->draft, compiled));
-    for (uint32_t i = 0; i < count; i++) in->hidden[scratch->sorted[i]] |= (uint8_t)beam.samples.mark[i];
+    for (uint32_t i = 0; i < count; i++) in->hidden[order[scratch->bins.order[i]]] |= (uint8_t)beam.samples.mark[i];
 }
 
 /* The greatest distance from the eye of points that any skin's triangles shadow: behind it voxels do. */

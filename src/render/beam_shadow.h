@@ -2,6 +2,7 @@
 #ifndef VTS_RENDER_BEAM_SHADOW_H
 #define VTS_RENDER_BEAM_SHADOW_H
 
+#include "render/beam_bins.h"
 #include "render/beam_skin.h"
 
 /* Points to be tested; `hidden` is set, never cleared, for those that matter of skins keeps from the light. */
@@ -13,12 +14,13 @@ typedef struct ShadowPoints {
     uint32_t count;
 } ShadowPoints;
 
+enum { MOST_BINS_ACROSS = 128 };
+
 typedef struct ShadowScratch {
     BeamDraft draft;       /* with room for cells; of facets nothing is kept */
     Vec3f *seen;           /* the points as the light sees them */
-    uint32_t *order, *sorted, *bin, *first, *mark;
-    float *x, *y, *key, *limit;
-    uint32_t capacity;     /* of points */
+    uint32_t *order;       /* those that are looked at, the points of one beam side by side */
+    BeamBins bins;         /* of one beam; whoever draws no shadows may use them meanwhile */
     uint64_t rays;         /* counted up */
 } ShadowScratch;
 

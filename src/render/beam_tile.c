@@ -1,6 +1,7 @@
 #include "render/beam_sight.h"
 
 #include "base/random.h"
+#include "render/beam_afford.h"
 #include "render/beam_rigid.h"
 #include "render/volume_set.h"
 
@@ -81,6 +82,25 @@ void beam_tracer_count(const BeamTracer *tr, TraceCounters *sum) {
 }
 /* ---- skins ---- */
 
+/* How many parts of a pixel each way hold a few samples each, where it has some. */
+static int parts_of_pixels(const BeamTracer *tr) {
+    enum { SAMPLES_IN_PART = 4, MOST_PARTS = MOST_BINS_ACROSS / BEAM_TILE };
+    int samples = 0, pixels = 0;
+    for (int i = 0; i < tr->columns * tr->rows; i++) samples += tr->allotment.asked[i], pixels += tr->allotment.asked[i] > 0;
+    return int_clamp((int)ceil(sqrt((double)samples / (SAMPLES_IN_PART * int_max(pixels, 1)))), 1, MOST_PARTS);
+}
+
+/* Pixels of many samples are cut in parts of a few each. */
+static void draw_in_parts(BeamTracer *tr, uint32_t cells) {
+    if (cells == 0) return;
+    Beam parted = tr->beam;
+    beam_part(&parted, parts_of_pixels(tr), &tr->shadow.bins);
+    tr->draft.beam = &parted;
+    beam_draw_cells(&tr->draft, tr->compiled, cells);
+    tr->draft.beam = &tr->beam;
+    beam_join(&parted, &tr->shadow.bins, &tr->beam);
+}
+
 static void draw_skins(BeamTracer *tr, uint32_t cells) {
     BeamSamples *s = &tr->beam.samples;
     uint32_t count = s->first[tr->columns * tr->rows];
@@ -94,7 +114,7 @@ static void draw_skins(BeamTracer *tr, uint32_t cells) {
     }
     if (tr->compiled->rigid)
         tr->counters.camera_rays += rigid_see(tr->compiled->rigid, &tr->draft, tr->corner, tr->right, tr->down, tr->compiled->view.camera.direction);
-    beam_draw_cells(&tr->draft, tr->compiled, cells);
+    draw_in_parts(tr, cells);
 }
 
 /* Of what volumes ask for the light that comes to them. */
@@ -280,11 +300,15 @@ void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out, Ao
     if (beam_gather(&tr->draft, tr->compiled) == 0 && see_sky(tr, out)) return;
     allot_begin(&tr->allotment, &tr->plan.samples, tr->columns, tr->rows, most_in_pass);
     tr->first_pass = true;
+    double fixed;
     do {
+        BeamWork before = beam_tracer_work(tr);
         if (!tr->first_pass) beam_aim(tr); /* drawing has narrowed the beam */
         see_pass(tr, out, apart);
         tr->first_pass = false;
-    } while (allot_next(&tr->allotment, &tr->plan.samples, apart, most_in_pass) && !beam_is_interrupted(&tr->draft));
+        BeamWork after = beam_tracer_work(tr);
+        fixed = beam_price_in_samples(after.triangles - before.triangles, after.nodes - before.nodes);
+    } while (allot_next(&tr->allotment, &tr->plan.samples, apart, most_in_pass, fixed) && !beam_is_interrupted(&tr->draft));
     tr->tile_noise = allot_error(&tr->allotment);
     tr->squared_noise += tr->tile_noise * pixels;
 }

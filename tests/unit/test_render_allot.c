@@ -76,7 +76,7 @@ static Trial draw(const AllotPlan *plan, const double *deviations, int columns, 
             sums[i] += odd + even;
             apart[i] = odds ? (float)pow(odd / odds - even / (n - odds), 2) : 0;
         }
-    } while (allot_next(&a, plan, apart, 32));
+    } while (allot_next(&a, plan, apart, 32, 0));
     Trial t = {0, allot_error(&a), sum_of(a.taken, pixels)};
     for (int i = 0; i < pixels; i++) t.wrong += pow(sums[i] / a.taken[i], 2) / pixels;
     return t;
@@ -119,7 +119,7 @@ static void bounds_are_kept(void **state) {
         }
         assert_true(room <= 32 * 155);
         assert_true(++passes < 40);
-    } while (allot_next(&a, &plan, apart, 32));
+    } while (allot_next(&a, &plan, apart, 32, 0));
     for (int i = 0; i < 155; i++) assert_true(a.taken[i] >= 3 && a.taken[i] <= 50);
     assert_true(a.taken[7] > 40);
 }

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-enum { COLUMNS = 7, ROWS = 5, PER_BIN = 12, SAMPLES = COLUMNS * ROWS * PER_BIN, POLYGONS = 40, MOST_SIDES = 6 };
+enum { COLUMNS = 7, ROWS = 5, PER_BIN = 12, SAMPLES = COLUMNS * ROWS * PER_BIN, PADDED = SAMPLES + BEAM_LANES - 1, POLYGONS = 40, MOST_SIDES = 6 };
 static const double NEAREST = 0.5, NEAR_EDGE = 1e-4;
 
 typedef struct Polygon {
@@ -18,8 +18,8 @@ typedef struct Polygon {
 } Polygon;
 
 typedef struct Field {
-    uint32_t first[COLUMNS * ROWS + 1], mark[SAMPLES];
-    float x[SAMPLES], y[SAMPLES], key[SAMPLES], limit[SAMPLES];
+    uint32_t first[COLUMNS * ROWS + 1], mark[PADDED];
+    float x[PADDED], y[PADDED], key[PADDED], limit[PADDED];
     Beam beam;
     Polygon polygons[POLYGONS];
 } Field;
@@ -40,6 +40,7 @@ static void lay(Field *f, RandomStream *r, bool perspective, bool light) {
         }
     }
     f->first[COLUMNS * ROWS] = SAMPLES;
+    for (int i = SAMPLES; i < PADDED; i++) f->key[i] = INFINITY;
 }
 
 /* A convex polygon: corners in order on an ellipse of a random plane; some reach behind the eye. */

@@ -76,9 +76,9 @@ static bool take_spare(Arena *arena, size_t at_least) {
 }
 
 /* Whether its memory is known to be zero: what is made for one large piece comes so from the system, page by page as it is touched. */
-static bool add_block(Arena *arena, size_t at_least) {
+static bool add_block(Arena *arena, size_t at_least, bool zeroes) {
     if (take_spare(arena, at_least)) return false;
-    bool zeroed = at_least > arena->block_size;
+    bool zeroed = zeroes && at_least > arena->block_size;
     size_t size = size_max(at_least, arena->block_size);
     if (size > SIZE_MAX - sizeof(ArenaBlock)) memory_budget_fail(arena->budget);
     size_t bytes = sizeof(ArenaBlock) + size;
@@ -95,19 +95,33 @@ static bool add_block(Arena *arena, size_t at_least) {
     return zeroed;
 }
 
-void *arena_push(Arena *arena, size_t size) {
+/* *zeroed: whether zeroes are wanted, and then whether they are there. */
+static void *push(Arena *arena, size_t size, bool *zeroed) {
     if (size > SIZE_MAX - ALIGNMENT) memory_budget_fail(arena->budget);
     size_t rounded = size == 0 ? ALIGNMENT : (size + ALIGNMENT - 1) & ~(size_t)(ALIGNMENT - 1);
     bool full = !arena->block || arena->block->size - arena->used < rounded;
-    bool zeroed = full && add_block(arena, rounded);
+    *zeroed = full && add_block(arena, rounded, *zeroed);
     void *result = arena->block->data + arena->used;
     arena->used += rounded;
+    return result;
+}
+
+void *arena_push(Arena *arena, size_t size) {
+    bool zeroed = true;
+    void *result = push(arena, size, &zeroed);
     return zeroed ? result : memset(result, 0, size);
 }
 
-void *arena_push_array_(Arena *arena, size_t count, size_t size) {
+static size_t size_of_array(Arena *arena, size_t count, size_t size) {
     if (size != 0 && count > SIZE_MAX / size) memory_budget_fail(arena->budget);
-    return arena_push(arena, count * size);
+    return count * size;
+}
+
+void *arena_push_array_(Arena *arena, size_t count, size_t size) { return arena_push(arena, size_of_array(arena, count, size)); }
+
+void *arena_push_room_(Arena *arena, size_t count, size_t size) {
+    bool zeroed = false;
+    return push(arena, size_of_array(arena, count, size), &zeroed);
 }
 
 void *arena_copy(Arena *arena, const void *data, size_t size) {

@@ -52,6 +52,9 @@ void *arena_push(Arena *arena, size_t size);
 void *arena_push_array_(Arena *arena, size_t count, size_t size);
 #define arena_new(arena, Type)          ((Type *)arena_push((arena), sizeof(Type)))
 #define arena_new_array(arena, Type, n) ((Type *)arena_push_array_((arena), (n), sizeof(Type)))
+/* Room for an array of which nothing is read before it is written: the bytes may be anything. What of a large one is never written takes no memory. */
+void *arena_push_room_(Arena *arena, size_t count, size_t size);
+#define arena_new_room(arena, Type, n)  ((Type *)arena_push_room_((arena), (n), sizeof(Type)))
 
 /* A copy of `size` bytes; of a string with its terminator. */
 void *arena_copy(Arena *arena, const void *data, size_t size);

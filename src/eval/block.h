@@ -30,6 +30,7 @@
 #include "base/gamma.h"
 #include "base/diag.h"
 #include "eval/value.h"
+#include "lexer/token.h"
 
 typedef enum BlockItemKind {
     ITEM_VALUE, /* an expression or a nested block: `value` */
@@ -55,13 +56,6 @@ typedef struct BlockItem {
     const EvalBlock *entry;    /* ITEM_ENTRY: the items between the brackets */
     struct { const Object **items; size_t count, capacity; } objects; /* ITEM_OBJECTS; each says itself where it stands */
 } BlockItem;
-
-/* A float or a vector of a long list. */
-typedef struct ListedNumber {
-    Span span;
-    uint32_t size; /* 1 to 3 */
-    double components[3]; /* of a float three times the same */
-} ListedNumber;
 
 struct EvalBlock {
     Name word;       /* the keyword before the brace */

@@ -138,6 +138,7 @@ static Shape node_shape(Eval *ev, const Node *n) {
     case NODE_ENTRY:
     case NODE_LIST:
     case NODE_EMPTY:
+    case NODE_NUMBERS:
     case NODE_ERROR: return (Shape){2, BIND_NONE, false};
     case NODE_CALL: return call_shape(ev, n);
     default: return (Shape){1, node_binding(ev, n), n->kind == NODE_BLOCK};

@@ -538,6 +538,7 @@ Flow run_node(Eval *ev, const Node *node, Sink *sink) {
     case NODE_WORD: sink_word(ev, sink, node); break;
     case NODE_ENTRY: sink_entry(ev, sink, node); break;
     case NODE_LIST: sink_list(ev, sink, node); break;
+    case NODE_NUMBERS: sink_numbers(ev, sink, node->as.numbers); break;
     case NODE_EMPTY:
         if (node->op == ',' || !after_declare) check_stray(ev, node, sink);
         sink->layers = false;

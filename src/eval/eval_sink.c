@@ -62,7 +62,7 @@ static void unlist(Eval *ev, Sink *sink) {
     const EvalBlock list = {.numbers = sink->numbers.items, .number_count = sink->numbers.count};
     const EvalBlock *block = block_with_items(&ev->blocks, &list);
     *sink->items = (ItemList){(BlockItem *)(uintptr_t)block->items, block->count, block->count};
-    sink->numbers = (NumberList){0};
+    sink->numbers = (ListedNumbers){0};
 }
 
 static void add_item(Eval *ev, Sink *sink, Value v, Span span) {
@@ -119,6 +119,19 @@ void sink_value(Eval *ev, Sink *sink, Value v, Span span) {
         return;
     case SINK_ARRAY: add_element(ev, sink, v, span); return;
     default: diag_error(ev->diags, span, "%s has no meaning here", value_kind_text(v.kind)); return;
+    }
+}
+
+void sink_numbers(Eval *ev, Sink *sink, const ListedNumbers *numbers) {
+    if (sink->lists && sink->numbers.count == 0) {
+        sink->numbers = (ListedNumbers){numbers->items, numbers->count, numbers->count}; /* what is added comes into a copy */
+        return;
+    }
+    for (size_t i = 0; i < numbers->count && !ev->stopped; i++) {
+        const ListedNumber *n = &numbers->items[i];
+        Value v = {.kind = VALUE_VECTOR, .size = (uint8_t)n->size, .as.components = (double *)(uintptr_t)n->components};
+        sink_value(ev, sink, n->size == 1 ? value_float(n->components[0]) : v, n->span);
+        if (ev->diags->error_count && diag_full(ev->diags)) ev->stopped = true;
     }
 }
 

@@ -79,18 +79,13 @@ typedef struct ItemList {
     size_t count, capacity;
 } ItemList;
 
-typedef struct NumberList {
-    ListedNumber *items;
-    size_t count, capacity;
-} NumberList;
-
 typedef struct Sink {
     SinkKind kind;
     Name block;         /* SINK_ITEMS */
     ItemList *items;    /* SINK_ITEMS */
     bool gathers;       /* SINK_ITEMS: a block of objects, of which there may be very many */
     bool lists;         /* SINK_ITEMS: a list of a mesh, with nothing but numbers so far */
-    NumberList numbers; /* SINK_ITEMS: these */
+    ListedNumbers numbers; /* SINK_ITEMS: these */
     uint64_t word_body; /* SINK_ITEMS: the run of a body that brought the last word */
     Value value;        /* SINK_SINGLE */
     bool filled;
@@ -388,6 +383,8 @@ uint32_t run_literals(Eval *ev, const Body *body, uint32_t at, Sink *sink);
 
 /* ---- eval_sink.c ---- */
 void sink_value(Eval *ev, Sink *sink, Value value, Span span);
+/* The same of all of a list: it may become the sink's own. */
+void sink_numbers(Eval *ev, Sink *sink, const ListedNumbers *numbers);
 void sink_word(Eval *ev, Sink *sink, const Node *node);
 void sink_entry(Eval *ev, Sink *sink, const Node *node);
 void sink_list(Eval *ev, Sink *sink, const Node *node);

@@ -27,7 +27,7 @@ typedef struct Lexer {
 static Span span_from(const Lexer *lx, uint32_t begin) { return (Span){lx->file->id, begin, lx->at}; }
 
 static Token *push(Lexer *lx, int kind, uint32_t begin) {
-    Token *t = list_push(lx->arena, &lx->tokens);
+    Token *t = list_push_sole(lx->arena, &lx->tokens);
     *t = (Token){.kind = (uint8_t)kind, .span = span_from(lx, begin)};
     return t;
 }
@@ -141,7 +141,7 @@ static bool short_decimal(const Decimal *d, double *out) {
 }
 
 /* number = (digits ["." [digits]] | "." digits) [("e" | "E") ["+" | "-"] [digits]] */
-static void lex_number(Lexer *lx) {
+static double read_number(Lexer *lx) {
     uint32_t begin = lx->at;
     const char *text = lx->text;
     Decimal d = {0};
@@ -160,7 +160,13 @@ static void lex_number(Lexer *lx) {
         if (!is_word_part(text[exponent]) || is_digit(text[exponent])) lx->at = exponent;
         while (is_digit(text[lx->at])) lx->at++;
     }
-    push(lx, TOKEN_NUMBER, begin)->as.number = simple ? value : strtod(text + begin, NULL);
+    return simple ? value : strtod(text + begin, NULL);
+}
+
+static void lex_number(Lexer *lx) {
+    uint32_t begin = lx->at;
+    double value = read_number(lx);
+    push(lx, TOKEN_NUMBER, begin)->as.number = value;
 }
 
 static void add_utf8(StrBuf *out, unsigned code) {
@@ -300,6 +306,98 @@ static void lex_directive(Lexer *lx) {
     t->keyword = keyword_is_directive(keyword) ? (uint16_t)keyword : KW_NONE;
 }
 
+/* ---- long lists ---- */
+
+/* Programs hold numbers and vectors by the hundred thousand: what stands in braces and is nothing else becomes one token. */
+
+/* A comment that ends makes no token; of one that does not the caller sees that it made one. */
+static char next_char(Lexer *lx) {
+    skip_blanks(lx);
+    return lx->text[lx->at];
+}
+
+static bool begins_number(const Lexer *lx) { return is_digit(lx->text[lx->at]) || (lx->text[lx->at] == '.' && is_digit(lx->text[lx->at + 1])); }
+
+/* ["-" | "+"] number */
+static bool listed_float(Lexer *lx, double *out) {
+    char sign = next_char(lx);
+    if (sign == '-' || sign == '+') {
+        lx->at++;
+        skip_blanks(lx);
+    }
+    if (!begins_number(lx)) return false;
+    double value = read_number(lx);
+    *out = sign == '-' ? -value : value;
+    return true;
+}
+
+/* "<" float { "," float } ">", two or three of them; or a float */
+static bool listed_number(Lexer *lx, ListedNumber *out) {
+    uint32_t begin = lx->at;
+    double *c = out->components;
+    if (lx->text[begin] != '<') {
+        out->size = 1;
+        if (!listed_float(lx, c)) return false;
+        c[1] = c[2] = c[0];
+    } else {
+        do {
+            lx->at++;
+            if (out->size == 3 || !listed_float(lx, &c[out->size++])) return false;
+        } while (next_char(lx) == ',');
+        if (out->size < 2 || lx->text[lx->at++] != '>') return false;
+    }
+    out->span = span_from(lx, begin);
+    return true;
+}
+
+/* How many there will be, from what those so far take. */
+static size_t expected_in_list(const Lexer *lx, uint32_t begin, size_t so_far) {
+    const char *from = lx->text + lx->at, *close = memchr(from, '}', lx->size - lx->at);
+    size_t each = (lx->at - begin) / so_far;
+    return close ? (size_t)(close - from) / size_max(each, 1) * 9 / 8 + so_far : 0;
+}
+
+enum { LONG_LIST = 64 };
+
+/* Up to the closing brace; false where there is anything else, or not much. */
+static bool read_list(Lexer *lx, ListedNumbers *list) {
+    uint32_t begin = lx->at;
+    ListedNumber few[LONG_LIST];
+    list->items = few, list->capacity = LONG_LIST;
+    for (char c = next_char(lx); c != '}'; c = next_char(lx)) {
+        if (list->count == LONG_LIST && list->items == few) {
+            list->capacity = size_max(expected_in_list(lx, begin, LONG_LIST), 2 * LONG_LIST);
+            list->items = arena_new_array(lx->arena, ListedNumber, list->capacity);
+            memcpy(list->items, few, sizeof few);
+        }
+        ListedNumber *n = list_push_sole(lx->arena, list);
+        *n = (ListedNumber){0};
+        if (!listed_number(lx, n)) return false;
+        c = next_char(lx);
+        if (c == ',') lx->at++;
+        else if (c != '}') return false;
+    }
+    return list->count > LONG_LIST;
+}
+
+/* After an opening brace. */
+static void lex_list(Lexer *lx) {
+    const uint32_t begin = lx->at;
+    const size_t tokens = lx->tokens.count;
+    const ArenaMark mark = arena_mark(lx->arena);
+    ListedNumbers list = {0};
+    if (read_list(lx, &list) && lx->tokens.count == tokens) {
+        const Span from = list.items[0].span, to = list.items[list.count - 1].span;
+        Token *t = push(lx, TOKEN_LIST, begin);
+        t->span = span_join(from, to);
+        t->as.list = arena_copy(lx->arena, &list, sizeof list);
+        return;
+    }
+    if (lx->tokens.count == tokens) arena_reset_to(lx->arena, mark);
+    lx->tokens.count = tokens;
+    lx->at = begin;
+}
+
 static void lex_symbol(Lexer *lx) {
     uint32_t begin = lx->at;
     char c = lx->text[lx->at++], next = lx->text[lx->at];
@@ -312,6 +410,7 @@ static void lex_symbol(Lexer *lx) {
         kind = TOKEN_NOT_EQUAL;
     if (kind != c) lx->at++;
     push(lx, kind, begin);
+    if (c == '{') lex_list(lx);
 }
 
 /* A run of bytes that no token begins with: kept as one token '$', so that text which a branch skips may hold anything and what is
@@ -323,7 +422,11 @@ static void lex_unknown(Lexer *lx) {
 }
 
 static bool is_symbol(char c) {
-    return c && strchr(",<>-+*/^!=&|?:.;()[]{}", c);
+    switch (c) {
+    case ',': case '<': case '>': case '-': case '+': case '*': case '/': case '^': case '!': case '=': case '&': case '|': case '?':
+    case ':': case '.': case ';': case '(': case ')': case '[': case ']': case '{': case '}': return true;
+    default: return false;
+    }
 }
 
 static void lex_one(Lexer *lx) {
@@ -342,29 +445,8 @@ static void lex_one(Lexer *lx) {
         lex_unknown(lx);
 }
 
-/* Large texts are data. A list that grows by doubling would leave behind as much as it takes, so their tokens are counted first: by
- * rules that are right for lists of numbers and near enough elsewhere. */
-static size_t expected_tokens(const SourceFile *file) {
-    enum { LARGE_TEXT = 1 << 16 };
-    size_t count = 0;
-    bool within = false; /* a word or a number */
-    if (file->size < LARGE_TEXT) return 0;
-    for (const char *c = file->text, *end = c + file->size; c < end; c++) {
-        bool part = is_word_part(*c) || *c == '.';
-        count += part ? !within : is_symbol(*c);
-        within = part;
-        if (c[0] == '/' && c[1] == '/') {
-            const char *line_end = memchr(c, '\n', (size_t)(end - c));
-            c = line_end ? line_end : end - 1;
-        }
-    }
-    return count + 2;
-}
-
 TokenList *lexer_run(const SourceFile *file, const KeywordTable *keywords, Arena *arena) {
     Lexer lx = {.file = file, .keywords = keywords, .arena = arena, .text = file->text, .size = file->size};
-    lx.tokens.capacity = expected_tokens(file);
-    if (lx.tokens.capacity) lx.tokens.items = arena_new_array(arena, Token, lx.tokens.capacity);
     if (lx.size >= 3 && memcmp(lx.text, "\xEF\xBB\xBF", 3) == 0) lx.at = 3;
     for (skip_blanks(&lx); lx.at < lx.size; skip_blanks(&lx)) lex_one(&lx);
     /* The end is blamed for what is missing: it lies right after the last token, not behind blank lines. */
@@ -406,6 +488,7 @@ const char *token_describe(const Token *token, SourceSet *sources, Arena *arena)
     case TOKEN_WORD: return arena_printf(arena, "'%s'", token->as.name->text);
     case TOKEN_DIRECTIVE: return arena_printf(arena, "'#%s'", token->as.name->text);
     case TOKEN_BROKEN: return "text that cannot be read";
+    case TOKEN_LIST: return "a list of numbers";
     case '$':
     case TOKEN_VALUE: return token_text(token, sources, arena);
     case TOKEN_LESS_EQUAL: return "'<='";
@@ -416,7 +499,7 @@ const char *token_describe(const Token *token, SourceSet *sources, Arena *arena)
 }
 
 void lexer_print(const TokenList *tokens, SourceSet *sources, StrBuf *out) {
-    static const char *const kinds[] = {"end", "number", "string", "word", "directive", "value", "broken"};
+    static const char *const kinds[] = {"end", "number", "string", "word", "directive", "value", "broken", "list"};
     for (uint32_t i = 0; i < tokens->count; i++) {
         const Token *t = &tokens->items[i];
         SourcePlace place = source_locate(sources, t->span);

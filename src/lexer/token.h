@@ -32,6 +32,7 @@ typedef enum TokenKind {
     TOKEN_DIRECTIVE, /* # and its word in one; keyword is KW_NONE for a word that is no directive */
     TOKEN_VALUE,     /* made while macros are expanded: a name replaced by its value */
     TOKEN_BROKEN,    /* cannot be read; keyword holds a BrokenKind */
+    TOKEN_LIST,      /* all that stands in a '{ }', where that is many numbers and vectors */
     /* The single characters stand for themselves; these have two. */
     TOKEN_LESS_EQUAL = 128,
     TOKEN_GREATER_EQUAL,
@@ -49,6 +50,18 @@ typedef enum BrokenKind {
 
 struct Value;
 
+/* A float or a vector of a long list. */
+typedef struct ListedNumber {
+    Span span;
+    uint32_t size; /* 1 to 3 */
+    double components[3]; /* of a float three times the same; of what a vector has not 0 */
+} ListedNumber;
+
+typedef struct ListedNumbers {
+    ListedNumber *items;
+    size_t count, capacity;
+} ListedNumbers;
+
 typedef struct Token {
     uint8_t kind; /* TokenKind or a character */
     bool
@@ -63,6 +76,7 @@ typedef struct Token {
         Name name; /* word; directive: the word after # */
         struct TokenString *string;
         const struct Value *value;
+        const ListedNumbers *list;
     } as;
 } Token;
 

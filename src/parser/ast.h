@@ -47,6 +47,7 @@ typedef enum NodeKind {
     NODE_READ,
     NODE_WRITE,
     NODE_EMPTY, /* a stray ; or , */
+    NODE_NUMBERS, /* many numbers and vectors: all that stands in a body */
 } NodeKind;
 
 /* texture { … } texture { … } where one value is wanted. */
@@ -95,6 +96,7 @@ struct Node {
         const TokenString *string;
         const struct Value *value;
         Name name;
+        const ListedNumbers *numbers;
         NodeList list; /* VECTOR, BUILTIN, READ and WRITE (first the handle), UNDEF, FOPEN (handle, path) */
         struct {
             Node *a, *b;

@@ -5,7 +5,7 @@ static const char *const kind_texts[] = {
     "dot",      "unary",  "binary", "condition", "call",  "builtin",  "color",   "array",  "dictionary",
     "function", "block",  "word",   "entry",     "list",  "declare",  "undef",   "if",
     "while",    "for",    "switch", "break",     "macro", "include",  "version", "default",
-    "message",  "fopen",  "fclose", "read",      "write", "empty"};
+    "message",  "fopen",  "fclose", "read",      "write", "empty", "numbers"};
 
 static void print_list(const NodeList *list, StrBuf *out, int indent) {
     for (size_t i = 0; i < list->count; i++) ast_print(list->items[i], out, indent);

@@ -209,6 +209,12 @@ Node *parser_statement(Parser *p) {
         parser_take(p);
         return n;
     }
+    case TOKEN_LIST: {
+        Node *n = parser_node(p, NODE_NUMBERS, t->span);
+        n->as.numbers = t->as.list;
+        parser_take(p);
+        return n;
+    }
     case TOKEN_WORD: return t->keyword ? keyword_item(p) : named_item(p);
     case '}':
     case ')':

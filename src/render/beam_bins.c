@@ -4,14 +4,14 @@
 
 void beam_bins_init(BeamBins *b, uint32_t samples, uint32_t most_bins, Arena *arena) {
     const uint32_t padded = samples + BEAM_LANES - 1;
-    *b = (BeamBins){.first = arena_new_array(arena, uint32_t, most_bins + 1),
-                    .bin = arena_new_array(arena, uint32_t, samples),
-                    .order = arena_new_array(arena, uint32_t, samples),
-                    .x = arena_new_array(arena, float, padded),
-                    .y = arena_new_array(arena, float, padded),
-                    .key = arena_new_array(arena, float, padded),
-                    .limit = arena_new_array(arena, float, padded),
-                    .mark = arena_new_array(arena, uint32_t, padded)};
+    *b = (BeamBins){.first = arena_new_room(arena, uint32_t, most_bins + 1),
+                    .bin = arena_new_room(arena, uint32_t, samples),
+                    .order = arena_new_room(arena, uint32_t, samples),
+                    .x = arena_new_room(arena, float, padded),
+                    .y = arena_new_room(arena, float, padded),
+                    .key = arena_new_room(arena, float, padded),
+                    .limit = arena_new_room(arena, float, padded),
+                    .mark = arena_new_room(arena, uint32_t, padded)};
 }
 
 int beam_bins_sort(BeamBins *b, int columns, int rows, uint32_t samples) {

@@ -177,8 +177,10 @@ void beam_plan_skin(CompiledSkin *skin, bool everything, CompiledScene *compiled
     bool out_of_sight = farthest == 0; /* its shadows may be seen */
     if (everything || out_of_sight || 0.7 * to >= farthest ) to = VTS_INFINITY;
     if (BEYOND_PLAN * to <= nearest && !out_of_sight) return;
-    Box3 *boxes = arena_new_array(compiled->arena, Box3, skin->cell_count);
+    ArenaMark mark = arena_mark(&compiled->scratch);
+    Box3 *boxes = arena_new_array(&compiled->scratch, Box3, skin->cell_count);
     for (size_t i = 0; i < skin->cell_count; i++) boxes[i] = skin->cells[i].bounds;
     skin->boxes = box_tree_build(boxes, skin->cell_count, compiled->arena);
+    arena_reset_to(&compiled->scratch, mark);
     skin->exact_to = to;
 }

@@ -9,7 +9,7 @@ enum { POINTS_IN_BIN = 4, LEAST_HALVED = 64 };
 static const double LEAST_FILLED = 0.4;
 
 void shadow_scratch_init(ShadowScratch *s, uint32_t points, Arena *arena) {
-    *s = (ShadowScratch){.seen = arena_new_array(arena, Vec3f, points), .order = arena_new_array(arena, uint32_t, points)};
+    *s = (ShadowScratch){.seen = arena_new_room(arena, Vec3f, points), .order = arena_new_room(arena, uint32_t, points)};
     beam_bins_init(&s->bins, points, MOST_BINS_ACROSS * MOST_BINS_ACROSS, arena);
 }
 

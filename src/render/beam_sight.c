@@ -115,7 +115,7 @@ static void see_facet(const BeamTracer *tr, Sight *sight) {
 static bool look_varies(const SurfaceHit *hit) { return hit->share_count || !hit->look->uniform || hit->look->texture->normal; }
 
 static void see_explicit(const SeenSurface *seen, Vec3 point, double width, int samples, double t, Sight *sight) {
-    const SurfaceHit *hit = &seen->hit;
+    const SurfaceHit *hit = seen->hit;
     Vec3 normal = hit->normal, direction = vec3_negate(vec3_from_f(sight->view));
     double part = look_varies(hit) ? sample_width(samples) : 1;
     const Cone cone = {vec3_madd(point, direction, -hit->t), direction, part * width, 0};
@@ -131,7 +131,8 @@ static void see_explicit(const SeenSurface *seen, Vec3 point, double width, int 
 
 /* Two explicit hits of one pixel that may share their shading. */
 static bool same_surface(const SeenSurface *a, const SeenSurface *b) {
-    return a == b || (a->found == b->found && (!a->found || (a->hit.object == b->hit.object && vec3_dot(a->hit.normal, b->hit.normal) > 0.999)));
+    if (!a->hit || !b->hit) return a->hit == b->hit;
+    return a == b || (a->hit->object == b->hit->object && vec3_dot(a->hit->normal, b->hit->normal) > 0.999);
 }
 
 /* Whether a sample sees voxels of any skin before what it sees. */
@@ -196,7 +197,7 @@ static uint32_t sight_of(const BeamTracer *tr, int pixel, uint32_t begin, uint32
 static Sight new_sight(const BeamTracer *tr, int pixel, uint32_t sample, bool beyond) {
     Sight sight = {.pixel = pixel, .first = BEAM_NOTHING, .t = INFINITY, .sky = -1, .beyond = beyond, .narrow = is_narrow(tr, sample, beyond)};
     uint32_t mark = tr->beam.samples.mark[sample];
-    if (!mark && !beam_surface_of(tr, pixel, sample)->found) return sight;
+    if (!mark && !beam_surface_of(tr, pixel, sample)->hit) return sight;
     double t;
     sight.point = beam_sample_point(tr, sample, &t);
     sight.t = (float)t;

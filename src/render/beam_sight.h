@@ -12,10 +12,15 @@ enum { BEAM_NOTHING = -1, BEAM_EDGE = BEAM_TILE + 2, BEAM_MOST_IN_PASS = 32 };
 
 /* An explicit surface, as one ray has met it. */
 typedef struct SeenSurface {
-    bool found;
-    SurfaceHit hit;
+    const SurfaceHit *hit;      /* NULL: the ray met none */
     double key_x, key_y, key_0; /* of its tangent plane in the beam */
 } SeenSurface;
+
+/* Hits side by side, each with no more looks than it has: most have one of eight that there may be. */
+typedef struct HitPool {
+    unsigned char *bytes;
+    size_t used;
+} HitPool;
 
 /* Samples of one pixel that see the same thing. */
 typedef struct Sight {
@@ -60,6 +65,7 @@ struct BeamTracer {
     SeenSurface pixels[BEAM_EDGE * BEAM_EDGE];
     SeenSurface *surfaces; /* of samples that were asked for one by one */
     uint32_t surface_count;
+    HitPool pixel_hits, sample_hits; /* of those and these */
     /* per sample */
     float *fade;           /* the factor of exact_to */
     int32_t *surface;      /* into `surfaces`; BEAM_NOTHING: its pixel's */

@@ -1,8 +1,8 @@
 #include "render/beam_sky.h"
 
 void sky_scratch_init(SkyScratch *scratch, uint32_t samples, Arena *arena) {
-    *scratch = (SkyScratch){arena_new_array(arena, Vec3f, samples), arena_new_array(arena, float, samples), arena_new_array(arena, uint8_t, samples),
-                            arena_new_array(arena, uint32_t, samples)};
+    *scratch = (SkyScratch){arena_new_room(arena, Vec3f, samples), arena_new_room(arena, float, samples), arena_new_room(arena, uint8_t, samples),
+                            arena_new_room(arena, uint32_t, samples)};
 }
 
 /* Of a spiral with equal areas over a hemisphere; its other half is the opposites. */

@@ -1,14 +1,27 @@
 #include "render/beam_sight.h"
 #include "render/tile_sight.h"
 
-static void see_surface(BeamTracer *tr, double x, double y, SeenSurface *out) {
+#include <stddef.h>
+#include <string.h>
+
+static const SurfaceHit *keep_hit(HitPool *pool, const SurfaceHit *hit) {
+    enum { ALIGNMENT = 16 };
+    size_t size = offsetof(SurfaceHit, shares) + (size_t)hit->share_count * sizeof *hit->shares;
+    void *kept = memcpy(pool->bytes + pool->used, hit, size);
+    pool->used += (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+    return kept;
+}
+
+static void see_surface(BeamTracer *tr, double x, double y, HitPool *pool, SeenSurface *out) {
     BeamLine line = beam_line_at(tr, x, y);
     Ray ray = {line.origin, vec3_scale(line.direction, 1 / line.length)};
-    out->found = hierarchy_intersect(tr->compiled->hierarchy, &ray, 1e-9, VTS_INFINITY, &out->hit);
+    SurfaceHit hit;
+    bool found = hierarchy_intersect(tr->compiled->hierarchy, &ray, 1e-9, VTS_INFINITY, &hit);
     tr->counters.camera_rays++;
-    if (!out->found) return;
+    out->hit = found ? keep_hit(pool, &hit) : NULL;
+    if (!found) return;
     /* q.z of the tangent plane n·(P − P0) = 0, along lines whose direction is linear in x and y. */
-    Vec3 p0 = vec3_madd(ray.origin, ray.direction, out->hit.t), n = out->hit.flat;
+    Vec3 p0 = vec3_madd(ray.origin, ray.direction, hit.t), n = hit.flat;
     if (tr->beam.perspective) {
         double far = 1 / vec3_dot(n, vec3_sub(p0, line.origin));
         BeamLine a = beam_line_at(tr, x + 1, y), b = beam_line_at(tr, x, y + 1);
@@ -27,9 +40,8 @@ static void see_surface(BeamTracer *tr, double x, double y, SeenSurface *out) {
 
 /* Whether two neighbouring pixels may be taken for parts of one smooth surface. */
 static bool alike(const SeenSurface *a, const SeenSurface *b, double x, double y) {
-    if (a->found != b->found) return false;
-    if (!a->found) return true;
-    if (a->hit.object != b->hit.object || vec3_dot(a->hit.flat, b->hit.flat) < 0.95) return false;
+    if (!a->hit || !b->hit) return a->hit == b->hit;
+    if (a->hit->object != b->hit->object || vec3_dot(a->hit->flat, b->hit->flat) < 0.95) return false;
     double key_a = a->key_0 + a->key_x * x + a->key_y * y, key_b = b->key_0 + b->key_x * x + b->key_y * y;
     return fabs(key_a - key_b) <= 0.01 * (fabs(key_a) + fabs(key_b));
 }
@@ -52,9 +64,11 @@ void beam_see_surfaces(BeamTracer *tr) {
     BeamSamples *s = &tr->beam.samples;
     /* What is thinner than a pixel may lie between the middles of them all. */
     const bool thin = tile_sight_thin(tr->compiled, tr->x0, tr->y0, tr->columns, tr->rows);
+    if (tr->first_pass) tr->pixel_hits.used = 0;
+    tr->sample_hits.used = 0;
     for (int row = -1; row <= tr->rows && tr->first_pass; row++)
         for (int column = -1; column <= tr->columns; column++)
-            see_surface(tr, column + 0.5, row + 0.5, &tr->pixels[(row + 1) * BEAM_EDGE + column + 1]);
+            see_surface(tr, column + 0.5, row + 0.5, &tr->pixel_hits, &tr->pixels[(row + 1) * BEAM_EDGE + column + 1]);
     tr->surface_count = 0;
     int32_t nothing = BEAM_NOTHING; /* one for all samples that meet none */
     for (int row = 0; row < tr->rows; row++)
@@ -69,14 +83,14 @@ void beam_see_surfaces(BeamTracer *tr) {
                 const SeenSurface *at = p;
                 if (!smooth) {
                     int32_t next = (int32_t)tr->surface_count;
-                    see_surface(tr, sx, sy, &tr->surfaces[next]);
-                    if (!tr->surfaces[next].found && nothing != BEAM_NOTHING) next = nothing;
+                    see_surface(tr, sx, sy, &tr->sample_hits, &tr->surfaces[next]);
+                    if (!tr->surfaces[next].hit && nothing != BEAM_NOTHING) next = nothing;
                     else tr->surface_count++;
-                    if (!tr->surfaces[next].found) nothing = next;
+                    if (!tr->surfaces[next].hit) nothing = next;
                     tr->surface[i] = next;
                     at = &tr->surfaces[next];
                 }
-                s->key[i] = at->found ? (float)(at->key_0 + at->key_x * sx + at->key_y * sy) : tr->beam.perspective ? 0 : -INFINITY;
+                s->key[i] = at->hit ? (float)(at->key_0 + at->key_x * sx + at->key_y * sy) : tr->beam.perspective ? 0 : -INFINITY;
             }
         }
 }

@@ -11,21 +11,21 @@
 static double tolerance_for(int samples) { return double_clamp(2 / sqrt(samples), 0.125, 2); }
 
 static void samples_init(BeamSamples *s, size_t all, Arena *arena) {
-    s->first = arena_new_array(arena, uint32_t, BEAM_TILE * BEAM_TILE + 1);
-    s->x = arena_new_array(arena, float, all);
-    s->y = arena_new_array(arena, float, all);
-    s->key = arena_new_array(arena, float, all);
-    s->limit = arena_new_array(arena, float, all);
-    s->mark = arena_new_array(arena, uint32_t, all);
+    s->first = arena_new_room(arena, uint32_t, BEAM_TILE * BEAM_TILE + 1);
+    s->x = arena_new_room(arena, float, all);
+    s->y = arena_new_room(arena, float, all);
+    s->key = arena_new_room(arena, float, all);
+    s->limit = arena_new_room(arena, float, all);
+    s->mark = arena_new_room(arena, uint32_t, all);
 }
 
 static void draft_init(BeamTracer *tr, size_t all, Arena *arena) {
     const View *view = &tr->compiled->view;
     BeamDraft *draft = &tr->draft;
     draft->facet_capacity = (uint32_t)(all + 64);
-    draft->facets = arena_new_array(arena, BeamFacet, draft->facet_capacity);
-    draft->renumber = arena_new_array(arena, uint32_t, draft->facet_capacity + 1);
-    draft->cells = arena_new_array(arena, BeamCell, beam_most_cells(tr->compiled));
+    draft->facets = arena_new_room(arena, BeamFacet, draft->facet_capacity);
+    draft->renumber = arena_new_room(arena, uint32_t, draft->facet_capacity + 1);
+    draft->cells = arena_new_room(arena, BeamCell, beam_most_cells(tr->compiled));
     Cone middle = view_cone(view, view->width / 2.0, view->height / 2.0, 1);
     draft->eye = view->camera.location;
     draft->width = middle.width;
@@ -37,9 +37,9 @@ static void draft_init(BeamTracer *tr, size_t all, Arena *arena) {
 
 static void sky_init(BeamTracer *tr, size_t all, Arena *arena) {
     sky_scratch_init(&tr->sky, (uint32_t)all, arena);
-    tr->sky_up = arena_new_array(arena, Vec3f, all);
-    tr->sky_flat = arena_new_array(arena, Vec3f, all);
-    tr->sky_turn = arena_new_array(arena, uint8_t, all);
+    tr->sky_up = arena_new_room(arena, Vec3f, all);
+    tr->sky_flat = arena_new_room(arena, Vec3f, all);
+    tr->sky_turn = arena_new_room(arena, uint8_t, all);
 }
 
 BeamTracer *beam_tracer_create(const CompiledScene *compiled, const BeamPlan *plan, uint64_t seed, Arena *arena) {
@@ -56,14 +56,16 @@ BeamTracer *beam_tracer_create(const CompiledScene *compiled, const BeamPlan *pl
     shadow_scratch_init(&tr->shadow, (uint32_t)all, arena);
     tr->shadow.draft = tr->draft; /* which cuts triangles alike, */
     tr->shadow.draft.facets = NULL; /* and keeps nothing */
-    tr->surfaces = arena_new_array(arena, SeenSurface, all);
-    tr->fade = arena_new_array(arena, float, all);
-    tr->surface = arena_new_array(arena, int32_t, all);
-    tr->next = arena_new_array(arena, int32_t, all);
-    tr->points = arena_new_array(arena, Vec3f, all);
-    tr->hidden = arena_new_array(arena, uint8_t, all);
-    tr->distance = arena_new_array(arena, float, all);
-    tr->sights = arena_new_array(arena, Sight, all);
+    tr->surfaces = arena_new_room(arena, SeenSurface, all);
+    tr->sample_hits.bytes = arena_push_room_(arena, all, sizeof(SurfaceHit));
+    tr->pixel_hits.bytes = arena_push_room_(arena, VTS_ARRAY_COUNT(tr->pixels), sizeof(SurfaceHit));
+    tr->fade = arena_new_room(arena, float, all);
+    tr->surface = arena_new_room(arena, int32_t, all);
+    tr->next = arena_new_room(arena, int32_t, all);
+    tr->points = arena_new_room(arena, Vec3f, all);
+    tr->hidden = arena_new_room(arena, uint8_t, all);
+    tr->distance = arena_new_room(arena, float, all);
+    tr->sights = arena_new_room(arena, Sight, all);
     if (compiled->scene->settings.sky_light) sky_init(tr, all, arena);
     return tr;
 }

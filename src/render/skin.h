@@ -156,7 +156,8 @@ bool skin_enter(const CompiledSkin *skin, const Ray *ray, double t_min, double t
 struct RTCBoundsFunctionArguments;
 void skin_bound_cell(const struct RTCBoundsFunctionArguments *args);
 struct Embree;
-CellTree *cell_tree_build(CompiledSkin *skin, const struct Embree *embree);
+/* The tree is built when the layer is first entered, by whichever thread that is; NULL without memory. */
+CellTree *cell_tree_create(const struct Embree *embree);
 void cell_tree_destroy(CellTree *tree);
 
 /* ---- texture space: skin_place.c ---- */

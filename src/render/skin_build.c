@@ -562,5 +562,5 @@ bool skin_finish(CompiledSkin *skin, const CompileOptions *options, CompiledScen
         }
     }
     if (!options->exact) skin->joint = skin_joint_copies(skin, compiled->arena);
-    return options->exact || skin->box || (skin->tree = cell_tree_build(skin, hierarchy_embree(compiled->hierarchy))) != NULL;
+    return options->exact || skin->box || (skin->tree = cell_tree_create(hierarchy_embree(compiled->hierarchy))) != NULL;
 }

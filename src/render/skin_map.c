@@ -5,6 +5,8 @@
 #include "render/embree_ray.h"
 #include "render/skin_box.h"
 
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
 enum { NEWTON_STEPS = 12, MOST_HOPS = 64 };
@@ -197,10 +199,11 @@ bool skin_cell_holds(const SkinCell *cell, Vec3 world, double tolerance, SkinPoi
     return true;
 }
 
-/* Embree's hierarchy over the cells, each a user primitive. */
+/* Embree's hierarchy over the cells, each a user primitive: built when it is first asked, as a skin that is drawn as geometry alone never is. */
 struct CellTree {
-    const EmbreeShim *rtc;
-    RTCScene scene;
+    const Embree *embree;
+    pthread_mutex_t building;
+    _Atomic(RTCScene) scene; /* NULL: not yet */
 };
 
 typedef struct EnterQuery {
@@ -250,27 +253,49 @@ static void intersect_cell(const struct RTCIntersectFunctionNArguments *args) {
     rayhit->hit.primID = args->primID;
 }
 
-CellTree *cell_tree_build(CompiledSkin *skin, const Embree *embree) {
+CellTree *cell_tree_create(const Embree *embree) {
     CellTree *tree = calloc(1, sizeof *tree);
     if (!tree) return NULL;
-    const EmbreeShim *rtc = tree->rtc = embree->rtc;
-    RTCGeometry geometry = rtc->NewGeometry(embree->device, RTC_GEOMETRY_TYPE_USER);
-    rtc->SetGeometryUserPrimitiveCount(geometry, (unsigned)skin->cell_count);
-    rtc->SetGeometryUserData(geometry, skin);
-    rtc->SetGeometryBoundsFunction(geometry, skin_bound_cell, NULL);
-    rtc->SetGeometryIntersectFunction(geometry, intersect_cell);
-    rtc->CommitGeometry(geometry);
-    tree->scene = rtc->NewScene(embree->device);
-    rtc->AttachGeometry(tree->scene, geometry);
-    rtc->ReleaseGeometry(geometry);
-    rtc->CommitScene(tree->scene);
+    if (pthread_mutex_init(&tree->building, NULL)) {
+        free(tree);
+        return NULL;
+    }
+    tree->embree = embree;
     return tree;
 }
 
 void cell_tree_destroy(CellTree *tree) {
     if (!tree) return;
-    tree->rtc->ReleaseScene(tree->scene);
+    RTCScene scene = atomic_load(&tree->scene);
+    if (scene) tree->embree->rtc->ReleaseScene(scene);
+    pthread_mutex_destroy(&tree->building);
     free(tree);
+}
+
+static RTCScene build_scene(const CompiledSkin *skin, const Embree *embree) {
+    const EmbreeShim *rtc = embree->rtc;
+    RTCGeometry geometry = rtc->NewGeometry(embree->device, RTC_GEOMETRY_TYPE_USER);
+    rtc->SetGeometryUserPrimitiveCount(geometry, (unsigned)skin->cell_count);
+    rtc->SetGeometryUserData(geometry, (void *)(uintptr_t)skin);
+    rtc->SetGeometryBoundsFunction(geometry, skin_bound_cell, NULL);
+    rtc->SetGeometryIntersectFunction(geometry, intersect_cell);
+    rtc->CommitGeometry(geometry);
+    RTCScene scene = rtc->NewScene(embree->device);
+    rtc->AttachGeometry(scene, geometry);
+    rtc->ReleaseGeometry(geometry);
+    rtc->CommitScene(scene);
+    return scene;
+}
+
+static RTCScene scene_of_cells(const CompiledSkin *skin) {
+    CellTree *tree = skin->tree;
+    RTCScene scene = atomic_load_explicit(&tree->scene, memory_order_acquire);
+    if (scene) return scene;
+    pthread_mutex_lock(&tree->building);
+    scene = atomic_load(&tree->scene);
+    if (!scene) atomic_store(&tree->scene, scene = build_scene(skin, tree->embree));
+    pthread_mutex_unlock(&tree->building);
+    return scene;
 }
 
 int skin_first_pieces(const CompiledSkin *skin, const Ray *ray, double t_min, double t_max, SkinPiece *out, int most) {
@@ -288,7 +313,7 @@ int skin_first_pieces(const CompiledSkin *skin, const Ray *ray, double t_min, do
                 .dir_x = (float)ray->direction.x, .dir_y = (float)ray->direction.y, .dir_z = (float)ray->direction.z,
                 .tnear = float_below(double_max(t_min, 0)), .tfar = float_above(t_max), .mask = 0xFFFFFFFFu},
         .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
-    if (embree_takes(&rayhit.ray)) skin->tree->rtc->Intersect1(skin->tree->scene, &query.context, &rayhit);
+    if (embree_takes(&rayhit.ray)) skin->tree->embree->rtc->Intersect1(scene_of_cells(skin), &query.context, &rayhit);
     return query.count;
 }
 

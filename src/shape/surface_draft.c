@@ -29,7 +29,10 @@ static void push_grid_vertex(const Surface *surface, int i, int j, int parts, Ar
 
 static void draft_patches(const Surface *surface, int parts, Arena *arena, SurfaceDraft *out) {
     int nu = surface->nu * parts, nv = surface->nv * parts;
+    size_t vertices = (size_t)(nu + 1) * (size_t)(nv + 1);
     *out = (SurfaceDraft){.cells = arena_new_array(arena, DraftCell, (size_t)nu * (size_t)nv)};
+    out->vertices.items = arena_new_array(arena, SoupVertex, vertices);
+    out->vertices.capacity = vertices;
     for (int i = 0; i <= nu; i++) {
         for (int j = 0; j <= nv; j++) push_grid_vertex(surface, i, j, parts, arena, out);
     }

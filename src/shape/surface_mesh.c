@@ -21,11 +21,13 @@ static Vec3 *position_list(const SurfaceDraft *draft, Arena *arena) {
 
 static void join_positions(Assembly *a) {
     size_t count = a->draft->vertices.count;
-    Vec3 *points = position_list(a->draft, a->arena);
+    Vec3 *vertices = arena_new_array(a->arena, Vec3, count);
     a->place = arena_new_array(a->arena, uint32_t, count);
+    ArenaMark mark = arena_mark(a->arena);
+    Vec3 *points = position_list(a->draft, a->arena);
     a->out->vertex_count = weld_points(points, count, weld_tolerance(points, count), a->arena, a->place);
-    Vec3 *vertices = arena_new_array(a->arena, Vec3, a->out->vertex_count);
     for (size_t i = count; i-- > 0;) vertices[a->place[i]] = points[i]; /* the first of each place stays */
+    arena_reset_to(a->arena, mark);
     a->out->bounds = box3_empty();
     for (size_t i = 0; i < a->out->vertex_count; i++)
         a->out->bounds = box3_add_point(a->out->bounds, vertices[i]);
@@ -34,15 +36,17 @@ static void join_positions(Assembly *a) {
 
 static void join_uvs(Assembly *a) {
     size_t count = a->draft->vertices.count;
+    TexCoord *uvs = arena_new_array(a->arena, TexCoord, count);
+    a->uv_place = arena_new_array(a->arena, uint32_t, count);
+    ArenaMark mark = arena_mark(a->arena);
     Vec3 *points = arena_new_array(a->arena, Vec3, count);
     for (size_t i = 0; i < count; i++) {
         TexCoord uv = a->draft->vertices.items[i].uv;
         points[i] = vec3(uv.u, uv.v, 0);
     }
-    a->uv_place = arena_new_array(a->arena, uint32_t, count);
     a->out->uv_count = weld_points(points, count, 1e-12, a->arena, a->uv_place);
-    TexCoord *uvs = arena_new_array(a->arena, TexCoord, a->out->uv_count);
     for (size_t i = count; i-- > 0;) uvs[a->uv_place[i]] = a->draft->vertices.items[i].uv;
+    arena_reset_to(a->arena, mark);
     a->out->uvs = uvs;
 }
 
@@ -71,18 +75,20 @@ static void join_pair(JoinedCells *joined, const WeldEdge *x, const WeldEdge *y)
 static JoinedCells join_cells(const Assembly *a) {
     size_t cells = a->draft->cell_count;
     JoinedCells joined = {.draft = a->draft, .place = a->place};
-    WeldEdge *edges = arena_new_array(a->arena, WeldEdge, 4 * cells);
     joined.neighbours = arena_push(a->arena, cells * sizeof *joined.neighbours);
     joined.same_way = arena_push(a->arena, cells * sizeof *joined.same_way);
     for (size_t c = 0; c < cells; c++) {
         for (int e = 0; e < 4; e++) joined.neighbours[c][e].cell = -1;
     }
+    ArenaMark mark = arena_mark(a->arena);
+    WeldEdge *edges = arena_new_array(a->arena, WeldEdge, 4 * cells);
     size_t count = list_edges(a, edges);
     weld_sort_edges(edges, count, a->out->vertex_count, a->arena);
     for (size_t i = 0, end; i < count; i = end) {
         for (end = i + 1; end < count && edges[end].lo == edges[i].lo && edges[end].hi == edges[i].hi;) end++;
         if (end - i == 2) join_pair(&joined, &edges[i], &edges[i + 1]);
     }
+    arena_reset_to(a->arena, mark);
     return joined;
 }
 

@@ -74,9 +74,9 @@ class Bench:
         self.rows.append((group, name, seconds, math.sqrt(max(square - noise, 0)), bias))
         print("%-14s %-16s %7.3f s  RMSE %.5f  bias %+.5f" % self.rows[-1], flush=True)
 
-    def draw(self, group, name, words, reference, grid=None):
+    def draw(self, group, name, words, reference, grid=None, options=()):
         picture = self.path("drawn.pfm")
-        seconds = run([self.vts, "render", self.scene(words, grid), "-s", self.size + "x" + self.size, "-o", picture, "--progress", "none"])
+        seconds = run([self.vts, "render", self.scene(words, grid), "-s", self.size + "x" + self.size, "-o", picture, "--progress", "none", *options])
         self.note(group, name, seconds, picture, reference)
 
 
@@ -175,6 +175,8 @@ def main():
     every = bench.reference("all")
     print("noise of the reference: RMSE %.5f" % math.sqrt(every[1]), flush=True)
     bench.draw("default", "auto", "", every)
+    for error in ("0.5/255", "0.25/255", "0.1/255"):
+        bench.draw("max_error", error, "", every, options=("--max-error", error))
     for rays in (300, 3000, 30000, 300000, 1500000, 4000000):
         bench.draw("rays", str(rays), "rays %d" % rays, every)
     for storage in ("isotropic", "directional"):

@@ -18,7 +18,7 @@ void volume_harmonics(Vec3 d, int count, double out[VOLUME_HARMONICS]) {
 
 /* ---- lamps ---- */
 
-enum { LEAST_LAMP_CELLS = 40, MOST_LAMP_CELLS = 160, LAMP_PLACES = 3 };
+enum { LEAST_LAMP_CELLS = 40, MOST_LAMP_CELLS = 160, MOST_FINER_LAMP_CELLS = 128, LAMP_PLACES = 3 };
 /* Thicker than this nothing is told apart. */
 static const double MOST_DEPTH = 80;
 
@@ -160,8 +160,8 @@ static void level_row(void *context, size_t row, int worker) {
 
 enum { LEAST_ACROSS = 6, MOST_ACROSS = 64 };
 
-/* Cells as cubic as may be, `longest` of them along the longest side; but across what is flat as many as its optical depth asks for. */
-static void divide(const CompiledVolume *v, int longest, int out[3]) {
+/* Cells as cubic as may be, `longest` of them along the longest side; but across what is flat as many as its optical depth asks for, and `fineness` times as many. */
+static void divide(const CompiledVolume *v, int longest, double fineness, int out[3]) {
     double sides[3],
         most = 0,
         extinction = double_max(v->extinction[0], double_max(v->extinction[1], v->extinction[2])) *
@@ -171,7 +171,7 @@ static void divide(const CompiledVolume *v, int longest, int out[3]) {
         most = double_max(most, sides[k]);
     }
     for (int k = 0; k < 3; k++) {
-        int least = (int)double_clamp(4 * extinction * sides[k], LEAST_ACROSS, MOST_ACROSS);
+        int least = (int)double_clamp(4 * fineness * extinction * sides[k], LEAST_ACROSS, MOST_ACROSS);
         out[k] = int_clamp((int)ceil(longest * sides[k] / most - 1e-6), least, longest);
     }
 }
@@ -182,8 +182,10 @@ static int longest_of(const Lattice *lattice) {
 
 static bool light_lamps(CompiledScene *compiled, CompiledVolume *v, Tracer **tracers) {
     VolumeLight *light = v->light;
+    const double fineness = compiled->volumes->fineness;
     size_t lamps = compiled->scene->light_count;
-    divide(v, int_clamp(longest_of(&v->lattice), LEAST_LAMP_CELLS, MOST_LAMP_CELLS), light->cells);
+    const int longest = int_clamp(longest_of(&v->lattice), LEAST_LAMP_CELLS, MOST_LAMP_CELLS);
+    divide(v, int_max(longest, double_to_int(fineness * longest, 0, MOST_FINER_LAMP_CELLS)), fineness, light->cells);
     light->nodes =
         (size_t)(light->cells[0] + 1) * (size_t)(light->cells[1] + 1) * (size_t)(light->cells[2] + 1);
     light->depths = arena_push_array_(compiled->arena, lamps * light->nodes + 1, sizeof *light->depths);
@@ -200,12 +202,12 @@ static bool light_lamps(CompiledScene *compiled, CompiledVolume *v, Tracer **tra
     return done;
 }
 
-enum { LEAST_BINS = 24, MOST_BINS = 40 };
+enum { LEAST_BINS = 24, MOST_BINS = 40, MOST_FINER_BINS = 64 };
 
 static void make_bins(CompiledScene *compiled, CompiledVolume *v) {
     VolumeLight *light = v->light;
     bool even = fabs(v->moments[1]) < 1e-3 && fabs(v->moments[2]) < 1e-3;
-    divide(v, int_clamp(longest_of(&v->lattice), LEAST_BINS, MOST_BINS), light->bins);
+    divide(v, double_to_int(compiled->volumes->fineness * int_clamp(longest_of(&v->lattice), LEAST_BINS, MOST_BINS), 0, MOST_FINER_BINS), compiled->volumes->fineness, light->bins);
     size_t bins = volume_bins(light);
     light->harmonics = even || v->volume->storage == VOLUME_STORAGE_ISOTROPIC ? 1 : VOLUME_HARMONICS;
     light->kept = arena_push_array_(compiled->arena, bins * (size_t)light->harmonics, sizeof *light->kept);

@@ -314,6 +314,11 @@ static void see_peak(CompiledVolume *v, bool counted, Arena *arena) {
     v->spread = v->peak_share > 0 ? phase_spread_make(&v->phase, &rest.phase, phase_without_peak(&v->phase, &unused), arena) : NULL;
 }
 
+/* Bins, nodes and steps that do for the error of a picture that is looked at are what is left of it however many rays there are: where less is asked for they are finer. */
+static const double PLAIN_ERROR = 1.0 / 255, MOST_FINENESS = 3;
+
+static double fineness_of(double max_error) { return double_clamp(sqrt(PLAIN_ERROR / max_error), 1, MOST_FINENESS); }
+
 bool volumes_compile(CompiledScene *compiled, DiagList *diags) {
     VolumeBuild b = {.compiled = compiled, .diags = diags, .shapes = shape_tracer_create(compiled->arena)};
     size_t errors = diags->error_count;
@@ -326,6 +331,7 @@ bool volumes_compile(CompiledScene *compiled, DiagList *diags) {
     for (size_t i = 0; i < set->count; i++) set->bounds = box3_union(set->bounds, set->items[i].bounds);
     set->method = compiled->options->exact ? VOLUME_PATH : method_of(set);
     set->orders = orders_of(set);
+    set->fineness = fineness_of(compiled->max_error);
     set->rays_are_paths = set->method == VOLUME_PATH;
     if (set->method == VOLUME_TWO_PASS && needs_paths(set)) set->method = VOLUME_PATH;
     if (set->method == VOLUME_PUBLISHED) volumes_publish(set);

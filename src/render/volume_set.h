@@ -39,6 +39,7 @@ typedef struct VolumeSet {
     int orders;               /* 0: all */
     bool sky;                 /* light comes from the sky too */
     int looks;                /* of bins at those around them, one after the other, see volumes_shoot() */
+    double fineness;          /* of bins, lamps' nodes and steps: 1 where max_error is no smaller than a step of eight-bit pictures, more below */
 } VolumeSet;
 
 /* The set as the two passes see light that was scattered before: forward peaks of phase functions, which harmonics of low degrees cannot have, turn nothing aside (Wiscombe

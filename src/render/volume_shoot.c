@@ -327,7 +327,8 @@ static double free_paths(const Shooting *s) {
 
 /* Returns how many rays were shot; 0 when interrupted. */
 static double shoot_rounds(Shooting *s) {
-    double asked = 0, rays = 0;
+    /* Of finer bins a line of sight meets more. */
+    double asked = 0, rays = 0, finer = sqrt(s->set->fineness), most_paths = MOST_FREE_PATHS * s->set->fineness * s->set->fineness;
     for (size_t i = 0; i < s->set->count; i++) asked = double_max(asked, s->set->items[i].volume->rays);
     asked = double_min(asked, MOST_RAYS);
     double next = asked > 0 ? asked : FIRST_ROUND;
@@ -340,14 +341,14 @@ static double shoot_rounds(Shooting *s) {
         double paths = free_paths(s);
         s->looks = 1;
         if (asked > 0) break;
-        if (rays <= LEAST_RAYS && 2 * paths <= MOST_FREE_PATHS) continue;
-        s->looks = enough_looks(s, error_of_bins(s, rays) / (BIN_ERROR * s->compiled->max_error), paths);
+        if (rays <= LEAST_RAYS && 2 * paths <= most_paths) continue;
+        s->looks = enough_looks(s, error_of_bins(s, rays) / (BIN_ERROR * finer * s->compiled->max_error), paths);
         if (s->looks > 0) break;
         s->looks = s->looks_help ? MOST_LOOKS : 1;
-        if (next > RAYS_AT_MOST || 2 * paths > MOST_FREE_PATHS) break;
+        if (next > RAYS_AT_MOST || 2 * paths > most_paths) break;
     }
     s->compiled->volume_rays = rays;
-    s->compiled->volume_error = error_of_bins(s, rays) / SEEN_ERROR * pow(LOOK_LEAVES, s->looks - 1);
+    s->compiled->volume_error = error_of_bins(s, rays) / (SEEN_ERROR * finer) * pow(LOOK_LEAVES, s->looks - 1);
     return rays;
 }
 

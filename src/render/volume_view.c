@@ -3,7 +3,7 @@
 #include "render/volume_shoot.h"
 
 enum { MOST_STEPS = 1024 };
-/* Steps of this optical depth at most, as long as a cell of the density, and of what lamps are known in. */
+/* Steps of this optical depth at most, the shorter the finer the light is known, as long as a cell of the density, and of what lamps are known in. */
 static const double MOST_STEP_DEPTH = 0.25;
 /* What is behind so much is not seen. */
 static const double OPAQUE_BELOW = 1e-4;
@@ -50,21 +50,21 @@ static void add_volume(Gathering *g, int number, double t_max) {
     VolumeSpan spans[VOLUME_MOST_SPANS];
     int count = volume_spans(v, &g->ray, 0, t_max, spans);
     Ray cells = volume_ray_in_cells(v, &g->ray);
-    double stride = stride_of(v, &cells), most = densest(v), before = 0;
+    double stride = stride_of(v, &cells), most = densest(v), before = 0, step_depth = MOST_STEP_DEPTH / g->set->fineness;
     for (int i = 0; i < count && most * before < -log(OPAQUE_BELOW); i++) {
         LatticeWalk walk;
         LatticePiece piece;
         Step open = {.length = 0};
         lattice_walk_begin(&walk, &v->lattice, &cells, spans[i].t0, spans[i].t1);
         while (lattice_walk_next(&walk, &piece) && most * before < -log(OPAQUE_BELOW)) {
-            bool joins = open.length > 0 && open.t1 >= piece.t0 - 1e-9 * piece.t1 && piece.t1 - open.t0 <= stride && most * (open.length + piece.length) <= MOST_STEP_DEPTH;
+            bool joins = open.length > 0 && open.t1 >= piece.t0 - 1e-9 * piece.t1 && piece.t1 - open.t0 <= stride && most * (open.length + piece.length) <= step_depth;
             if (joins) {
                 open.t1 = piece.t1, open.length += piece.length;
                 continue;
             }
             if (open.length > 0) add_step(g, number, open.t0, open.t1, open.length, &before);
             open.length = 0;
-            int parts = (int)double_clamp(ceil(double_max(most * piece.length / MOST_STEP_DEPTH, (piece.t1 - piece.t0) / stride)), 1, 64);
+            int parts = (int)double_clamp(ceil(double_max(most * piece.length / step_depth, (piece.t1 - piece.t0) / stride)), 1, 64);
             if (parts == 1) {
                 open = (Step){.t0 = piece.t0, .t1 = piece.t1, .length = piece.length};
                 continue;

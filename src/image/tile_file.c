@@ -32,7 +32,8 @@ typedef struct Record {
 struct TileFile {
     pthread_mutex_t lock;
     char *path;
-    int file;
+    Header header;
+    int file;      /* -1: not made yet */
     off_t size;    /* of what is whole */
     bool full;     /* nothing more can be written */
     double begins; /* to be written */
@@ -118,35 +119,35 @@ static void take_over(TileFile *t, int old, const Header *header) {
 }
 
 /* Its own name until what was there is taken over. */
-static bool fill(TileFile *t, const char *name, const Header *header, bool resume) {
-    t->file = open(name, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (t->file < 0) return false;
-    int old = resume ? open(t->path, O_RDONLY | O_CLOEXEC) : -1;
-    bool good = write_at(t->file, header, sizeof *header, 0);
-    t->size = sizeof *header;
-    if (good && old >= 0) take_over(t, old, header);
+static bool make(TileFile *t, bool resume) {
+    StrBuf name = {0};
+    strbuf_addf(&name, "%s.new", t->path);
+    t->file = open(name.data, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    int old = resume && t->file >= 0 ? open(t->path, O_RDONLY | O_CLOEXEC) : -1;
+    bool good = t->file >= 0 && write_at(t->file, &t->header, sizeof t->header, 0);
+    t->size = sizeof t->header;
+    if (good && old >= 0) take_over(t, old, &t->header);
     if (old >= 0) close(old);
-    if (good && rename(name, t->path) == 0) return true;
-    close(t->file);
-    unlink(name);
-    return false;
+    good = good && rename(name.data, t->path) == 0;
+    if (!good && t->file >= 0) {
+        unlink(name.data);
+        close(t->file);
+        t->file = -1;
+    }
+    strbuf_free(&name);
+    return good;
 }
 
 TileFile *tile_file_open(const char *picture_path, const TileFileKey *key, bool resume, double delay) {
     TileFile *t = calloc(1, sizeof *t + key->tiles * sizeof *t->places);
-    StrBuf path = {0}, name = {0};
+    StrBuf path = {0};
     if (!t) return NULL;
     strbuf_addf(&path, "%s.tiles-vts", picture_path);
-    strbuf_addf(&name, "%s.new", path.data);
-    t->path = path.data;
-    t->tiles = key->tiles;
-    t->begins = stopwatch_wall() + delay;
-    Header header = header_of(key);
-    bool made = fill(t, name.data, &header, resume);
-    strbuf_free(&name);
-    if (made) return pthread_mutex_init(&t->lock, NULL), t;
-    strbuf_free(&path);
-    free(t);
+    *t = (TileFile){.path = path.data, .header = header_of(key), .file = -1, .begins = stopwatch_wall() + delay, .tiles = key->tiles};
+    pthread_mutex_init(&t->lock, NULL);
+    if (!resume) unlink(t->path); /* most pictures are finished before one is written */
+    if (!resume || make(t, true)) return t;
+    tile_file_close(t, false);
     return NULL;
 }
 
@@ -168,14 +169,15 @@ bool tile_file_read(TileFile *t, uint32_t tile, float *samples, size_t count) {
 void tile_file_write(TileFile *t, uint32_t tile, const float *samples, size_t count) {
     if (tile >= t->tiles || count > LARGEST_TILE || stopwatch_wall() < t->begins) return;
     pthread_mutex_lock(&t->lock);
+    if (t->file < 0 && !t->full) t->full = !make(t, false);
     if (!t->full && !t->places[tile]) t->full = !append(t, tile, samples, count);
     pthread_mutex_unlock(&t->lock);
 }
 
 void tile_file_close(TileFile *t, bool finished) {
     if (!t) return;
-    if (finished || t->size == (off_t)sizeof(Header)) unlink(t->path);
-    close(t->file);
+    if (t->file >= 0 && (finished || t->size == (off_t)sizeof(Header))) unlink(t->path);
+    if (t->file >= 0) close(t->file);
     pthread_mutex_destroy(&t->lock);
     free(t->path);
     free(t);

@@ -15,7 +15,8 @@ typedef struct TileFileKey {
 } TileFileKey;
 
 /* A file for the picture at `picture_path`; what an older one has of the same picture is taken over if `resume`, else it goes. Tiles are
- * written once `delay` seconds have passed. NULL when no file can be made: pictures do without. */
+ * written once `delay` seconds have passed; unless `resume` there is no file before. NULL when memory is short and, if `resume`, when no file
+ * can be made: pictures do without. */
 TileFile *tile_file_open(const char *picture_path, const TileFileKey *key, bool resume, double delay);
 /* The samples of a tile, `count` of them; false when it is not there. Thread-safe, as is the next. */
 bool tile_file_read(TileFile *file, uint32_t tile, float *samples, size_t count);

@@ -28,13 +28,24 @@ static bool is_flat(const SurfaceHit *hit) {
     }
 }
 
+/* Bent alike in all directions, unless what it stands in is stretched. */
+static bool is_ball(const SurfaceHit *hit) {
+    if (!hit->solid || hit->solid->kind != OBJECT_SPHERE) return false;
+    if (!hit->solid->place) return true;
+    const Vec3 *c = hit->solid->place->linear.c;
+    const double size = vec3_length_squared(c[0]);
+    double off = 0;
+    for (int k = 0; k < 3; k++) off = fmax(off, fmax(fabs(vec3_length_squared(c[k]) - size), fabs(vec3_dot(c[k], c[(k + 1) % 3]))));
+    return off < 1e-6 * size;
+}
+
 double footprint_curvature(const Hierarchy *hierarchy, RayPurpose purpose, const Cone *cone, const SurfaceHit *hit) {
     if (is_flat(hit)) return 0;
     Vec3 across[2], here = cone_point(cone, hit->t);
     vec3_frame(cone->direction, &across[0], &across[1]);
     double off = fmax(BESIDE * cone_diameter(cone, hit->t), LEAST_BESIDE * hit->t), sum = 0;
     int met = 0;
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < (is_ball(hit) ? 1 : 2); k++) {
         Vec3 target = vec3_madd(here, across[k], off);
         Ray ray = {cone->origin, vec3_normalize(vec3_sub(target, cone->origin))};
         SurfaceHit beside;

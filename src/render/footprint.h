@@ -13,7 +13,7 @@
 void footprint_axes(const Cone *cone, double t, Vec3 normal, Vec3 axes[2]);
 
 /* How much the surface is bent about a hit of the cone at hit->t, 1/length: positive where it bulges towards the eye, the mean of two
- * directions, found by two rays beside the axis; 0 where these meet something else, or of what is flat. */
+ * directions, found by two rays beside the axis, of a sphere by one; 0 where these meet something else, or of what is flat. */
 double footprint_curvature(const Hierarchy *hierarchy, RayPurpose purpose, const Cone *cone, const SurfaceHit *hit);
 
 /* The cone that leaves the hit at t in unit direction `direction` from a place beside it, `origin`. `bend`: by how much the direction turns

@@ -288,12 +288,12 @@ static void divide(Tile *t, const Square *s) {
 
 /* ---- the tile ---- */
 
-/* Also all along the tile's borders: what tiles around see of it hangs on nothing but the pixel, whether or not they see all of it. */
+static bool is_corner(int at, int count) { return at % WIDEST == 0 || at == count - 1; }
+
 static void find_lattice(Tile *t, int columns, int rows) {
     for (int y = 0; y < rows; y++)
         for (int x = 0; x < columns; x++)
-            if (x == 0 || y == 0 || x == columns - 1 || y == rows - 1 || (x % WIDEST == 0 && y % WIDEST == 0))
-                find(t, x, y);
+            if (is_corner(x, columns) && is_corner(y, rows)) find(t, x, y);
 }
 
 /* Guesses of the kinds that are most wrong are found instead, until what is left may be. */

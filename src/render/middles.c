@@ -26,17 +26,19 @@ static SharedTile *tile_at(Middles *m, int x, int y) {
     return holds(m, x, y) ? &m->tiles[(size_t)(y - m->y0) * (size_t)m->columns + (size_t)(x - m->x0)] : NULL;
 }
 
-Middles *middles_create(int x0, int y0, int x1, int y1) {
-    size_t count = (size_t)(x1 - x0) * (size_t)(y1 - y0);
+/* Of the numbers [from, to) those that are at most 1 from `at`. */
+static int count_near(int at, int from, int to) { return int_min(at + 1, to - 1) - int_max(at - 1, from) + 1; }
+
+Middles *middles_create(int x0, int y0, int x1, int y1, int columns, int rows) {
+    const int left = int_max(x0 - 1, 0), top = int_max(y0 - 1, 0), right = int_min(x1 + 1, columns), bottom = int_min(y1 + 1, rows);
+    size_t count = (size_t)(right - left) * (size_t)(bottom - top);
     Middles *m = calloc(1, sizeof *m + count * sizeof *m->tiles);
     if (!m) return NULL;
-    m->x0 = x0, m->y0 = y0, m->columns = x1 - x0, m->rows = y1 - y0;
+    m->x0 = left, m->y0 = top, m->columns = right - left, m->rows = bottom - top;
     pthread_mutex_init(&m->lock, NULL);
     pthread_cond_init(&m->seen, NULL);
-    for (int y = y0; y < y1; y++)
-        for (int x = x0; x < x1; x++)
-            tile_at(m, x, y)->users = (int_min(x + 1, x1 - 1) - int_max(x - 1, x0) + 1) *
-                                      (int_min(y + 1, y1 - 1) - int_max(y - 1, y0) + 1);
+    for (int y = top; y < bottom; y++)
+        for (int x = left; x < right; x++) tile_at(m, x, y)->users = count_near(x, x0, x1) * count_near(y, y0, y1);
     return m;
 }
 

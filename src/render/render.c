@@ -83,7 +83,9 @@ static void make_workers(Frame *frame, int workers) {
 static void share_middles(Frame *frame, int workers) {
     const int *region = frame->options->region;
     if (!frame->samplers || frame->options->aovs) return;
-    frame->middles = middles_create(region[0] / FILM_TILE, region[1] / FILM_TILE, (region[2] - 1) / FILM_TILE + 1, (region[3] - 1) / FILM_TILE + 1);
+    const View *view = &frame->compiled->view;
+    frame->middles = middles_create(region[0] / FILM_TILE, region[1] / FILM_TILE, (region[2] - 1) / FILM_TILE + 1, (region[3] - 1) / FILM_TILE + 1,
+                                    (view->width - 1) / FILM_TILE + 1, (view->height - 1) / FILM_TILE + 1);
     for (int i = 0; i < workers; i++) sampler_share(frame->samplers[i], frame->middles);
 }
 

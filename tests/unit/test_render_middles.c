@@ -8,7 +8,9 @@
 
 #include <cmocka.h>
 
+/* The tiles that are asked for: those that are drawn, and those around them in a picture that ends at the right. */
 enum { COLUMNS = 5, ROWS = 4, X0 = 2, Y0 = 7, WORKERS = 4 };
+enum { DRAWN_COLUMNS = COLUMNS - 1, DRAWN_ROWS = ROWS - 2 };
 
 typedef struct Counts {
     atomic_int seen[ROWS][COLUMNS];
@@ -41,15 +43,15 @@ static void finish_tile(Counts *c, int x, int y) {
 
 static void *work(void *context) {
     Counts *c = context;
-    for (size_t i; (i = atomic_fetch_add(&c->next, 1)) < COLUMNS * ROWS;)
-        finish_tile(c, X0 + (int)(i % COLUMNS), Y0 + (int)(i / COLUMNS));
+    for (size_t i; (i = atomic_fetch_add(&c->next, 1)) < DRAWN_COLUMNS * DRAWN_ROWS;)
+        finish_tile(c, X0 + 1 + (int)(i % DRAWN_COLUMNS), Y0 + 1 + (int)(i / DRAWN_COLUMNS));
     return NULL;
 }
 
 static void test_each_tile_is_seen_once(void **state) {
     (void)state;
     for (int workers = 1; workers <= WORKERS; workers += WORKERS - 1) {
-        Counts c = {.middles = middles_create(X0, Y0, X0 + COLUMNS, Y0 + ROWS)};
+        Counts c = {.middles = middles_create(X0 + 1, Y0 + 1, X0 + COLUMNS, Y0 + ROWS - 1, X0 + COLUMNS, Y0 + ROWS + 9)};
         pthread_t threads[WORKERS];
         assert_non_null(c.middles);
         for (int i = 0; i < workers; i++) assert_int_equal(pthread_create(&threads[i], NULL, work, &c), 0);

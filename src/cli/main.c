@@ -1,6 +1,7 @@
 /* The program vts: finds the sub-command and lets it run. */
 #include "cli/command.h"
 #include "cli/complaint.h"
+#include "cli/heap.h"
 #include "cli/options.h"
 #include "cli/povray_options.h"
 #include "cli/spelling.h"
@@ -116,6 +117,7 @@ static int dispatch(int count, char **arguments) {
 }
 
 int main(int argc, char **argv) {
+    heap_begin();
     int status = dispatch(argc - 1, argv + 1);
     if (fflush(stdout) == 0 && !ferror(stdout)) return status;
     fputs("vts: error: cannot write the standard output\n", stderr);

@@ -26,7 +26,7 @@ static const ColorMapEntry hexagon_colors[] = {ENTRY(0, 0, 0, 1), ENTRY(1, 0, 1,
 
 #define MAP(entries) ((ColorMap){entries, VTS_ARRAY_COUNT(entries)})
 
-static ColorMap own_map(PatternKind kind) {
+ColorMap colormap_own(PatternKind kind) {
     switch (kind) {
     case PATTERN_BOZO: return MAP(bozo_map);
     case PATTERN_AGATE: return MAP(agate_map);
@@ -46,7 +46,7 @@ static ColorMap own_map(PatternKind kind) {
 }
 
 ColorMap colormap_of(const Pigment *pigment) {
-    return pigment->entry_count ? (ColorMap){pigment->entries, pigment->entry_count} : own_map(pigment->kind);
+    return pigment->entry_count ? (ColorMap){pigment->entries, pigment->entry_count} : colormap_own(pigment->kind);
 }
 
 /* ---- values ---- */
@@ -79,15 +79,18 @@ static double through_wave(const Pigment *pigment, double phase) {
 /* An interval within one period, through the wave: in quarters of the period, where waves only rise or only fall. The weight
  * is shared by length. */
 static void add_phase(MapPieces *pieces, const Pigment *pigment, double lo, double hi, double weight) {
-    if (pigment_wave(pigment) == WAVE_RAMP || hi <= lo) {
+    if (!(weight > 0)) return;
+    const WaveKind wave = pigment_wave(pigment);
+    if (wave == WAVE_RAMP || hi <= lo) {
         add_piece(pieces, lo, hi, weight);
         return;
     }
-    int quarters = pigment_wave(pigment) == WAVE_TRIANGLE ? 2 : 4;
+    int quarters = wave == WAVE_TRIANGLE ? 2 : 4;
     for (int k = 0; k < quarters; k++) {
         double a = double_clamp((double)k / quarters, lo, hi), b = double_clamp((k + 1.0) / quarters, lo, hi);
+        if (!(b > a)) continue;
         double from = through_wave(pigment, a), to = through_wave(pigment, b - (b == 1 ? 1e-12 : 0));
-        if (b > a) add_piece(pieces, fmin(from, to), fmax(from, to), weight * (b - a) / (hi - lo));
+        add_piece(pieces, fmin(from, to), fmax(from, to), weight * (b - a) / (hi - lo));
     }
 }
 

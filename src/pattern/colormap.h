@@ -11,6 +11,7 @@ typedef struct ColorMap {
 
 /* The pigment's map, or POV-Ray's own for the pattern where it has none. */
 ColorMap colormap_of(const Pigment *pigment);
+ColorMap colormap_own(PatternKind kind);
 
 /* Pieces of the range of values, each filled uniformly; weights add up to 1. */
 enum { MAX_PIECES = 32 };

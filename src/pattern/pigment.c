@@ -144,8 +144,7 @@ Color pigment_color_at(const Pigment *pigment, const Spot *outer) {
     Spot spot = spot_in_pattern(pigment, outer, traits.warps_itself);
     if (pigment->kind == PATTERN_IMAGE_MAP)
         return pigment->image ? picture_map_color(pigment->image, &spot) : pigment->color;
-    Pigment plain = {.kind = pigment->kind};
-    ColorSum sum = {.map = colormap_of(pigment), .own = colormap_of(&plain), .spot = &spot};
+    ColorSum sum = {.map = colormap_of(pigment), .own = colormap_own(pigment->kind), .spot = &spot};
     pattern_blend(pigment, &spot, add_entry, &sum);
     return sum.sum;
 }

@@ -29,16 +29,15 @@ static SharedTile *tile_at(Middles *m, int x, int y) {
 /* Of the numbers [from, to) those that are at most 1 from `at`. */
 static int count_near(int at, int from, int to) { return int_min(at + 1, to - 1) - int_max(at - 1, from) + 1; }
 
-Middles *middles_create(int x0, int y0, int x1, int y1, int columns, int rows) {
-    const int left = int_max(x0 - 1, 0), top = int_max(y0 - 1, 0), right = int_min(x1 + 1, columns), bottom = int_min(y1 + 1, rows);
-    size_t count = (size_t)(right - left) * (size_t)(bottom - top);
+Middles *middles_create(TileRange drawn, TileRange asked) {
+    size_t count = (size_t)(asked.x1 - asked.x0) * (size_t)(asked.y1 - asked.y0);
     Middles *m = calloc(1, sizeof *m + count * sizeof *m->tiles);
     if (!m) return NULL;
-    m->x0 = left, m->y0 = top, m->columns = right - left, m->rows = bottom - top;
+    m->x0 = asked.x0, m->y0 = asked.y0, m->columns = asked.x1 - asked.x0, m->rows = asked.y1 - asked.y0;
     pthread_mutex_init(&m->lock, NULL);
     pthread_cond_init(&m->seen, NULL);
-    for (int y = top; y < bottom; y++)
-        for (int x = left; x < right; x++) tile_at(m, x, y)->users = count_near(x, x0, x1) * count_near(y, y0, y1);
+    for (int y = asked.y0; y < asked.y1; y++)
+        for (int x = asked.x0; x < asked.x1; x++) tile_at(m, x, y)->users = count_near(x, drawn.x0, drawn.x1) * count_near(y, drawn.y0, drawn.y1);
     return m;
 }
 

@@ -23,12 +23,16 @@ static inline Vec3f middle_as(Vec3f seen, const SurfaceTint *tint, const Surface
 
 typedef struct Middles Middles;
 
-/* For those who draw the tiles [x0, x1) × [y0, y1), by number, of a picture of `columns` × `rows` tiles: they ask for these and for the tiles
- * around them, so that a part of a picture is drawn as in the whole. NULL when memory is short. */
-Middles *middles_create(int x0, int y0, int x1, int y1, int columns, int rows);
+/* Tiles by number, [x0, x1) × [y0, y1). */
+typedef struct TileRange {
+    int x0, y0, x1, y1;
+} TileRange;
+
+/* For those who draw some tiles and may ask for `asked`, which holds these. NULL when memory is short. */
+Middles *middles_create(TileRange drawn, TileRange asked);
 void middles_destroy(Middles *middles);
 
-/* Rows of FILM_TILE middles of a tile, as far as the picture goes; NULL for tiles that nobody draws or has beside his, and when memory is short.
+/* Rows of FILM_TILE middles of a tile, as far as the picture goes; NULL for tiles that are not among those, and when memory is short.
  * Who asks first makes them with see(context, x, y, rows), others wait for it; asked for without `wait` they may be NULL for that. */
 const Middle *middles_ask(Middles *middles, int x, int y, bool wait,
                           void (*see)(void *context, int x, int y, Middle *rows), void *context);

@@ -79,13 +79,21 @@ static void make_workers(Frame *frame, int workers) {
     for (int i = 0; i < workers; i++) frame->samplers[i] = sampler_create(compiled, &plan, arena);
 }
 
-/* After all that takes memory from arenas, which may not return. */
+static TileRange tiles_of(int x0, int y0, int x1, int y1) {
+    return (TileRange){x0 / FILM_TILE, y0 / FILM_TILE, (x1 - 1) / FILM_TILE + 1, (y1 - 1) / FILM_TILE + 1};
+}
+
+/* After all that takes memory from arenas, which may not return. Where middles are guessed those of a tile hang together: to draw a part of
+ * a picture as in the whole the tiles around it are looked at, too, all of them. */
 static void share_middles(Frame *frame, int workers) {
     const int *region = frame->options->region;
     if (!frame->samplers || frame->options->aovs) return;
     const View *view = &frame->compiled->view;
-    frame->middles = middles_create(region[0] / FILM_TILE, region[1] / FILM_TILE, (region[2] - 1) / FILM_TILE + 1, (region[3] - 1) / FILM_TILE + 1,
-                                    (view->width - 1) / FILM_TILE + 1, (view->height - 1) / FILM_TILE + 1);
+    const TileRange drawn = tiles_of(region[0], region[1], region[2], region[3]), all = tiles_of(0, 0, view->width, view->height);
+    TileRange asked = drawn;
+    if (sampler_guesses(frame->samplers[0]))
+        asked = (TileRange){int_max(drawn.x0 - 1, 0), int_max(drawn.y0 - 1, 0), int_min(drawn.x1 + 1, all.x1), int_min(drawn.y1 + 1, all.y1)};
+    frame->middles = middles_create(drawn, asked);
     for (int i = 0; i < workers; i++) sampler_share(frame->samplers[i], frame->middles);
 }
 

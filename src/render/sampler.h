@@ -16,6 +16,8 @@ typedef struct SamplePlan {
 typedef struct Sampler Sampler; /* of one worker */
 
 Sampler *sampler_create(const CompiledScene *compiled, const SamplePlan *plan, Arena *arena);
+/* Whether middles may be guessed by others of their tile (guess.h). */
+bool sampler_guesses(const Sampler *sampler);
 /* Before the first tile: what the samplers of all workers share, where nothing is added to `aovs`. NULL: each tile looks for itself. */
 void sampler_share(Sampler *sampler, Middles *middles);
 /* A whole tile, [x0, x1) × [y0, y1), at most FILM_TILE each way: rows of x1 − x0 in `out`, and what is seen

@@ -51,7 +51,7 @@ static void *work(void *context) {
 static void test_each_tile_is_seen_once(void **state) {
     (void)state;
     for (int workers = 1; workers <= WORKERS; workers += WORKERS - 1) {
-        Counts c = {.middles = middles_create(X0 + 1, Y0 + 1, X0 + COLUMNS, Y0 + ROWS - 1, X0 + COLUMNS, Y0 + ROWS + 9)};
+        Counts c = {.middles = middles_create((TileRange){X0 + 1, Y0 + 1, X0 + COLUMNS, Y0 + ROWS - 1}, (TileRange){X0, Y0, X0 + COLUMNS, Y0 + ROWS})};
         pthread_t threads[WORKERS];
         assert_non_null(c.middles);
         for (int i = 0; i < workers; i++) assert_int_equal(pthread_create(&threads[i], NULL, work, &c), 0);

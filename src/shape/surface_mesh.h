@@ -64,7 +64,7 @@ typedef struct SurfaceMeshOptions {
  *             that a texture does not slide while a deform moves.
  * Vertex normals are the angle-weighted mean of the cells around (given normals win unless there is a deform); height
  * vectors and w vectors given with the scene are interpolated to subdivided vertices and follow deform and transform.
- * What is needed on the way stays in the arena too: about 300 bytes a cell in all.
+ * What is needed on the way stays in the arena too: about 450 bytes a cell in all.
  * False, with *refusal filled, for what has no finite boundary or is not modelled. */
 bool surface_mesh_build(const Surface *surface, const SurfaceMeshOptions *options, Arena *arena,
                         SurfaceMesh *out, ShapeRefusal *refusal);

@@ -33,9 +33,10 @@ static Vec3f shown(const Middle *m) {
     return vec3f(float_clamp(c.x, 0, 1), float_clamp(c.y, 0, 1), float_clamp(c.z, 0, 1));
 }
 
+/* Whether b, of which the light need not be known, is what a is. Less is asked of a surface of which little is seen. */
 static bool same_surface(const Middle *a, const Middle *b) {
-    if (a->object != b->object || a->tint.texture != b->tint.texture) return false;
-    return a->object == 0 || vec3f_dot(a->normal, b->normal) > SAME_NORMAL;
+    if (a->single || a->object != b->object || a->tint.texture != b->tint.texture) return false;
+    return a->object == 0 || (1 - vec3f_dot(a->normal, b->normal)) * (1 - a->hidden) < 1 - SAME_NORMAL;
 }
 
 /* By what the others differ from the first: where all are the same nothing is lost to rounding. */

@@ -10,8 +10,10 @@ typedef struct Middle {
     Radiance seen;
     Vec3f normal;    /* of the surface, */
     uint32_t object; /* and its number, from 1; 0: none */
-    bool calm;       /* it is even, mirrors nothing and lets nothing through */
+    bool calm;       /* it is even, mirrors nothing and lets nothing through; or matter of skins is before it */
     bool refinable;  /* the pixel's error can be that of edges */
+    bool single;     /* beside it there may be anything: it tells nothing of others */
+    float hidden;    /* the share of it that skins' matter hides */
     SurfaceTint tint; /* how its light depends on its colour, if it does */
     float doubt;     /* of light that was guessed: squared error to be expected */
 } Middle;

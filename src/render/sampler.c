@@ -25,6 +25,8 @@ static const double WIDE = 0.5;
 /* Middles are guessed where this is found to be no further off than so many times the error that is accepted, unless the guesses take
  * more than this part of it. */
 static const double ALIKE = 1, GUESSES_MAY = 0.25;
+/* The same of skins' matter, whose light takes far longer than that of surfaces. */
+static const double GUESSES_OF_MATTER_MAY = 0.5;
 /* Pixels that seem to need nothing are quiet: of a tile's, one of a square of so many each way is looked at all the same, for all of these, and of those that have had samples one of so many, if there are
  * enough of them. Where things are narrower than pixels it is one of a smaller square. */
 enum { PROBE_SIDE = 8, PROBE_SIDE_THIN = 2, PROBE_AGAIN = 16, ENOUGH_QUIET = 32 };
@@ -40,6 +42,7 @@ struct Sampler {
     Cell cells[CELLS];
     LightPlanes light; /* their means */
     bool shares;  /* light is a matter of the surface alone: neither skins nor a lens */
+    bool guesses; /* middles may tell the light of others: it may be a matter of skins, too */
     AovSum *aovs; /* of the tile without what is around it; NULL: not wanted */
     int x0, y0, columns, rows;
     ErrorLaws laws;
@@ -52,8 +55,8 @@ Sampler *sampler_create(const CompiledScene *compiled, const SamplePlan *plan, A
     Sampler *sp = arena_new(arena, Sampler);
     sp->compiled = compiled;
     sp->plan = *plan;
-    sp->shares = compiled->skin_count == 0 && !compiled->volumes && !compiled->scene->has_media &&
-                 !view_has_lens(&compiled->view) && !plan->fixed;
+    sp->guesses = !compiled->volumes && !compiled->scene->has_media && !view_has_lens(&compiled->view) && !plan->fixed;
+    sp->shares = sp->guesses && compiled->skin_count == 0;
     tracer_init(&sp->tracer, compiled, arena);
     return sp;
 }
@@ -215,16 +218,28 @@ static bool see_first(Sampler *sp, const Aim *aim, const Guess *guess, Middle *o
     out->tint = s.tint;
     out->object = s.found ? s.hit.object + 1 : 0;
     out->normal = s.found ? vec3f_from(s.hit.normal) : vec3f(0, 0, 0);
+    if (s.known && !sp->shares) { /* it is what the corners are */
+        out->calm = true;
+        out->refinable = false;
+        for (int k = 0; k < 4; k++) out->refinable |= guess->corners[k]->refinable;
+        out->hidden = guess->corners[0]->hidden;
+        return true;
+    }
     out->refinable = view_has_lens(&sp->compiled->view) || s.reaching >= ALL_EXPLICIT || is_wide(sp, aim, &s) ||
                      (s.reaching >= EDGE_WORTH &&
                       surfaces_vary(sp->compiled, aim->px + aim->x, aim->py + aim->y, s.found, &s.hit));
+    const bool matter = s.reaching < ALL_EXPLICIT;
     out->calm = s.found ? s.hit.look->even && s.hit.look->plain && s.hit.share_count == 0 : sp->compiled->scene->sky_layer_count == 0;
+    out->calm |= matter;
+    out->single = !sp->shares && !matter;
+    out->hidden = 1 - s.reaching;
     return s.known;
 }
 
 /* The first sample of each pixel lies in its middle: of light that changes evenly it is the mean. */
 static bool see_middle(Sampler *sp, int px, int py, const Guess *guess, Middle *out) {
     out->doubt = 0;
+    out->single = false;
     return see_first(sp, &(Aim){px, py, 0, 0.5, 0.5, 1, 1}, guess, out);
 }
 
@@ -504,11 +519,11 @@ static void see_shared(void *context, int tile_x, int tile_y, Middle *rows) {
     const View *view = &sp->compiled->view;
     const int x0 = tile_x * FILM_TILE, y0 = tile_y * FILM_TILE;
     const int columns = int_min(FILM_TILE, view->width - x0), row_count = int_min(FILM_TILE, view->height - y0);
-    const double error = sp->shares ? sp->plan.max_error : 0;
+    const double error = sp->shares || (sp->guesses && !sp->aovs) ? sp->plan.max_error : 0, may = sp->shares ? GUESSES_MAY : GUESSES_OF_MATTER_MAY;
     SharedSight shared = {.sampler = sp};
     if (sp->shares) shared.tile = tile_sight(sp->compiled, x0, y0, columns, row_count);
     else shared.tile = (TileSight){.x0 = x0, .y0 = y0};
-    const GuessSight sight = {.see = see_of_tile, .view = sp->shares && !sp->aovs ? view_in_tile : NULL, .even = even_in_tile, .context = &shared, .tolerance = ALIKE * error, .accepted = GUESSES_MAY * error * error};
+    const GuessSight sight = {.see = see_of_tile, .view = sp->shares && !sp->aovs ? view_in_tile : NULL, .even = even_in_tile, .context = &shared, .tolerance = ALIKE * error, .accepted = may * error * error};
     guess_tile(&sight, columns, row_count, rows);
 }
 

@@ -114,6 +114,36 @@ static void test_equal_light_stays_what_it_is(void **state) {
     }
 }
 
+static Middle bare(int x, int y) {
+    Middle m = even(x, y);
+    m.single = true;
+    return m;
+}
+
+/* Even light over ground that turns from pixel to pixel, of which so much is hidden. */
+static Middle rough(int x, int y, float hidden) {
+    Middle m = even(x, y);
+    m.normal = (x + y) & 1 ? (Vec3f){0.5f, 0, 0.866f} : (Vec3f){0, 0, 1};
+    m.hidden = hidden;
+    return m;
+}
+static Middle rough_bare(int x, int y) { return rough(x, y, 0); }
+static Middle rough_under_matter(int x, int y) { return rough(x, y, 0.95f); }
+
+/* Between bare places of a skin there may be anything; of ground that matter hides the slope hardly counts. */
+static void test_matter_of_skins(void **state) {
+    (void)state;
+    Middle out[FILM_TILE * FILM_TILE];
+    Watch w = look(bare, 0.01, FILM_TILE, FILM_TILE, out);
+    assert_int_equal(w.guessed, 0);
+    assert_int_equal(w.found, FILM_TILE * FILM_TILE);
+    w = look(rough_under_matter, 0.01, FILM_TILE, FILM_TILE, out);
+    assert_true(worst(&w, out, FILM_TILE, FILM_TILE) < 1e-5);
+    assert_in_range(w.found, 1, FILM_TILE * FILM_TILE / 3);
+    Watch open = look(rough_bare, 0.01, FILM_TILE, FILM_TILE, out);
+    assert_true(open.found > 2 * w.found);
+}
+
 static void test_curved_light_is_as_exact_as_asked(void **state) {
     (void)state;
     Middle out[FILM_TILE * FILM_TILE];
@@ -177,6 +207,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_even_light_is_guessed_from_few),
                                        cmocka_unit_test(test_details_of_patterns_are_not_guessed),
                                        cmocka_unit_test(test_equal_light_stays_what_it_is),
+                                       cmocka_unit_test(test_matter_of_skins),
                                        cmocka_unit_test(test_curved_light_is_as_exact_as_asked),
                                        cmocka_unit_test(test_edges_of_light_are_found),
                                        cmocka_unit_test(test_nothing_is_guessed_over_what_else_is_met),

@@ -6,19 +6,11 @@
 
 /* What is not matter counts as ground up to this height, less and less up to twice as high. */
 static const double GROUND_HEIGHT = 0.1;
-/* Voxels of so many levels below the coarsest tell by themselves where light falls, at least: where they are about as small as triangles, of
- * which there are N in a tile, log4(N) levels down. */
-static const float LEVELS_BLURRED = 3, MOST_LEVELS_BLURRED = 8, LEVELS_OF_TRIANGLES = 1.3f;
 
 /* A direction of the scene, in a copy of the texel. */
 static Vec3f in_texel(const SkinJoint *at, int copy, Vec3 d) {
     const TexturePlace *place = &at->place;
     return texel_copy_rate(&at->of->copies[copy], vec3(vec3_dot(place->grad_u, d), vec3_dot(place->grad_v, d), vec3_dot(place->grad_w, d)));
-}
-
-static float blurred(float levels_from_top, const BuiltTexel *texel) {
-    float structure = 0.5f * log2f((float)texel->triangles_known + 1) - LEVELS_OF_TRIANGLES;
-    return float_clamp(1 - levels_from_top / float_clamp(structure, LEVELS_BLURRED, MOST_LEVELS_BLURRED), 0, 1);
 }
 
 static bool turned_alike(const TexelCopy *a, const TexelCopy *b) { return a->xu == b->xu && a->xv == b->xv && a->zu == b->zu && a->zv == b->zv; }
@@ -72,21 +64,15 @@ void skin_joint_find(const SkinMarch *march, SkinJoint *joint) {
     joint->place = march->span.place;
 }
 
-/* Finer or coarser than any voxels the cone's may be. */
-static float within_voxels(const SkinJoint *joint) { return float_clamp(joint->lod, 0, (float)(joint->of->layer->levels - 1)); }
-
 float skin_joint_ground(const SkinMarch *march, Vec3 to_eye, float through) {
     double height = march->stretch.start.w / GROUND_HEIGHT - 1;
     SkinJoint joint;
     if (march->entries != 1 || march->stretch.t0 > 1e-6 * (double)march->span.voxel_world || height >= 1) return through;
     skin_joint_find(march, &joint);
     if (!joint.of) return through;
-    float lod = within_voxels(&joint), coarse = blurred((float)(joint.of->layer->levels - 1) - lod, joint.of->copies[0].texel), seen = 0;
-    for (int i = 0; i < joint.of->count; i++) {
-        Vec3f eye = in_texel(&joint, i, to_eye), light = in_texel(&joint, i, march->cone->direction);
-        float share = powf(through, voxel_layer_ground_power(joint.of->layer, lod, eye, light));
-        seen += (share + (1 - share) * voxel_layer_spot(joint.of->layer, eye, light) * coarse) / (float)joint.of->count;
-    }
+    float seen = 0;
+    for (int i = 0; i < joint.of->count; i++)
+        seen += voxel_layer_light_on_ground(joint.of->layer, joint.lod, in_texel(&joint, i, to_eye), in_texel(&joint, i, march->cone->direction), through) / (float)joint.of->count;
     return through + (seen - through) * (float)double_min(1, 1 - height);
 }
 
@@ -96,7 +82,7 @@ float skin_joint_matter(const SkinMarch *march, Vec3 to_eye, float share) {
     skin_joint_find(march, &joint);
     if (!joint.of) return share;
     for (int i = 0; i < joint.of->count; i++)
-        mean += powf(share, voxel_layer_matter_power(joint.of->layer, joint.lod, in_texel(&joint, i, to_eye), in_texel(&joint, i, march->cone->direction))) / (float)joint.of->count;
+        mean += voxel_layer_light_on_matter(joint.of->layer, joint.lod, in_texel(&joint, i, to_eye), in_texel(&joint, i, march->cone->direction), share) / (float)joint.of->count;
     return mean;
 }
 

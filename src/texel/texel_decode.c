@@ -272,7 +272,7 @@ static bool read_pairs(FormatReader *r, VoxelLayer *layer, size_t number) {
     if (!next_is(r, SECTION_PAIRS)) return true;
     const unsigned char *at = open_section(r, SECTION_PAIRS, number, 0);
     if (!at) return false;
-    if (r->header.version < 6) return true;
+    if (r->header.version < 7) return true;
     if (r->section.size != sizeof layer->pairs) return refuse_section(r, "has not the size that it should have");
     memcpy(&layer->pairs, at, sizeof layer->pairs);
     return voxel_pairs_are_sound(&layer->pairs) || refuse_section(r, "holds what it should not");

@@ -11,7 +11,7 @@
  *     for each level:  INDEX   the brick at each place, −1: none        SLICES  8 × 64 bits a brick: which voxels are occupied
  *                      CODES   8 bytes for each occupied voxel, brick by brick (voxel_code.h)
  *     where any of them is not 1: TRIM  7 × 9 × 9 factors of coarse levels (voxel_trim.h), 32 bits each
- *     where they are known: PAIRS  33 × 33 + 1 numbers (voxel_pairs.h), 32 bits each, 2 × 7 × 33 × 33 powers and as many factors (voxel_lit.h), 8 bits each
+ *     where they are known: PAIRS  33 × 33 + 16 numbers (voxel_pairs.h), 32 bits each, 2 × 7 × 33 × 33 powers and as many factors (voxel_lit.h), 8 bits each
  *
  * The same texel gives the same bytes. A reader believes nothing: sizes and offsets must be what the header implies, so that
  * no more memory is asked for than a small multiple of the file's size, every index must be in its range, every checksum right. */
@@ -24,9 +24,9 @@
 
 /* The format's version; and the builder's: to be raised when the same contents give other voxels than before, so that caches
  * do not keep the old ones. Version 1 had another law of opacity, from 0 to 1 in steps of 1/21: it is read, and its gammas become those that
- * hide as much. Versions before 3 have no factors of coarse levels: they are 1; those before 5 factors of four levels only. Those before 6
+ * hide as much. Versions before 3 have no factors of coarse levels: they are 1; those before 5 factors of four levels only. Those before 7
  * have no pairs, or of another kind, which are passed over. */
-enum { TEXEL_FILE_VERSION = 6, TEXEL_FILE_OLDEST = 1, TEXEL_BUILDER_VERSION = 11, TEXEL_FILE_MOST_LAYERS = 256 };
+enum { TEXEL_FILE_VERSION = 7, TEXEL_FILE_OLDEST = 1, TEXEL_BUILDER_VERSION = 11, TEXEL_FILE_MOST_LAYERS = 256 };
 
 typedef struct TexelFileLayer {
     VoxelLayer *voxels;

@@ -57,6 +57,8 @@ typedef struct VoxelLevel {
 typedef struct VoxelPairs {
     float lit[PAIR_NODES * PAIR_NODES]; /* by direction to the eye, then to the light; below 0: not known */
     float spot;                         /* difference of slopes over which gaps forget each other; 0: not known */
+    float glow;                         /* angle over which what is seen of matter and what is lit of it forget each other, radians; 0: not known */
+    float peak[2][TRIM_LEVELS];         /* widths like glow and spot, of what voxels do not know of that, by level as powers */
     uint8_t matter[TRIM_LEVELS][PAIR_NODES * PAIR_NODES], ground[TRIM_LEVELS][PAIR_NODES * PAIR_NODES]; /* powers: voxel_lit.h */
     uint8_t facing[2][TRIM_LEVELS][PAIR_NODES * PAIR_NODES]; /* factors: voxel_lit.h */
 } VoxelPairs;

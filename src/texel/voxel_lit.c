@@ -140,8 +140,6 @@ static Vec3f place_of(const PowerWork *work, int i, int side, uint64_t lot) {
                  work->among->extent.z * ((float)(i / side) + random_unitf(random_mix(bits))) / (float)side);
 }
 
-static Vec3f direction_beside(Vec3f d) { return vec3f_normalize(vec3f(d.x / d.y + SPOT_OFFSET, 1, d.z / d.y)); }
-
 /* Places that are seen along a direction, one of each ray. */
 typedef struct LitPlaces {
     int count;
@@ -183,7 +181,7 @@ static void face_all(const LitWay *to_eye, Vec3f p, const Vec3f *lights, int at,
 
 static void find_places(const PowerWork *work, int from_top, int eye, LitPlaces *out) {
     float top = (float)(work->layer->levels - 1), wanted = top - (float)from_top, lod = float_max(0, wanted);
-    Vec3f d = work->d[eye], beside = direction_beside(d);
+    Vec3f d = work->d[eye], beside = pair_direction_beside(d);
     LitWay to_eye = way_along(work->among, lod, d, EYE_STEP);
     out->count = 0, out->all = 0;
     int side = EYE_SIDES[from_top] * (work->truth->triangles > MANY_TRIANGLES ? 2 : 1);
@@ -264,7 +262,7 @@ static void find_ground_powers(PowerWork *work, int from_top) {
     VoxelLayer *layer = work->layer;
     float lod = (float)(layer->levels - 1 - from_top), through[PAIR_NODES][GROUND_PLACES];
     for (int node = 0; node < PAIR_NODES; node++) {
-        LitWay way = way_along(work->among, lod, work->d[node], LIT_STEP), near = way_along(work->among, lod, direction_beside(work->d[node]), LIT_STEP);
+        LitWay way = way_along(work->among, lod, work->d[node], LIT_STEP), near = way_along(work->among, lod, pair_direction_beside(work->d[node]), LIT_STEP);
         float both = 0, seen = 0;
         for (int i = 0; i < GROUND_PLACES; i++) {
             Vec3f foot = place_of(work, i, GROUND_SIDE, (uint64_t)from_top);
@@ -277,8 +275,6 @@ static void find_ground_powers(PowerWork *work, int from_top) {
         for (int light = 0; light < PAIR_NODES; light++) {
             float both = 0, seen = 0, truth = work->open[eye * PAIR_NODES + light];
             for (int i = 0; i < GROUND_PLACES; i++) both += through[eye][i] * through[light][i], seen += through[eye][i];
-            float spot = float_min(0.9f, voxel_layer_spot(layer, work->d[eye], work->d[light])); /* is added when the power is used */
-            if (truth >= 0) truth = float_max(0, (truth - spot) / (1 - spot));
             if (seen > 0 && truth >= 0) layer->pairs.ground[from_top][eye * PAIR_NODES + light] = less_certain(power_code(truth, both / seen), certainty(work->truth->triangles, SOME_TRIANGLES));
         }
 }
@@ -291,17 +287,14 @@ static void find_powers(void *context, size_t number, int worker) {
     else if (from_top < work->layer->levels) find_ground_powers(work, from_top);
 }
 
-/* Where eye and light are nearly one, what holds a little beside that is taken for all directions. */
-static void lay_peak(uint8_t *codes, float lit, const float beside[PAIR_NODES], float certain) {
+/* What voxels make of the share that is lit a little beside the eye, beside[]: of directions at a height like that of the views that tell the truth. */
+static float share_beside(const uint8_t *codes, const float beside[PAIR_NODES]) {
     float mean = 0;
-    for (int node = 0; node < PAIR_NODES; node++) mean += beside[node] / PAIR_NODES;
-    for (int node = 0; node < PAIR_NODES; node++) {
-        uint8_t *code = &codes[node * PAIR_NODES + node];
-        *code = (uint8_t)lrintf(certain * (float)power_code(lit, mean) + (1 - certain) * (float)*code);
-    }
+    for (int node = 1; node <= PAIR_RING; node++) mean += powf(beside[node], factor_of(codes[node * PAIR_NODES + node])) / PAIR_RING;
+    return mean;
 }
 
-/* Where eye and light look along one line the share that is lit has a peak far narrower than the way to the next node, which the spot tells of: the
+/* Where eye and light look along one line the share that is lit has a peak far narrower than the way to the next node, which spot and glow tell of: the
  * entry gets the mean of those around it. */
 static void flatten_peak(uint8_t *codes) {
     for (int node = 0; node < PAIR_NODES; node++) {
@@ -325,10 +318,11 @@ bool voxel_layer_find_powers(VoxelLayer *layer, const LitTruth *truth, const Lit
     int known = levels == layer->levels ? int_min(levels + LEVELS_BEYOND, TRIM_LEVELS) : levels;
     bool done = pool_run(pool, (size_t)(known * (PAIR_NODES + 1)), find_powers, &work);
     for (int i = 0; i < known; i++) {
-        lay_peak(layer->pairs.matter[i], truth->lit_beside, work.matter_beside[i], 1);
+        flatten_peak(layer->pairs.matter[i]);
+        layer->pairs.peak[0][i] = pair_glow_width(truth->lit_beside, share_beside(layer->pairs.matter[i], work.matter_beside[i]));
         for (int side = 0; side < 2; side++) flatten_peak(layer->pairs.facing[side][i]);
         flatten_peak(layer->pairs.ground[i]);
-        if (truth->open_beside >= 0 && i < levels) lay_peak(layer->pairs.ground[i], truth->open_beside, work.ground_beside[i], certainty(truth->triangles, SOME_TRIANGLES));
+        if (truth->open_beside >= 0 && i < levels) layer->pairs.peak[1][i] = pair_spot_width(truth->open_beside, share_beside(layer->pairs.ground[i], work.ground_beside[i]));
     }
     return done;
 }
@@ -337,24 +331,43 @@ bool voxel_layer_find_powers(VoxelLayer *layer, const LitTruth *truth, const Lit
 
 typedef uint8_t PairCodes[PAIR_NODES * PAIR_NODES];
 
-static float power_at(const VoxelLayer *layer, const PairCodes *codes, float lod, const PairPlace *place) {
+/* A level of the tables, and how far it is on the way to the next. */
+static int level_at(const VoxelLayer *layer, float lod, float *part) {
     int known = int_min(layer->levels + LEVELS_BEYOND, TRIM_LEVELS);
     float from_top = float_clamp((float)(layer->levels - 1) - lod, 0, (float)(known - 1));
     int level = int_clamp((int)from_top, 0, TRIM_LEVELS - 2);
-    float t = from_top - (float)level, sum = 0;
+    *part = from_top - (float)level;
+    return level;
+}
+
+static float power_at(const VoxelLayer *layer, const PairCodes *codes, float lod, const PairPlace *place) {
+    float t, sum = 0;
+    int level = level_at(layer, lod, &t);
     for (int i = 0; i < PAIR_CORNERS; i++)
         sum += place->weight[i] * ((1 - t) * (float)codes[level][place->entry[i]] + t * (float)codes[level + 1][place->entry[i]]);
     return exp2f((sum - POWER_ONE) / POWER_STEPS);
 }
 
-float voxel_layer_matter_power(const VoxelLayer *layer, float lod, Vec3f to_eye, Vec3f to_light) {
-    PairPlace place;
-    return pair_place(to_eye, to_light, &place) ? power_at(layer, layer->pairs.matter, lod - FINER_TO_EYE, &place) : 1;
+static float peak_at(const VoxelLayer *layer, const float peak[TRIM_LEVELS], float lod) {
+    float t;
+    int level = level_at(layer, lod, &t);
+    return (1 - t) * peak[level] + t * peak[level + 1];
 }
 
-float voxel_layer_ground_power(const VoxelLayer *layer, float lod, Vec3f to_eye, Vec3f to_light) {
+float voxel_layer_light_on_matter(const VoxelLayer *layer, float lod, Vec3f to_eye, Vec3f to_light, float share) {
     PairPlace place;
-    return pair_place(to_eye, to_light, &place) ? power_at(layer, layer->pairs.ground, lod, &place) : 1;
+    lod -= FINER_TO_EYE;
+    if (!pair_place(to_eye, to_light, &place)) return share;
+    share = powf(share, power_at(layer, layer->pairs.matter, lod, &place));
+    return share + (1 - share) * pair_glow(peak_at(layer, layer->pairs.peak[0], lod), to_eye, to_light);
+}
+
+float voxel_layer_light_on_ground(const VoxelLayer *layer, float lod, Vec3f to_eye, Vec3f to_light, float through) {
+    PairPlace place;
+    lod = float_max(lod, 0);
+    if (!pair_place(to_eye, to_light, &place)) return through;
+    through = powf(through, power_at(layer, layer->pairs.ground, lod, &place));
+    return through + (1 - through) * pair_spot(peak_at(layer, layer->pairs.peak[1], lod), to_eye, to_light);
 }
 
 void voxel_layer_facing(const VoxelLayer *layer, float lod, Vec3f to_eye, Vec3f to_light, float factor[2]) {

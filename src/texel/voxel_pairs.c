@@ -11,17 +11,24 @@ static const float MOST_OWN = 3, LEAST_OWN = 0.05f;
 enum { LIT_STRIDE = 3 };
 /* Widths of the spot are held below this. */
 static const float WIDEST_SPOT = 2;
+/* What is left of a peak a little beside it. */
+static const float LEAST_LEFT = 0.02f, MOST_LEFT = 0.99f;
+/* Nodes lie about as far apart at least: differences of slopes, and radians. */
+static const float NODES_APART = 0.5f, NODE_ANGLE = 0.35f;
 
 void voxel_layer_forget_pairs(VoxelLayer *layer) {
     for (int i = 0; i < PAIR_NODES * PAIR_NODES; i++) layer->pairs.lit[i] = -1;
-    layer->pairs.spot = 0;
+    layer->pairs.spot = layer->pairs.glow = 0;
+    for (int i = 0; i < TRIM_LEVELS; i++) layer->pairs.peak[0][i] = layer->pairs.peak[1][i] = 0;
     voxel_layer_forget_powers(layer);
 }
 
 bool voxel_layer_is_paired(const VoxelLayer *layer) { return layer->pairs.lit[0] >= 0 || layer->pairs.spot > 0; }
 
 bool voxel_pairs_are_sound(const VoxelPairs *pairs) {
-    bool known = pairs->lit[0] >= 0, sound = pairs->spot >= 0 && pairs->spot <= WIDEST_SPOT;
+    bool known = pairs->lit[0] >= 0, sound = pairs->spot >= 0 && pairs->spot <= WIDEST_SPOT && pairs->glow >= 0 && pairs->glow <= WIDEST_SPOT;
+    for (int i = 0; i < TRIM_LEVELS; i++)
+        for (int k = 0; k < 2; k++) sound &= pairs->peak[k][i] >= 0 && pairs->peak[k][i] <= WIDEST_SPOT;
     for (int i = 0; i < PAIR_NODES * PAIR_NODES; i++) sound &= known ? pairs->lit[i] >= 0 && pairs->lit[i] <= 1 : pairs->lit[i] == -1;
     return sound;
 }
@@ -151,12 +158,14 @@ float pair_open_beside(const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid)
 /* ---- directions ---- */
 
 /* Of the rings, heights above the horizon, degrees. */
-static const float RING_HEIGHT[1 + PAIR_RINGS] = {90, 55, 32, 17, 8};
+static const float RING_HEIGHT[1 + PAIR_RINGS] = {90, 55, 30, 14, 5};
+/* Turned from the axes and diagonals of the tile, in directions: along these eye and light look down lanes between copies that go on for ever. */
+static const float RING_TURN = 0.5f;
 
 static float radians_of(float degrees) { return degrees * (float)(VTS_PI / 180); }
 
 Vec3f pair_direction(int node) {
-    float up = radians_of(RING_HEIGHT[(node + PAIR_RING - 1) / PAIR_RING]), around = (float)(2 * VTS_PI / PAIR_RING) * (float)((node + PAIR_RING - 1) % PAIR_RING);
+    float up = radians_of(RING_HEIGHT[(node + PAIR_RING - 1) / PAIR_RING]), around = (float)(2 * VTS_PI / PAIR_RING) * ((float)((node + PAIR_RING - 1) % PAIR_RING) + RING_TURN);
     return vec3f(cosf(up) * cosf(around), sinf(up), cosf(up) * sinf(around));
 }
 
@@ -221,7 +230,7 @@ typedef struct NodesAround {
 static bool nodes_around(Vec3f d, NodesAround *out) {
     float length = vec3f_length(d);
     if (!(length > 0 && length < INFINITY) || !(d.y > 0)) return false;
-    float up = asinf(float_min(1, d.y / length)) * (float)(180 / VTS_PI), turns = atan2f(d.z, d.x) * (float)(PAIR_RING / (2 * VTS_PI)) + PAIR_RING;
+    float up = asinf(float_min(1, d.y / length)) * (float)(180 / VTS_PI), turns = atan2f(d.z, d.x) * (float)(PAIR_RING / (2 * VTS_PI)) + PAIR_RING - RING_TURN;
     int ring = 0, around = (int)turns;
     while (ring + 1 < PAIR_RINGS && up < RING_HEIGHT[ring + 1]) ring++;
     float b = float_clamp((RING_HEIGHT[ring] - up) / (RING_HEIGHT[ring] - RING_HEIGHT[ring + 1]), 0, 1), a = turns - (float)around;
@@ -242,11 +251,43 @@ bool pair_place(Vec3f to_eye, Vec3f to_light, PairPlace *out) {
     return true;
 }
 
-float voxel_layer_spot(const VoxelLayer *layer, Vec3f to_eye, Vec3f to_light) {
-    if (!(layer->pairs.spot > 0) || !(to_eye.y > 0) || !(to_light.y > 0)) return 0;
+/* Falls with the distance between two directions, over `width`, to nothing at the distance that nodes have. */
+static float fall(float apart, float width, float nodes) {
+    if (!(width > 0)) return 0;
+    float rest = expf(-nodes / width), left = (expf(-apart / width) - rest) / (1 - rest);
+    return left > 0 ? left : 0; /* nor of slopes that are no numbers */
+}
+
+float pair_spot(float width, Vec3f to_eye, Vec3f to_light) {
+    if (!(to_eye.y > 0) || !(to_light.y > 0)) return 0;
     float x = to_eye.x / to_eye.y - to_light.x / to_light.y, z = to_eye.z / to_eye.y - to_light.z / to_light.y;
-    float spot = expf(-sqrtf(x * x + z * z) / layer->pairs.spot);
-    return spot > 0 ? spot : 0; /* of slopes that are no numbers */
+    return fall(sqrtf(x * x + z * z), width, NODES_APART);
+}
+
+float pair_glow(float width, Vec3f to_eye, Vec3f to_light) {
+    if (!(to_eye.y > 0) || !(to_light.y > 0)) return 0;
+    return fall(atan2f(vec3f_length(vec3f_cross(to_eye, to_light)), vec3f_dot(to_eye, to_light)), width, NODE_ANGLE);
+}
+
+Vec3f pair_direction_beside(Vec3f d) { return vec3f_normalize(vec3f(d.x / d.y + SPOT_OFFSET, 1, d.z / d.y)); }
+
+/* How far the views beside each other are apart, on the mean. */
+static float glow_offset(void) {
+    float along = atanf(SPOT_SLOPE + SPOT_OFFSET) - atanf(SPOT_SLOPE), across = atanf(SPOT_OFFSET / sqrtf(1 + SPOT_SLOPE * SPOT_SLOPE));
+    return (along + across) / 2;
+}
+
+static float peak_width(float offset, float lit, float far) {
+    return far < 1 ? float_min(WIDEST_SPOT, offset / -logf(float_clamp((lit - far) / (1 - far), LEAST_LEFT, MOST_LEFT))) : 0;
+}
+
+float pair_glow_width(float lit, float far) { return peak_width(glow_offset(), lit, far); }
+float pair_spot_width(float open, float far) { return peak_width(SPOT_OFFSET, open, far); }
+
+void voxel_layer_find_glow(VoxelLayer *layer, float lit) {
+    float far = 0;
+    for (int i = 1; i <= PAIR_RING; i++) far += layer->pairs.lit[i * PAIR_NODES + i] / PAIR_RING; /* the ring that is nearest to the spots' */
+    layer->pairs.glow = pair_glow_width(lit, far);
 }
 
 float voxel_layer_lit_pair(const VoxelLayer *layer, Vec3f to_eye, Vec3f to_light) {
@@ -254,5 +295,5 @@ float voxel_layer_lit_pair(const VoxelLayer *layer, Vec3f to_eye, Vec3f to_light
     float lit = 0;
     if (layer->pairs.lit[0] < 0 || !pair_place(to_eye, to_light, &place)) return -1;
     for (int i = 0; i < PAIR_CORNERS; i++) lit += place.weight[i] * layer->pairs.lit[place.entry[i]];
-    return lit + (1 - lit) * voxel_layer_spot(layer, to_eye, to_light);
+    return lit + (1 - lit) * pair_glow(layer->pairs.glow, to_eye, to_light);
 }

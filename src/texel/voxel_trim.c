@@ -391,6 +391,7 @@ static void compare_views(const JoinWork *work, VoxelLayer *layer, Pool *pool) {
     voxel_layer_find_spot(layer, spots, VIEW_GRID);
     PairShade *shades = malloc(PAIR_NODES * PAIR_NODES * sizeof *shades);
     if (shades && voxel_layer_pair(layer, all->views, VIEW_GRID, size, shades, pool)) {
+        voxel_layer_find_glow(layer, pair_lit_beside(spots, VIEW_GRID, size));
         const LitTruth truth = {all->views, VIEW_GRID, shades, pair_lit_beside(spots, VIEW_GRID, size), pair_open_beside(spots, VIEW_GRID), all->triangles};
         const LitLayers among = {(const VoxelLayer *const *)work->layers, work->count, work->extent};
         voxel_layer_find_powers(layer, &truth, &among, all->levels, pool);

@@ -47,7 +47,7 @@ static const float COARSER_BELOW[] = {0.3f, 0.08f};
 static const float SHADOW_WORTH = 1.0f / 512;
 enum { MOST_SHADOW_POINTS = 2 };
 /* Between the first matter that is seen and what lies deeper light may fall to nothing: of so much light one shadow in the middle is not enough. */
-static const float SHADOWS_PER_LIGHT = 24;
+static const float SHADOWS_PER_LIGHT = 100;
 /* Less visibility than this does not tell how it falls. */
 static const float DARKEST_OF_FALL = 0.002f;
 

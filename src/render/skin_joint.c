@@ -1,5 +1,6 @@
 #include "render/skin_joint.h"
 
+#include "texel/light_share.h"
 #include "texel/voxel_lit.h"
 
 #include <string.h>
@@ -76,10 +77,11 @@ float skin_joint_ground(const SkinMarch *march, Vec3 to_eye, float through) {
     return through + (seen - through) * (float)double_min(1, 1 - height);
 }
 
-float skin_joint_matter(const SkinMarch *march, Vec3 to_eye, float share) {
+float skin_joint_matter(const SkinMarch *march, Vec3 to_eye, float share, float transmittance) {
     SkinJoint joint;
     float mean = 0;
     skin_joint_find(march, &joint);
+    share *= joint.of && voxel_layer_is_paired(joint.of->layer) ? float_max(transmittance, expf(-LIGHT_DEEPEST)) : transmittance;
     if (!joint.of) return share;
     for (int i = 0; i < joint.of->count; i++)
         mean += voxel_layer_light_on_matter(joint.of->layer, joint.lod, in_texel(&joint, i, to_eye), in_texel(&joint, i, march->cone->direction), share) / (float)joint.of->count;

@@ -8,9 +8,9 @@
  * same, if eye and light are nearly one. The march goes to the light from a place on the ground and has met its first matter. */
 float skin_joint_ground(const SkinMarch *march, Vec3 to_eye, float through);
 
-/* The share of light that comes to matter of the skin, as the voxels have it, made more like that of what the eye sees, the more the coarser
- * voxels are. The march is one to the light from a place in the layer. */
-float skin_joint_matter(const SkinMarch *march, Vec3 to_eye, float share);
+/* The share of light that comes to matter of the skin, as the voxels have it (`share` of what comes through the rest of the layer, `transmittance`), made
+ * more like that of what the eye sees, the more the coarser voxels are. The march is one to the light from a place in the layer. */
+float skin_joint_matter(const SkinMarch *march, Vec3 to_eye, float share, float transmittance);
 
 /* The layer of a skin that tells what eye and light have in common, and some copies of it that are turned differently: the mean of what these tell holds for all. */
 enum { MOST_JOINT_COPIES = 4 };

@@ -71,5 +71,5 @@ float skin_light_on_matter(SkinLight *light, const Cone *cone, double t_max, uin
         }
     }
     around.sheet = around.area > 0 ? float_clamp(gamma_area / (LIGHT_SHEET_GAMMA * around.area), 0, 1) : 0;
-    return skin_joint_matter(march, to_eye, light_share(&around) * transmittance);
+    return skin_joint_matter(march, to_eye, light_share(&around), transmittance);
 }

@@ -10,7 +10,7 @@ enum {
     TRIM_DIRECTIONS = TRIM_NODES * TRIM_NODES,
     TRIM_EVEN_SIDE = (TRIM_NODES + 1) / 2, /* every other of them each way */
     TRIM_EVEN = TRIM_EVEN_SIDE * TRIM_EVEN_SIDE,
-    VIEWS_KEPT = PAIR_NODES + SPOT_GROUPS * SPOT_VIEWS
+    VIEWS_KEPT = PAIR_NODES + SPOT_VIEWS
 };
 
 struct LayerViews {
@@ -19,7 +19,7 @@ struct LayerViews {
     Vec3f low, high;   /* the least and the most coordinates of the triangles */
     int levels;        /* that are trimmed */
     uint64_t hidden[TRIM_EVEN][VIEW_PLACES / 64]; /* along even nodes, a bit for each place */
-    PairView views[VIEWS_KEPT];                   /* along the nodes of pairs, then the spots; NULL: not known */
+    PairView views[VIEWS_KEPT];                   /* along the nodes of pairs, then beside some of them; NULL: not known */
     float tops[VIEWS_KEPT][VIEW_PLACES];
     ViewNormal normals[VIEWS_KEPT][VIEW_PLACES];
 };

@@ -16,6 +16,9 @@ typedef struct LightSurroundings {
 /* From this mean gamma on, matter is one sheet, or the wall of a solid (whose two walls have less). */
 #define LIGHT_SHEET_GAMMA 0.6f
 
+/* What comes through more than this optical depth counts as if it came through so much: of what is left powers of light make a share that shows. */
+#define LIGHT_DEEPEST 5.0f
+
 /* light_facing() of unit directions to the eye and to the light, by their cosine. */
 static inline float light_facing(float cosine) { return cosine > -1 ? cosine < 1 ? (1 + cosine) / 2 : 1 : 0; }
 

@@ -11,7 +11,7 @@
  *     for each level:  INDEX   the brick at each place, −1: none        SLICES  8 × 64 bits a brick: which voxels are occupied
  *                      CODES   8 bytes for each occupied voxel, brick by brick (voxel_code.h)
  *     where any of them is not 1: TRIM  7 × 9 × 9 factors of coarse levels (voxel_trim.h), 32 bits each
- *     where they are known: PAIRS  33 × 33 + 16 numbers (voxel_pairs.h), 32 bits each, 2 × 7 × 33 × 33 powers and as many factors (voxel_lit.h), 8 bits each
+ *     where they are known: PAIRS  33 × 33 + 160 numbers (voxel_pairs.h), 32 bits each, 2 × 7 × 33 × 33 powers and as many factors (voxel_lit.h), 8 bits each
  *
  * The same texel gives the same bytes. A reader believes nothing: sizes and offsets must be what the header implies, so that
  * no more memory is asked for than a small multiple of the file's size, every index must be in its range, every checksum right. */

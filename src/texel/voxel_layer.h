@@ -9,7 +9,7 @@ enum { BRICK_SIDE = 8, BRICK_VOXELS = 512 };
 /* Levels of up to 8 voxels, and directions each way, for which it is known how much they have to be trimmed. */
 enum { TRIM_LEVELS = 7, TRIM_NODES = 9 };
 /* Directions that are looked along in pairs: the zenith, and rings of so many below it. */
-enum { PAIR_RINGS = 4, PAIR_RING = 8, PAIR_NODES = 1 + PAIR_RINGS * PAIR_RING };
+enum { PAIR_RINGS = 4, PAIR_RING = 8, PAIR_NODES = 1 + PAIR_RINGS * PAIR_RING, PAIR_HEIGHTS = 1 + PAIR_RINGS };
 
 /* Voxel (x, y, z) is stored if bit 8·y + x of slice[z] is set; its code is then
  * codes[first[z] + number of lower bits set in the slice]. */
@@ -53,12 +53,16 @@ typedef struct VoxelLevel {
     size_t brick_count, code_count;
 } VoxelLevel;
 
+/* Angles over which what is seen and what is lit forget each other, radians: up and down, and around the zenith, by height; 0: not known. */
+typedef struct PairWidths {
+    float at[2][PAIR_HEIGHTS];
+} PairWidths;
+
 /* What eye and light have in common: voxel_pairs.h. */
 typedef struct VoxelPairs {
     float lit[PAIR_NODES * PAIR_NODES]; /* by direction to the eye, then to the light; below 0: not known */
-    float spot;                         /* difference of slopes over which gaps forget each other; 0: not known */
-    float glow;                         /* angle over which what is seen of matter and what is lit of it forget each other, radians; 0: not known */
-    float peak[2][TRIM_LEVELS];         /* widths like glow and spot, of what voxels do not know of that, by level as powers */
+    PairWidths glow, spot;            /* of matter, and of the ground */
+    PairWidths peak[2][TRIM_LEVELS];  /* the same of what voxels do not know of that, by level as powers */
     uint8_t matter[TRIM_LEVELS][PAIR_NODES * PAIR_NODES], ground[TRIM_LEVELS][PAIR_NODES * PAIR_NODES]; /* powers: voxel_lit.h */
     uint8_t facing[2][TRIM_LEVELS][PAIR_NODES * PAIR_NODES]; /* factors: voxel_lit.h */
 } VoxelPairs;

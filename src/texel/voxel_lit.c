@@ -90,7 +90,7 @@ static float light_at(const LitWay *w, Vec3f p, float facing) {
     float reach = (float)LIGHT_SURROUNDINGS * w->h, back = float_min(reach, p.y / w->d.y), end = (w->extent.y - p.y) / w->d.y;
     LightSurroundings around = {.facing = facing};
     float rest = 0, gamma_area = 0;
-    for (float t = -back; t < end && rest < 5; t += w->step) {
+    for (float t = -back; t < end && rest < LIGHT_DEEPEST; t += w->step) {
         float length = float_min(w->step, end - t), within = float_clamp(reach - t, 0, length) / length;
         LitStep s = step_at(w, vec3f_madd(p, w->d, t + length / 2), length);
         around.depth += s.depth * within;
@@ -100,7 +100,7 @@ static float light_at(const LitWay *w, Vec3f p, float facing) {
         rest += s.depth * (1 - within);
     }
     around.sheet = around.area > 0 ? float_clamp(gamma_area / (LIGHT_SHEET_GAMMA * around.area), 0, 1) : 0;
-    return light_share(&around) * expf(-rest);
+    return light_share(&around) * expf(-float_min(rest, LIGHT_DEEPEST));
 }
 
 static float through_from_ground(const LitWay *w, Vec3f foot) {
@@ -181,7 +181,7 @@ static void face_all(const LitWay *to_eye, Vec3f p, const Vec3f *lights, int at,
 
 static void find_places(const PowerWork *work, int from_top, int eye, LitPlaces *out) {
     float top = (float)(work->layer->levels - 1), wanted = top - (float)from_top, lod = float_max(0, wanted);
-    Vec3f d = work->d[eye], beside = pair_direction_beside(d);
+    Vec3f d = work->d[eye], beside = pair_direction_beside(d, true);
     LitWay to_eye = way_along(work->among, lod, d, EYE_STEP);
     out->count = 0, out->all = 0;
     int side = EYE_SIDES[from_top] * (work->truth->triangles > MANY_TRIANGLES ? 2 : 1);
@@ -262,7 +262,7 @@ static void find_ground_powers(PowerWork *work, int from_top) {
     VoxelLayer *layer = work->layer;
     float lod = (float)(layer->levels - 1 - from_top), through[PAIR_NODES][GROUND_PLACES];
     for (int node = 0; node < PAIR_NODES; node++) {
-        LitWay way = way_along(work->among, lod, work->d[node], LIT_STEP), near = way_along(work->among, lod, pair_direction_beside(work->d[node]), LIT_STEP);
+        LitWay way = way_along(work->among, lod, work->d[node], LIT_STEP), near = way_along(work->among, lod, pair_direction_beside(work->d[node], true), LIT_STEP);
         float both = 0, seen = 0;
         for (int i = 0; i < GROUND_PLACES; i++) {
             Vec3f foot = place_of(work, i, GROUND_SIDE, (uint64_t)from_top);
@@ -287,14 +287,21 @@ static void find_powers(void *context, size_t number, int worker) {
     else if (from_top < work->layer->levels) find_ground_powers(work, from_top);
 }
 
-/* What voxels make of the share that is lit a little beside the eye, beside[]: of directions at a height like that of the views that tell the truth. */
-static float share_beside(const uint8_t *codes, const float beside[PAIR_NODES]) {
+/* What voxels make of the share that is lit a little beside the eye at a height, beside[]. */
+static float share_beside(const uint8_t *codes, const float beside[PAIR_NODES], int height) {
+    int first = height ? 1 + (height - 1) * PAIR_RING : 0, count = height ? PAIR_RING : 1;
     float mean = 0;
-    for (int node = 1; node <= PAIR_RING; node++) mean += powf(beside[node], factor_of(codes[node * PAIR_NODES + node])) / PAIR_RING;
+    for (int node = first; node < first + count; node++) mean += powf(beside[node], factor_of(codes[node * PAIR_NODES + node])) / (float)count;
     return mean;
 }
 
-/* Where eye and light look along one line the share that is lit has a peak far narrower than the way to the next node, which spot and glow tell of: the
+/* Of the peaks that bring it to the truth. */
+static void find_widths(PairWidths *out, const PairWidths *truth, const uint8_t *codes, const float beside[PAIR_NODES]) {
+    for (int h = 0; h < PAIR_HEIGHTS; h++)
+        for (int around = 0; around < 2; around++) out->at[around][h] = pair_peak_width(truth->at[around][h], share_beside(codes, beside, h));
+}
+
+/* Where eye and light look along one line the share that is lit has a peak far narrower than the way to the next node, which is kept by itself: the
  * entry gets the mean of those around it. */
 static void flatten_peak(uint8_t *codes) {
     for (int node = 0; node < PAIR_NODES; node++) {
@@ -319,10 +326,10 @@ bool voxel_layer_find_powers(VoxelLayer *layer, const LitTruth *truth, const Lit
     bool done = pool_run(pool, (size_t)(known * (PAIR_NODES + 1)), find_powers, &work);
     for (int i = 0; i < known; i++) {
         flatten_peak(layer->pairs.matter[i]);
-        layer->pairs.peak[0][i] = pair_glow_width(truth->lit_beside, share_beside(layer->pairs.matter[i], work.matter_beside[i]));
+        find_widths(&layer->pairs.peak[0][i], &truth->beside->lit, layer->pairs.matter[i], work.matter_beside[i]);
         for (int side = 0; side < 2; side++) flatten_peak(layer->pairs.facing[side][i]);
         flatten_peak(layer->pairs.ground[i]);
-        if (truth->open_beside >= 0 && i < levels) layer->pairs.peak[1][i] = pair_spot_width(truth->open_beside, share_beside(layer->pairs.ground[i], work.ground_beside[i]));
+        if (i < levels) find_widths(&layer->pairs.peak[1][i], &truth->beside->open, layer->pairs.ground[i], work.ground_beside[i]);
     }
     return done;
 }
@@ -348,10 +355,13 @@ static float power_at(const VoxelLayer *layer, const PairCodes *codes, float lod
     return exp2f((sum - POWER_ONE) / POWER_STEPS);
 }
 
-static float peak_at(const VoxelLayer *layer, const float peak[TRIM_LEVELS], float lod) {
+static float peak_at(const VoxelLayer *layer, const PairWidths peak[TRIM_LEVELS], float lod, Vec3f to_eye, Vec3f to_light) {
+    PairWidths width;
     float t;
     int level = level_at(layer, lod, &t);
-    return (1 - t) * peak[level] + t * peak[level + 1];
+    for (int h = 0; h < PAIR_HEIGHTS; h++)
+        for (int k = 0; k < 2; k++) width.at[k][h] = (1 - t) * peak[level].at[k][h] + t * peak[level + 1].at[k][h];
+    return pair_peak(&width, to_eye, to_light);
 }
 
 float voxel_layer_light_on_matter(const VoxelLayer *layer, float lod, Vec3f to_eye, Vec3f to_light, float share) {
@@ -359,7 +369,7 @@ float voxel_layer_light_on_matter(const VoxelLayer *layer, float lod, Vec3f to_e
     lod -= FINER_TO_EYE;
     if (!pair_place(to_eye, to_light, &place)) return share;
     share = powf(share, power_at(layer, layer->pairs.matter, lod, &place));
-    return share + (1 - share) * pair_glow(peak_at(layer, layer->pairs.peak[0], lod), to_eye, to_light);
+    return share + (1 - share) * peak_at(layer, layer->pairs.peak[0], lod, to_eye, to_light);
 }
 
 float voxel_layer_light_on_ground(const VoxelLayer *layer, float lod, Vec3f to_eye, Vec3f to_light, float through) {
@@ -367,7 +377,7 @@ float voxel_layer_light_on_ground(const VoxelLayer *layer, float lod, Vec3f to_e
     lod = float_max(lod, 0);
     if (!pair_place(to_eye, to_light, &place)) return through;
     through = powf(through, power_at(layer, layer->pairs.ground, lod, &place));
-    return through + (1 - through) * pair_spot(peak_at(layer, layer->pairs.peak[1], lod), to_eye, to_light);
+    return through + (1 - through) * peak_at(layer, layer->pairs.peak[1], lod, to_eye, to_light);
 }
 
 void voxel_layer_facing(const VoxelLayer *layer, float lod, Vec3f to_eye, Vec3f to_light, float factor[2]) {

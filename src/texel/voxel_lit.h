@@ -14,8 +14,7 @@ typedef struct LitTruth {
     const PairView *views; /* PAIR_NODES, of which voxel_layer_pair() has made pairs.lit */
     int grid;
     const PairShade *shades; /* what voxel_layer_pair() told */
-    float lit_beside;      /* pair_lit_beside() */
-    float open_beside;     /* pair_open_beside() */
+    const PairBeside *beside;
     size_t triangles;
 } LitTruth;
 

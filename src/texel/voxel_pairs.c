@@ -3,57 +3,43 @@
 #include "texel/voxel_lit.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* A surface meets its own picture on the grid beside the place that is asked for, up or down its slope by so many of the grid's sides at most; and its
  * heights are known to a part of one. */
 static const float MOST_OWN = 3, LEAST_OWN = 0.05f;
 /* Every so many places, along both axes, matter is asked whether it is lit. */
 enum { LIT_STRIDE = 3 };
-/* Widths of the spot are held below this. */
-static const float WIDEST_SPOT = 2;
-/* What is left of a peak a little beside it. */
-static const float LEAST_LEFT = 0.02f, MOST_LEFT = 0.99f;
-/* Nodes lie about as far apart at least: differences of slopes, and radians. */
-static const float NODES_APART = 0.5f, NODE_ANGLE = 0.35f;
+/* Radians. */
+static const float NARROWEST_PEAK = 0.025f, WIDEST_PEAK = 2;
+/* Nodes lie about as far apart, radians. */
+static const float NODE_ANGLE = 0.5f;
 
 void voxel_layer_forget_pairs(VoxelLayer *layer) {
     for (int i = 0; i < PAIR_NODES * PAIR_NODES; i++) layer->pairs.lit[i] = -1;
-    layer->pairs.spot = layer->pairs.glow = 0;
-    for (int i = 0; i < TRIM_LEVELS; i++) layer->pairs.peak[0][i] = layer->pairs.peak[1][i] = 0;
+    memset(&layer->pairs.glow, 0, sizeof layer->pairs.glow);
+    memset(&layer->pairs.spot, 0, sizeof layer->pairs.spot);
+    memset(layer->pairs.peak, 0, sizeof layer->pairs.peak);
     voxel_layer_forget_powers(layer);
 }
 
-bool voxel_layer_is_paired(const VoxelLayer *layer) { return layer->pairs.lit[0] >= 0 || layer->pairs.spot > 0; }
+bool voxel_layer_is_paired(const VoxelLayer *layer) { return layer->pairs.lit[0] >= 0; }
+
+static bool are_widths(const PairWidths *width) {
+    bool are = true;
+    for (int h = 0; h < PAIR_HEIGHTS; h++)
+        for (int k = 0; k < 2; k++) are &= width->at[k][h] >= 0 && width->at[k][h] <= WIDEST_PEAK;
+    return are;
+}
 
 bool voxel_pairs_are_sound(const VoxelPairs *pairs) {
-    bool known = pairs->lit[0] >= 0, sound = pairs->spot >= 0 && pairs->spot <= WIDEST_SPOT && pairs->glow >= 0 && pairs->glow <= WIDEST_SPOT;
-    for (int i = 0; i < TRIM_LEVELS; i++)
-        for (int k = 0; k < 2; k++) sound &= pairs->peak[k][i] >= 0 && pairs->peak[k][i] <= WIDEST_SPOT;
+    bool known = pairs->lit[0] >= 0, sound = are_widths(&pairs->glow) && are_widths(&pairs->spot);
+    for (int i = 0; i < TRIM_LEVELS; i++) sound &= are_widths(&pairs->peak[0][i]) && are_widths(&pairs->peak[1][i]);
     for (int i = 0; i < PAIR_NODES * PAIR_NODES; i++) sound &= known ? pairs->lit[i] >= 0 && pairs->lit[i] <= 1 : pairs->lit[i] == -1;
     return sound;
 }
 
 /* ---- what the views tell ---- */
-
-/* Adds the covariance of the gaps of two views, and what it would be if they were the same. */
-static void add_covariance(const PairView *a, const PairView *b, int places, double *sum, double *most) {
-    int free_a = 0, free_b = 0, both = 0;
-    for (int i = 0; i < places; i++) {
-        int x = a->top[i] < 0, y = b->top[i] < 0;
-        free_a += x, free_b += y, both += x & y;
-    }
-    double per = 1.0 / places, p = free_a * per, q = free_b * per;
-    *sum += both * per - p * q;
-    *most += sqrt(p * (1 - p) * q * (1 - q));
-}
-
-void voxel_layer_find_spot(VoxelLayer *layer, const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid) {
-    double sum = 0, most = 0;
-    for (int i = 0; i < SPOT_GROUPS * SPOT_VIEWS; i++)
-        if (i % SPOT_VIEWS) add_covariance(&views[i - i % SPOT_VIEWS], &views[i], grid * grid, &sum, &most);
-    double correlation = most > 0 ? sum / most : 0;
-    layer->pairs.spot = correlation > 1e-3 ? float_min(WIDEST_SPOT, SPOT_OFFSET / (float)-log(double_min(correlation, 0.99))) : 0;
-}
 
 /* `places` is a power of two. */
 static int wrapped(float place, int places) {
@@ -137,24 +123,6 @@ static PairShade pair_shade(const PairView *eye, const PairView *light, int grid
     return out;
 }
 
-float pair_lit_beside(const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid, const float size[2]) {
-    float sum = 0;
-    for (int i = 0; i < SPOT_GROUPS * SPOT_VIEWS; i++)
-        if (i % SPOT_VIEWS) sum += pair_shade(&views[i - i % SPOT_VIEWS], &views[i], grid, size).all + pair_shade(&views[i], &views[i - i % SPOT_VIEWS], grid, size).all;
-    return sum / (2 * SPOT_GROUPS * (SPOT_VIEWS - 1));
-}
-
-float pair_open_beside(const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid) {
-    float open[SPOT_VIEWS * SPOT_VIEWS], sum = 0;
-    int count = 0;
-    for (int i = 0; i < SPOT_GROUPS; i++) {
-        if (!pair_opens(views + i * SPOT_VIEWS, SPOT_VIEWS, grid, open)) return -1;
-        for (int k = 1; k < SPOT_VIEWS; k++)
-            if (open[k] >= 0) sum += open[k], count++;
-    }
-    return count ? sum / (float)count : -1;
-}
-
 /* ---- directions ---- */
 
 /* Of the rings, heights above the horizon, degrees. */
@@ -193,6 +161,66 @@ static void flatten_peak(float *table) {
     }
 }
 
+int pair_spot_node(int spot) { return node_of(spot / SPOT_KINDS, 3 * (spot / SPOT_KINDS) + 2 * (spot & 1) + 5 * (spot >> 1 & 1)); }
+
+Vec3f pair_direction_beside(Vec3f d, bool around) {
+    Vec3f across = {-d.z, 0, d.x};
+    across = vec3f_length(across) > 1e-3f ? vec3f_normalize(across) : vec3f(1, 0, 0);
+    return vec3f_madd(vec3f_scale(d, cosf(SPOT_ANGLE)), around ? across : vec3f_cross(across, d), sinf(SPOT_ANGLE));
+}
+
+/* ---- beside each other ---- */
+
+static float free_of(const PairView *view, int grid) {
+    int free = 0;
+    for (int i = 0; i < grid * grid; i++) free += view->top[i] < 0;
+    return (float)free / (float)(grid * grid);
+}
+
+bool pair_beside(const PairView *views, int grid, const float size[2], PairBeside *out) {
+    int seen[2][PAIR_HEIGHTS] = {{0}};
+    *out = (PairBeside){0};
+    for (int i = 0; i < SPOT_VIEWS; i++) {
+        const PairView pair[2] = {views[pair_spot_node(i)], views[PAIR_NODES + i]};
+        int h = i / SPOT_KINDS, around = i & 1;
+        float open[4];
+        if (!pair_opens(pair, 2, grid, open)) return false;
+        out->lit.at[around][h] += (pair_shade(&pair[0], &pair[1], grid, size).all + pair_shade(&pair[1], &pair[0], grid, size).all) / SPOT_KINDS;
+        out->free.at[around][h] += (free_of(&pair[0], grid) + free_of(&pair[1], grid)) / SPOT_KINDS;
+        if (open[1] >= 0) out->open.at[around][h] += open[1], seen[around][h]++;
+    }
+    for (int around = 0; around < 2; around++)
+        for (int h = 0; h < PAIR_HEIGHTS; h++) out->open.at[around][h] = seen[around][h] ? out->open.at[around][h] / (float)seen[around][h] : -1;
+    return true;
+}
+
+/* What is left of a peak at an angle, of all that it has of some width: it ends where the tables of nodes know more. */
+static float left_at(float angle, float per_width) {
+    float rest = expf(-NODE_ANGLE * per_width), left = (expf(-angle * per_width) - rest) / (1 - rest);
+    return left > 0 ? left : 0;
+}
+
+float pair_peak_width(float beside, float far) {
+    if (!(beside >= 0) || !(far < 1)) return 0;
+    float narrow = NARROWEST_PEAK, wide = WIDEST_PEAK, left = (beside - far) / (1 - far);
+    for (int i = 0; i < 20; i++) {
+        float width = (narrow + wide) / 2;
+        *(left_at(SPOT_ANGLE, 1 / width) < left ? &narrow : &wide) = width;
+    }
+    return wide;
+}
+
+void voxel_layer_find_peaks(VoxelLayer *layer, const PairBeside *beside) {
+    for (int h = 0; h < PAIR_HEIGHTS; h++) {
+        float far = 0;
+        for (int i = 0; i < PAIR_RING; i++) far += layer->pairs.lit[node_of(h, i) * (PAIR_NODES + 1)] / PAIR_RING;
+        for (int around = 0; around < 2; around++) {
+            layer->pairs.glow.at[around][h] = pair_peak_width(beside->lit.at[around][h], far);
+            layer->pairs.spot.at[around][h] = pair_peak_width(beside->open.at[around][h], beside->free.at[around][h]);
+        }
+    }
+}
+
 typedef struct PairWork {
     VoxelLayer *layer;
     const PairView *views;
@@ -220,74 +248,61 @@ bool voxel_layer_pair(VoxelLayer *layer, const PairView views[PAIR_NODES], int g
 
 /* ---- reading ---- */
 
-/* The nodes around a direction, and their weights. */
-typedef struct NodesAround {
-    int node[4];
-    float weight[4];
-} NodesAround;
+/* The height whose sine is `rise`: between which of the heights of nodes, and how far it is on the way to the lower one. Lower than the last ring all is as on it. */
+static int height_around(float rise, float *part) {
+    float up = asinf(float_min(1, rise)) * (float)(180 / VTS_PI);
+    int ring = 0;
+    while (ring + 1 < PAIR_RINGS && up < RING_HEIGHT[ring + 1]) ring++;
+    *part = float_clamp((RING_HEIGHT[ring] - up) / (RING_HEIGHT[ring] - RING_HEIGHT[ring + 1]), 0, 1);
+    return ring;
+}
 
-/* False below the horizon. Lower than the last ring all is as on it. */
-static bool nodes_around(Vec3f d, NodesAround *out) {
+/* A direction on the net of nodes. */
+typedef struct NetPlace {
+    int ring;
+    float part, turns; /* on the way to the next ring; around, in nodes */
+} NetPlace;
+
+/* False below the horizon. */
+static bool find_place(Vec3f d, NetPlace *out) {
     float length = vec3f_length(d);
     if (!(length > 0 && length < INFINITY) || !(d.y > 0)) return false;
-    float up = asinf(float_min(1, d.y / length)) * (float)(180 / VTS_PI), turns = atan2f(d.z, d.x) * (float)(PAIR_RING / (2 * VTS_PI)) + PAIR_RING - RING_TURN;
-    int ring = 0, around = (int)turns;
-    while (ring + 1 < PAIR_RINGS && up < RING_HEIGHT[ring + 1]) ring++;
-    float b = float_clamp((RING_HEIGHT[ring] - up) / (RING_HEIGHT[ring] - RING_HEIGHT[ring + 1]), 0, 1), a = turns - (float)around;
-    for (int i = 0; i < 4; i++) {
-        out->node[i] = node_of(ring + (i >> 1), around + (i & 1));
-        out->weight[i] = (i & 1 ? a : 1 - a) * (i >> 1 ? b : 1 - b);
-    }
+    out->turns = atan2f(d.z, d.x) * (float)(PAIR_RING / (2 * VTS_PI)) + PAIR_RING - RING_TURN;
+    out->ring = height_around(d.y / length, &out->part);
     return true;
 }
 
+/* Light depends on how far eye and light are apart around the zenith much more than on where they both are: interpolation is between nodes of the
+ * lower direction, and between the differences that nodes have. (Between nodes of each, eye and light that are one would count as 45 degrees apart.) */
 bool pair_place(Vec3f to_eye, Vec3f to_light, PairPlace *out) {
-    NodesAround eye, light;
-    if (!nodes_around(to_eye, &eye) || !nodes_around(to_light, &light)) return false;
+    NetPlace eye, light;
+    if (!find_place(to_eye, &eye) || !find_place(to_light, &light)) return false;
+    bool by_eye = (float)eye.ring + eye.part >= (float)light.ring + light.part;
+    const NetPlace *low = by_eye ? &eye : &light, *high = by_eye ? &light : &eye;
+    int first = (int)low->turns, step = (int)floorf(high->turns - low->turns);
+    float a = low->turns - (float)first, b = high->turns - low->turns - (float)step;
     for (int i = 0; i < PAIR_CORNERS; i++) {
-        out->entry[i] = eye.node[i / 4] * PAIR_NODES + light.node[i % 4];
-        out->weight[i] = eye.weight[i / 4] * light.weight[i % 4];
+        int around = first + (i & 1), other = around + step + (i >> 1 & 1);
+        int low_node = node_of(low->ring + (i >> 2 & 1), around), high_node = node_of(high->ring + (i >> 3), other);
+        out->entry[i] = by_eye ? low_node * PAIR_NODES + high_node : high_node * PAIR_NODES + low_node;
+        out->weight[i] = (i & 1 ? a : 1 - a) * (i >> 1 & 1 ? b : 1 - b) * (i >> 2 & 1 ? low->part : 1 - low->part) * (i >> 3 ? high->part : 1 - high->part);
     }
     return true;
 }
 
-/* Falls with the distance between two directions, over `width`, to nothing at the distance that nodes have. */
-static float fall(float apart, float width, float nodes) {
-    if (!(width > 0)) return 0;
-    float rest = expf(-nodes / width), left = (expf(-apart / width) - rest) / (1 - rest);
-    return left > 0 ? left : 0; /* nor of slopes that are no numbers */
-}
-
-float pair_spot(float width, Vec3f to_eye, Vec3f to_light) {
-    if (!(to_eye.y > 0) || !(to_light.y > 0)) return 0;
-    float x = to_eye.x / to_eye.y - to_light.x / to_light.y, z = to_eye.z / to_eye.y - to_light.z / to_light.y;
-    return fall(sqrtf(x * x + z * z), width, NODES_APART);
-}
-
-float pair_glow(float width, Vec3f to_eye, Vec3f to_light) {
-    if (!(to_eye.y > 0) || !(to_light.y > 0)) return 0;
-    return fall(atan2f(vec3f_length(vec3f_cross(to_eye, to_light)), vec3f_dot(to_eye, to_light)), width, NODE_ANGLE);
-}
-
-Vec3f pair_direction_beside(Vec3f d) { return vec3f_normalize(vec3f(d.x / d.y + SPOT_OFFSET, 1, d.z / d.y)); }
-
-/* How far the views beside each other are apart, on the mean. */
-static float glow_offset(void) {
-    float along = atanf(SPOT_SLOPE + SPOT_OFFSET) - atanf(SPOT_SLOPE), across = atanf(SPOT_OFFSET / sqrtf(1 + SPOT_SLOPE * SPOT_SLOPE));
-    return (along + across) / 2;
-}
-
-static float peak_width(float offset, float lit, float far) {
-    return far < 1 ? float_min(WIDEST_SPOT, offset / -logf(float_clamp((lit - far) / (1 - far), LEAST_LEFT, MOST_LEFT))) : 0;
-}
-
-float pair_glow_width(float lit, float far) { return peak_width(glow_offset(), lit, far); }
-float pair_spot_width(float open, float far) { return peak_width(SPOT_OFFSET, open, far); }
-
-void voxel_layer_find_glow(VoxelLayer *layer, float lit) {
-    float far = 0;
-    for (int i = 1; i <= PAIR_RING; i++) far += layer->pairs.lit[i * PAIR_NODES + i] / PAIR_RING; /* the ring that is nearest to the spots' */
-    layer->pairs.glow = pair_glow_width(lit, far);
+/* Falls with the angle between two directions, to nothing where nodes are as far apart. Where trunks stand upright the light that is higher than the eye
+ * falls through the same gap, but not one beside it. */
+float pair_peak(const PairWidths *width, Vec3f to_eye, Vec3f to_light) {
+    float part, eye = vec3f_length(to_eye), light = vec3f_length(to_light);
+    if (!(to_eye.y > 0) || !(to_light.y > 0) || !(eye < INFINITY) || !(light < INFINITY)) return 0;
+    float y[2] = {float_min(1, to_eye.y / eye), float_min(1, to_light.y / light)};
+    float apart = atan2f(vec3f_length(vec3f_cross(to_eye, to_light)), vec3f_dot(to_eye, to_light)), up = asinf(y[0]) - asinf(y[1]);
+    int height = height_around((y[0] + y[1]) / 2, &part);
+    float over[2];
+    for (int k = 0; k < 2; k++) over[k] = (1 - part) * width->at[k][height] + part * width->at[k][height + 1];
+    if (!(over[0] > 0) || !(over[1] > 0)) return 0;
+    float up2 = up * up, around2 = float_max(0, apart * apart - up2), widths = sqrtf(up2 / (over[0] * over[0]) + around2 / (over[1] * over[1]));
+    return apart > 0 ? left_at(apart, widths / apart) : 1;
 }
 
 float voxel_layer_lit_pair(const VoxelLayer *layer, Vec3f to_eye, Vec3f to_light) {
@@ -295,5 +310,5 @@ float voxel_layer_lit_pair(const VoxelLayer *layer, Vec3f to_eye, Vec3f to_light
     float lit = 0;
     if (layer->pairs.lit[0] < 0 || !pair_place(to_eye, to_light, &place)) return -1;
     for (int i = 0; i < PAIR_CORNERS; i++) lit += place.weight[i] * layer->pairs.lit[place.entry[i]];
-    return lit + (1 - lit) * pair_glow(layer->pairs.glow, to_eye, to_light);
+    return lit + (1 - lit) * pair_peak(&layer->pairs.glow, to_eye, to_light);
 }

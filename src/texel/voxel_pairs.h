@@ -34,23 +34,22 @@ bool voxel_layer_pair(VoxelLayer *layer, const PairView views[PAIR_NODES], int g
 /* The share of the ground seen along a view that the light along another falls on, below 0 where none is seen: open[count × count], by eye, then by light.
  * `grid`: 8 at least. False without memory. */
 bool pair_opens(const PairView *views, int count, int grid, float *open);
-/* Sets layer->pairs.spot from groups of SPOT_VIEWS views: one along a direction, the others with slopes that differ by SPOT_OFFSET from its; the
- * direction's slope is SPOT_SLOPE. */
-enum { SPOT_VIEWS = 3, SPOT_GROUPS = 4 };
-#define SPOT_OFFSET 0.15f
-#define SPOT_SLOPE 0.854f
-/* The share that is lit of the matter seen in these, where the light is one of the others of the group; the mean. `size` as above. */
-float pair_lit_beside(const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid, const float size[2]);
-/* The same of the ground; below 0 where none is seen. */
-float pair_open_beside(const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid);
-void voxel_layer_find_spot(VoxelLayer *layer, const PairView views[SPOT_GROUPS * SPOT_VIEWS], int grid);
-/* Sets layer->pairs.glow, after voxel_layer_pair(); `lit`: pair_lit_beside(). */
-void voxel_layer_find_glow(VoxelLayer *layer, float lit);
-/* The widths for which of a peak from 1 down to the share `far` that much is left beside it. */
-float pair_glow_width(float lit, float far);
-float pair_spot_width(float open, float far);
-/* A direction with another's slopes but for SPOT_OFFSET along x; unit. */
-Vec3f pair_direction_beside(Vec3f d);
+/* Views beside those of nodes, four at each height: which node's, and the direction, unit, `SPOT_ANGLE` radians from that of the node, the odd ones around the
+ * zenith, the even ones towards it. */
+enum { SPOT_KINDS = 4, SPOT_VIEWS = SPOT_KINDS * PAIR_HEIGHTS };
+#define SPOT_ANGLE 0.1f
+int pair_spot_node(int spot);
+Vec3f pair_direction_beside(Vec3f d, bool around);
+/* What is lit by a light beside the eye, as widths are told: of matter; of the ground, below 0 where none is seen, and the share of it that lies open to any light. */
+typedef struct PairBeside {
+    PairWidths lit, open, free;
+} PairBeside;
+/* views[PAIR_NODES + SPOT_VIEWS]; `size` as above. False without memory. */
+bool pair_beside(const PairView *views, int grid, const float size[2], PairBeside *out);
+/* Sets layer->pairs.glow and spot; voxel_layer_pair() has been called. */
+void voxel_layer_find_peaks(VoxelLayer *layer, const PairBeside *beside);
+/* The width, radians, for which of a peak from 1 down to the share `far` that much is left SPOT_ANGLE beside it. */
+float pair_peak_width(float beside, float far);
 /* As if nothing was known. */
 void voxel_layer_forget_pairs(VoxelLayer *layer);
 bool voxel_layer_is_paired(const VoxelLayer *layer);
@@ -65,11 +64,9 @@ typedef struct PairPlace {
 } PairPlace;
 bool pair_place(Vec3f to_eye, Vec3f to_light, PairPlace *out);
 
-/* Directions of texel space, of any length, to the eye and to the light, and a width like pairs.spot or pairs.glow: how much of what the eye's way through the layer's gaps tells holds for the
- * light's, and of what it tells of matter: 1 where both are one, 0 where they have nothing in common or nothing is known, and where they are so far apart
- * that the tables of pairs know it. */
-float pair_spot(float width, Vec3f to_eye, Vec3f to_light);
-float pair_glow(float width, Vec3f to_eye, Vec3f to_light);
+/* Directions of texel space, of any length, to the eye and to the light, and widths like pairs.glow: how much of what is seen is lit for no other reason than
+ * that: 1 where both are one, 0 where they have nothing in common or nothing is known, and where they are so far apart that the tables of pairs know it. */
+float pair_peak(const PairWidths *width, Vec3f to_eye, Vec3f to_light);
 /* The share that is lit of the matter that is seen; below 0 where that is not known. */
 float voxel_layer_lit_pair(const VoxelLayer *layer, Vec3f to_eye, Vec3f to_light);
 

@@ -91,13 +91,9 @@ static LayerView look_along_node(const Seen *work, int node) {
     return look_along(work, trim_direction(node), is_period(work->layer) ? 0 : (uint64_t)node, false);
 }
 
-/* Once around at a steep slope, and a little beside that, along it and across. */
-static LayerView look_along_spot(const Seen *work, int spot) {
-    static const float slope[SPOT_GROUPS][2] = {{0.8f, 0.3f}, {-0.3f, 0.8f}, {-0.8f, -0.3f}, {0.3f, -0.8f}};
-    const float *at = slope[spot / SPOT_VIEWS];
-    int beside = spot % SPOT_VIEWS;
-    float x = at[0] + (beside == 1 ? SPOT_OFFSET : 0), z = at[1] + (beside == 2 ? SPOT_OFFSET : 0);
-    return look_along(work, vec3f_normalize(vec3f(x, 1, z)), 0, true);
+static Vec3f kept_direction(int kept) {
+    int spot = kept - PAIR_NODES;
+    return spot < 0 ? pair_direction(kept) : pair_direction_beside(pair_direction(pair_spot_node(spot)), spot & 1);
 }
 
 /* ---- voxels ---- */
@@ -234,7 +230,7 @@ static void look_through(void *context, size_t number, int worker) {
         return;
     }
     int kept = (int)number - TRIM_DIRECTIONS;
-    LayerView view = kept < PAIR_NODES ? look_along(&of, pair_direction(kept), 0, true) : look_along_spot(&of, kept - PAIR_NODES); /* copies side by side */
+    LayerView view = look_along(&of, kept_direction(kept), 0, true); /* copies side by side */
     look_and_keep(work, &view, kept);
 }
 
@@ -384,15 +380,15 @@ static void see_all(const JoinWork *work) {
 
 static void compare_views(const JoinWork *work, VoxelLayer *layer, Pool *pool) {
     const LayerViews *all = work->views[0];
-    const PairView *spots = all->views + PAIR_NODES;
+    PairBeside beside;
     const float size[2] = {work->extent.x, work->extent.z};
     for (int i = 0; i < VIEWS_KEPT; i++)
         if (!all->views[i].top) return;
-    voxel_layer_find_spot(layer, spots, VIEW_GRID);
+    if (!pair_beside(all->views, VIEW_GRID, size, &beside)) return;
     PairShade *shades = malloc(PAIR_NODES * PAIR_NODES * sizeof *shades);
     if (shades && voxel_layer_pair(layer, all->views, VIEW_GRID, size, shades, pool)) {
-        voxel_layer_find_glow(layer, pair_lit_beside(spots, VIEW_GRID, size));
-        const LitTruth truth = {all->views, VIEW_GRID, shades, pair_lit_beside(spots, VIEW_GRID, size), pair_open_beside(spots, VIEW_GRID), all->triangles};
+        voxel_layer_find_peaks(layer, &beside);
+        const LitTruth truth = {all->views, VIEW_GRID, shades, &beside, all->triangles};
         const LitLayers among = {(const VoxelLayer *const *)work->layers, work->count, work->extent};
         voxel_layer_find_powers(layer, &truth, &among, all->levels, pool);
     }

@@ -71,8 +71,8 @@ static float own_height(const ViewNormal *n, float to_light, float x, float z, f
     return fabsf(level) < most * fabsf(to_light) ? level / to_light : most;
 }
 
-/* What `eye` sees lies open to `light` where in its view nothing is higher at the same place. */
-static LitSums lit_sums(const PairView *eye, const PairView *light, int grid, const float size[2]) {
+/* What `eye` sees lies open to `light` where in its view nothing is higher at the same place, or `beside` places from there. */
+static LitSums lit_sums(const PairView *eye, const PairView *light, int grid, const float size[2], float beside) {
     float cell_x = size[0] / (float)grid, cell_z = size[1] / (float)grid, cell = float_max(cell_x, cell_z);
     float x_per = (eye->slope_x - light->slope_x) / cell_x, z_per = (eye->slope_z - light->slope_z) / cell_z;
     LitSums sums = {0};
@@ -83,8 +83,8 @@ static LitSums lit_sums(const PairView *eye, const PairView *light, int grid, co
             if (height < 0) continue;
             float x = (float)column + height * x_per, z = (float)row + height * z_per;
             const ViewNormal *n = &eye->normal[at];
-            float to_light = along(light, n), own = own_height(n, to_light, (floorf(x + 0.5f) - x) * cell_x, (floorf(z + 0.5f) - z) * cell_z, cell);
-            add_place(&sums, along(eye, n), to_light, light->top[wrapped(z, grid) * grid + wrapped(x, grid)] <= height + own + LEAST_OWN * cell);
+            float to_light = along(light, n), own = own_height(n, to_light, (floorf(x + beside + 0.5f) - x) * cell_x, (floorf(z + 0.5f) - z) * cell_z, cell);
+            add_place(&sums, along(eye, n), to_light, light->top[wrapped(z, grid) * grid + wrapped(x + beside, grid)] <= height + own + LEAST_OWN * cell);
         }
     return sums;
 }
@@ -113,7 +113,7 @@ bool pair_opens(const PairView *views, int count, int grid, float *open) {
 static float share_of(float part, float whole) { return whole > 0 ? part / whole : 1; }
 
 static PairShade pair_shade(const PairView *eye, const PairView *light, int grid, const float size[2]) {
-    LitSums sums = lit_sums(eye, light, grid, size);
+    LitSums sums = lit_sums(eye, light, grid, size, 0);
     float unit = 127 * sqrtf(1 + light->slope_x * light->slope_x + light->slope_z * light->slope_z) * (float)int_max(sums.seen, 1);
     PairShade out = {.all = share_of((float)sums.lit, (float)sums.seen)};
     for (int side = 0; side < 2; side++) {
@@ -177,7 +177,25 @@ static float free_of(const PairView *view, int grid) {
     return (float)free / (float)(grid * grid);
 }
 
-bool pair_beside(const PairView *views, int grid, const float size[2], PairBeside *out) {
+/* How far rounding moves what is looked up, on the mean, in places. */
+#define ROUNDED 0.38f
+
+/* The share `lit` of what is seen that is lit from beside, as it would be on a grid without end. Of things finer than the grid a place to which a light's way is
+ * rounded shows others: as far as one place from a direction's own tells, so much of what a peak has more than `far` is lost. */
+static float without_grid(float lit, float far, const PairView *view, int grid, const float size[2]) {
+    LitSums own = lit_sums(view, view, grid, size, 1);
+    float next = own.seen ? (float)own.lit / (float)own.seen : 1, left = 1 - ROUNDED * (1 - next) / float_max(1 - far, 0.01f);
+    return float_min(1, far + (lit - far) / float_clamp(left, 0.5f, 1));
+}
+
+/* What is lit, but for the peak, at a height. */
+static float lit_far(const VoxelLayer *layer, int height) {
+    float far = 0;
+    for (int i = 0; i < PAIR_RING; i++) far += layer->pairs.lit[node_of(height, i) * (PAIR_NODES + 1)] / PAIR_RING;
+    return far;
+}
+
+bool pair_beside(const VoxelLayer *layer, const PairView *views, int grid, const float size[2], PairBeside *out) {
     int seen[2][PAIR_HEIGHTS] = {{0}};
     *out = (PairBeside){0};
     for (int i = 0; i < SPOT_VIEWS; i++) {
@@ -185,7 +203,8 @@ bool pair_beside(const PairView *views, int grid, const float size[2], PairBesid
         int h = i / SPOT_KINDS, around = i & 1;
         float open[4];
         if (!pair_opens(pair, 2, grid, open)) return false;
-        out->lit.at[around][h] += (pair_shade(&pair[0], &pair[1], grid, size).all + pair_shade(&pair[1], &pair[0], grid, size).all) / SPOT_KINDS;
+        float lit = (pair_shade(&pair[0], &pair[1], grid, size).all + pair_shade(&pair[1], &pair[0], grid, size).all) / 2;
+        out->lit.at[around][h] += without_grid(lit, lit_far(layer, h), &pair[0], grid, size) * 2 / SPOT_KINDS;
         out->free.at[around][h] += (free_of(&pair[0], grid) + free_of(&pair[1], grid)) / SPOT_KINDS;
         if (open[1] >= 0) out->open.at[around][h] += open[1], seen[around][h]++;
     }
@@ -212,8 +231,7 @@ float pair_peak_width(float beside, float far) {
 
 void voxel_layer_find_peaks(VoxelLayer *layer, const PairBeside *beside) {
     for (int h = 0; h < PAIR_HEIGHTS; h++) {
-        float far = 0;
-        for (int i = 0; i < PAIR_RING; i++) far += layer->pairs.lit[node_of(h, i) * (PAIR_NODES + 1)] / PAIR_RING;
+        float far = lit_far(layer, h);
         for (int around = 0; around < 2; around++) {
             layer->pairs.glow.at[around][h] = pair_peak_width(beside->lit.at[around][h], far);
             layer->pairs.spot.at[around][h] = pair_peak_width(beside->open.at[around][h], beside->free.at[around][h]);

@@ -44,9 +44,9 @@ Vec3f pair_direction_beside(Vec3f d, bool around);
 typedef struct PairBeside {
     PairWidths lit, open, free;
 } PairBeside;
-/* views[PAIR_NODES + SPOT_VIEWS]; `size` as above. False without memory. */
-bool pair_beside(const PairView *views, int grid, const float size[2], PairBeside *out);
-/* Sets layer->pairs.glow and spot; voxel_layer_pair() has been called. */
+/* views[PAIR_NODES + SPOT_VIEWS]; `size` as above; voxel_layer_pair() has been called. False without memory. */
+bool pair_beside(const VoxelLayer *layer, const PairView *views, int grid, const float size[2], PairBeside *out);
+/* Sets layer->pairs.glow and spot. */
 void voxel_layer_find_peaks(VoxelLayer *layer, const PairBeside *beside);
 /* The width, radians, for which of a peak from 1 down to the share `far` that much is left SPOT_ANGLE beside it. */
 float pair_peak_width(float beside, float far);

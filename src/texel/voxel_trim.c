@@ -384,9 +384,8 @@ static void compare_views(const JoinWork *work, VoxelLayer *layer, Pool *pool) {
     const float size[2] = {work->extent.x, work->extent.z};
     for (int i = 0; i < VIEWS_KEPT; i++)
         if (!all->views[i].top) return;
-    if (!pair_beside(all->views, VIEW_GRID, size, &beside)) return;
     PairShade *shades = malloc(PAIR_NODES * PAIR_NODES * sizeof *shades);
-    if (shades && voxel_layer_pair(layer, all->views, VIEW_GRID, size, shades, pool)) {
+    if (shades && voxel_layer_pair(layer, all->views, VIEW_GRID, size, shades, pool) && pair_beside(layer, all->views, VIEW_GRID, size, &beside)) {
         voxel_layer_find_peaks(layer, &beside);
         const LitTruth truth = {all->views, VIEW_GRID, shades, &beside, all->triangles};
         const LitLayers among = {(const VoxelLayer *const *)work->layers, work->count, work->extent};

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# library.sh ground|trees VTS: the texels of the standard library keep the budgets of voxels and memory that doc/ground.md and doc/vegetation.md
+# budgets.sh ground|trees VTS: the texels of the standard library keep the budgets of voxels and memory that doc/ground.md and doc/vegetation.md
 # state. What they take in seconds, bench/library.sh shows.
 . "$(dirname "${BASH_SOURCE[0]}")/harness.sh"
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)

@@ -85,15 +85,15 @@ static void lay_bows(Air *air, const Scene *scene, const Ray *ray, double t) {
 
 /* Fogs lie before rainbows, and among each other each as if it were alone. */
 Air air_between(const Scene *scene, const Ray *ray, double t) {
-    Air air = {{1, 1, 1}, {0, 0, 0}, 0};
+    Air air = air_clear();
     lay_bows(&air, scene, ray, t);
-    Air fog = {{1, 1, 1}, {0, 0, 0}, 0};
+    Air fog = air_clear();
     for (size_t i = 0; i < scene->fog_count; i++) lay_fog(&fog, &scene->fogs[i], ray, t);
     return (Air){vec3f_mul(air.keep, fog.keep), vec3f_add(fog.add, vec3f_mul(air.add, fog.keep)), 0};
 }
 
 Vec3f air_fog_passing(const Scene *scene, const Ray *ray, double t) {
-    Air fog = {{1, 1, 1}, {0, 0, 0}, 0};
+    Air fog = air_clear();
     for (size_t i = 0; i < scene->fog_count; i++) lay_fog(&fog, &scene->fogs[i], ray, t);
     return fog.keep;
 }

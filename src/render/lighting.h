@@ -41,6 +41,8 @@ typedef struct Air {
     Vec3f keep, add;
     float cover; /* share that volumes hide */
 } Air;
+static inline Air air_clear(void) { return (Air){{1, 1, 1}, {0, 0, 0}, 0}; }
+
 /* air.c. Between the origin and what is seen at t (VTS_INFINITY: the sky) along the unit direction. */
 Air air_between(const Scene *scene, const Ray *ray, double t);
 /* What fogs alone let through of light to t: lights with media_attenuation go through them (measured), not through rainbows. */

@@ -346,7 +346,7 @@ static double tolerance_of(const CompiledScene *compiled) {
 
 static Air gather(SurfaceTracer *tracer, const Leg *leg, const MediaMatter *matter) {
     const CompiledScene *compiled = tracer->compiled;
-    Air air = {{1, 1, 1}, {0, 0, 0}, 0};
+    Air air = air_clear();
     if (!matter->count) return air;
     Way way = {.tracer = tracer, .leg = leg, .matter = matter, .ray = {leg->cone.origin, leg->cone.direction}, .places_left = MOST_PLACES,
                .through = {1, 1, 1}};
@@ -376,7 +376,7 @@ Air media_air(SurfaceTracer *tracer, const Leg *leg, double t_max) {
     const Scene *scene = tracer->compiled->scene;
     const Ray ray = {leg->cone.origin, leg->cone.direction};
     MediaMatter matter;
-    if (!surface_in_air(leg->enclosures, leg->enclosure_count)) return (Air){{1, 1, 1}, {0, 0, 0}, 0};
+    if (!surface_in_air(leg->enclosures, leg->enclosure_count)) return air_clear();
     media_matter_begin(&matter, 0, end_of(t_max));
     for (int i = 0; i < leg->enclosure_count; i++) {
         const Enclosure *e = &leg->enclosures[i];

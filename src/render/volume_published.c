@@ -332,7 +332,7 @@ Air volumes_gather_published(SurfaceTracer *tracer, const Cone *cone, double t_m
     const VolumeSet *set = tracer->compiled->volumes;
     for (size_t i = 0; i < set->count && sweep.count < MOST_AT_ONCE; i++)
         if (set->items[i].seen) sweep.count += bin_walk_begin(&walks[sweep.count], &set->items[i], &ray, 0, t_max);
-    Air air = {{1, 1, 1}, {0, 0, 0}, 0};
+    Air air = air_clear();
     double weights = 0, depth[3];
     *mean_t = 0;
     while (bin_sweep_next(&sweep)) {

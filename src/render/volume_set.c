@@ -370,7 +370,7 @@ static Air volumes_alone(SurfaceTracer *tracer, const Cone *cone, double t_max, 
     const VolumeSet *set = tracer->compiled->volumes;
     const Ray ray = {cone->origin, cone->direction};
     double near = 0, far = t_max;
-    Air air = {{1, 1, 1}, {0, 0, 0}, 0};
+    Air air = air_clear();
     *mean_t = 0;
     if (!set || !box3_clip_ray(set->bounds, &ray, &near, &far)) return air;
     if (set->method == VOLUME_PATH) air = path_air(tracer, cone, t_max, mean_t);
@@ -394,7 +394,7 @@ static Air air_laid(const Air *over, const Air *under) {
 static Air volumes_in_fog(SurfaceTracer *tracer, const Cone *cone, double t_max, bool fog) {
     const Scene *scene = tracer->compiled->scene;
     const Ray ray = {cone->origin, cone->direction};
-    const Air nothing = {{1, 1, 1}, {0, 0, 0}, 0};
+    const Air nothing = air_clear();
     Air far = fog ? air_between(scene, &ray, t_max) : nothing;
     if (!tracer->compiled->volumes) return far;
     double mean_t;
@@ -407,8 +407,14 @@ static Air volumes_in_fog(SurfaceTracer *tracer, const Cone *cone, double t_max,
     return out;
 }
 
+static bool air_is_clear(const CompiledScene *compiled) {
+    const Scene *scene = compiled->scene;
+    return !compiled->volumes && !scene->has_media && scene->fog_count == 0 && scene->rainbow_count == 0;
+}
+
 /* As POV-Ray has it, fogs lie before media. */
 Air air_along(SurfaceTracer *tracer, const Leg *leg, double t_max) {
+    if (air_is_clear(tracer->compiled)) return air_clear();
     Air air = volumes_in_fog(tracer, &leg->cone, t_max, surface_in_air(leg->enclosures, leg->enclosure_count));
     if (!tracer->compiled->scene->has_media) return air;
     const Air media = media_air(tracer, leg, t_max);
@@ -416,6 +422,7 @@ Air air_along(SurfaceTracer *tracer, const Leg *leg, double t_max) {
 }
 
 Air air_from_eye(SurfaceTracer *tracer, const Cone *cone, double t_max) {
+    if (air_is_clear(tracer->compiled)) return air_clear();
     Leg leg;
     surface_eye_leg(tracer->compiled, cone, &leg);
     return air_along(tracer, &leg, t_max);

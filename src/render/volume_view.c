@@ -133,7 +133,7 @@ Air volumes_gather(SurfaceTracer *tracer, const Cone *cone, double t_max, double
     }
     bounds[met] = g.count;
     double shape[VOLUME_HARMONICS], weights = 0, depth_sum[3] = {0, 0, 0}, thinned_sum[3] = {0, 0, 0};
-    Air air = {{1, 1, 1}, {0, 0, 0}, 0};
+    Air air = air_clear();
     volume_harmonics(vec3_negate(cone->direction), VOLUME_HARMONICS, shape);
     *mean_t = 0;
     for (int m = 0; m < met; m++) {

@@ -72,5 +72,6 @@ const void *module_load(const char *name, const char *entry, int version, StrBuf
     char path[MODULE_PATH_SIZE];
     for (int place = 0; place < MODULE_PLACES && !table; place++)
         if (module_place(place, name, path)) table = load_from(path, entry, version, why);
+    if (!table && why->size == 0) strbuf_addf(why, "; there is no '%s' where vts looks for its modules", name);
     return table;
 }

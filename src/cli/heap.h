@@ -1,4 +1,4 @@
-/* The program's heap, which small pictures are done before they have touched twice. */
+/* The program's heap. Small pictures touch most of its pages for the first time, and that takes longer than what they do there. */
 #ifndef VTS_CLI_HEAP_H
 #define VTS_CLI_HEAP_H
 

@@ -77,7 +77,7 @@ static bool any_of(Masks m) {
     return p[0] | p[1];
 }
 
-/* Samples begin … end − 1 against the triangle, and some after them where they are not as many as go together: those are met in vain or as they ought to be. Hardly any triangle
+/* Samples begin … end − 1 against the triangle, and some after them where they are not as many as go together: what is found for those does no harm. Hardly any triangle
  * that is seen from far away meets one, so that most is left out. Of a light's beam samples keep their own keys. */
 static bool cover(const Beam *beam, const Triangle *t, uint32_t begin, uint32_t end, uint32_t mark) {
     const BeamSamples *s = &beam->samples;

@@ -29,7 +29,10 @@ int beam_bins_sort(BeamBins *b, int columns, int rows, uint32_t samples) {
 }
 
 BeamSamples beam_bins_samples(const BeamBins *b, int columns, int rows) {
-    for (uint32_t i = 0, count = b->first[columns * rows]; i < BEAM_LANES - 1; i++) b->key[count + i] = INFINITY;
+    for (uint32_t i = 0, count = b->first[columns * rows]; i < BEAM_LANES - 1; i++) {
+        b->key[count + i] = INFINITY;
+        b->x[count + i] = b->y[count + i] = b->limit[count + i] = 0;
+    }
     return (BeamSamples){columns, rows, b->first, b->x, b->y, b->key, b->limit, b->mark};
 }
 

@@ -6,6 +6,7 @@
 
 static const SurfaceHit *keep_hit(HitPool *pool, const SurfaceHit *hit) {
     enum { ALIGNMENT = 16 };
+    _Static_assert(sizeof(SurfaceHit) % ALIGNMENT == 0, "rounded up, hits with all their looks would not fit into the pool");
     size_t size = offsetof(SurfaceHit, shares) + (size_t)hit->share_count * sizeof *hit->shares;
     void *kept = memcpy(pool->bytes + pool->used, hit, size);
     pool->used += (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;

@@ -45,7 +45,7 @@ double footprint_curvature(const Hierarchy *hierarchy, RayPurpose purpose, const
     vec3_frame(cone->direction, &across[0], &across[1]);
     double off = fmax(BESIDE * cone_diameter(cone, hit->t), LEAST_BESIDE * hit->t), sum = 0;
     int met = 0;
-    for (int k = 0; k < (is_ball(hit) ? 1 : 2); k++) {
+    for (int k = 0; k < 2 && !(met && is_ball(hit)); k++) {
         Vec3 target = vec3_madd(here, across[k], off);
         Ray ray = {cone->origin, vec3_normalize(vec3_sub(target, cone->origin))};
         SurfaceHit beside;

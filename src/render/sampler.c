@@ -61,7 +61,7 @@ Sampler *sampler_create(const CompiledScene *compiled, const SamplePlan *plan, A
     return sp;
 }
 
-bool sampler_guesses(const Sampler *sp) { return sp->shares && sp->plan.max_error > 0; }
+bool sampler_guesses(const Sampler *sp) { return sp->guesses && sp->plan.max_error > 0; }
 void sampler_share(Sampler *sp, Middles *middles) { sp->middles = middles; }
 
 void sampler_count(const Sampler *sp, TraceCounters *counters, SamplerTally *tally) {

@@ -16,7 +16,7 @@ typedef struct SamplePlan {
 typedef struct Sampler Sampler; /* of one worker */
 
 Sampler *sampler_create(const CompiledScene *compiled, const SamplePlan *plan, Arena *arena);
-/* Whether middles may be guessed by others of their tile (guess.h). */
+/* Whether middles, or the matter of skins in them, may be guessed by others of their tile (guess.h). */
 bool sampler_guesses(const Sampler *sampler);
 /* Before the first tile: what the samplers of all workers share, where nothing is added to `aovs`. NULL: each tile looks for itself. */
 void sampler_share(Sampler *sampler, Middles *middles);

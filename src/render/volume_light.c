@@ -185,7 +185,9 @@ static bool light_lamps(CompiledScene *compiled, CompiledVolume *v, Tracer **tra
     const double fineness = compiled->volumes->fineness;
     size_t lamps = compiled->scene->light_count;
     const int longest = int_clamp(longest_of(&v->lattice), LEAST_LAMP_CELLS, MOST_LAMP_CELLS);
-    divide(v, int_max(longest, double_to_int(fineness * longest, 0, MOST_FINER_LAMP_CELLS)), fineness, light->cells);
+    /* Many lamps share the room that one may take. */
+    const double most = MOST_FINER_LAMP_CELLS / cbrt((double)(lamps > 0 ? lamps : 1));
+    divide(v, int_max(longest, double_to_int(fmin(fineness * longest, most), 0, MOST_FINER_LAMP_CELLS)), fineness, light->cells);
     light->nodes =
         (size_t)(light->cells[0] + 1) * (size_t)(light->cells[1] + 1) * (size_t)(light->cells[2] + 1);
     light->depths = arena_push_array_(compiled->arena, lamps * light->nodes + 1, sizeof *light->depths);

@@ -655,6 +655,23 @@ case_region() {
   run render scene.vts -s 20x10 --region 0,4,20,7 -o part.ppm; want_status 0
   [ "$(sed -n 2p part.ppm | head -c 4)" = "20 3" ] || fail "the part's size is $(sed -n 2p part.ppm)"
   cmp -s <(tail -c 180 part.ppm) <(tail -c 600 whole.ppm | head -c 420 | tail -c 180) || fail "the part differs from the whole"
+
+  # Light of skins' matter is told between pixels: what is beside a part has its say.
+  cat >skin.vts <<'END'
+#include "grass.inc"
+global_settings { assumed_gamma 1 detail voxels max_error 0.015 }
+camera { location <0, 150, -150> look_at 0 right x*image_width/image_height angle 16 }
+light_source { <2000, 3000, -1000>, rgb 1.2 }
+background { rgb <0.4, 0.5, 0.7> }
+#declare Ground = surface { patch_grid 24, 24 function(u, v) { <60*u - 30, 2*sin(9*u)*cos(8*v), 60*v - 30> } texture { pigment { rgb <0.3, 0.2, 0.1> } } }
+object { Ground }
+#for (I, 0, 11) #for (J, 0, 11) sphere { <I*5 - 28 + 2*mod(J, 2), 6, J*5 - 28>, 1.2 pigment { rgb <1, I/11, 0> } } #end #end
+skin { surface { Ground } texel { Lawn_Texel(0.17, 200, 0.12, 1) } mapping { tile 0.4 height 0.6 } }
+END
+  run render skin.vts -s 160x96 -o whole.ppm; want_status 0
+  run render skin.vts -s 160x96 --region 96,0,128,32 -o part.ppm; want_status 0
+  for ((y = 0; y < 32; y++)); do tail -c $((160 * 96 * 3)) whole.ppm | tail -c +$(((y * 160 + 96) * 3 + 1)) | head -c 96; done >crop
+  cmp -s crop <(tail -c $((32 * 96)) part.ppm) || fail "the part with a skin differs from the whole"
 }
 
 run_case

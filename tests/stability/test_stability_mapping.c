@@ -27,8 +27,29 @@ static void crushed(void **state) {
     static const Trial trials[] = {
         {"height falls to nothing along an edge", GROUND FROM_ABOVE "skin { surface { Flat(4) } texel { Leaves(30, 0.12) } mapping { repeat <8, 8> height 0.8 function(x, y, z) { x/4 + 0.5 } } }", .05, .02, .04},
         {"no area: a line", FROM_ABOVE "skin { surface { patch_grid 4, 4 function(u, v) { <4*u - 2, 0, 0> } } texel { Leaves(30, 0.12) } mapping { repeat <8, 8> height 0.8 } }", .003, .001, 0},
+        {"cells without area beside such with area", FROM_ABOVE "skin { surface { patch_grid 8, 4 function(u, v) { <2*max(2*u, 1) - 3, 0.1*v, 4*v - 2> } } texel { Leaves(30, 0.12) } mapping { repeat <16, 8> height 0.8 } }", .05, .02, .04},
         {"areas fall to nothing at a pole", FROM_ABOVE "skin { surface { patch_grid 8, 4 function(u, v) { <2*v*cos(2*pi*u), 0, -2*v*sin(2*pi*u)> } } texel { Leaves(30, 0.12) } mapping { repeat <16, 4> height 0.8 } }", .05, .02, .04},
         {"height vectors laid nearly flat", GROUND FROM_ABOVE "skin { surface { Flat(3) } texel { Leaves(30, 0.12) } mapping { repeat <8, 8> height 0.4 comb <3, -0.9, 1> } }", .06, .02, .02},
+    };
+    try_trials(trials, VTS_ARRAY_COUNT(trials));
+}
+
+#define BLADES "texel { cyclic x + z resolution 64 layer { mesh { #for (I, 1, 40) #local P = <rand(S), 0, rand(S)>; #local A = vrotate(0.05*x, 360*rand(S)*y);" \
+               " triangle { P + A, P - A, P + A + 0.9*y } triangle { P - A, P - A + 0.9*y, P + A + 0.9*y } #end } } }"
+#define UPRIGHT(HEIGHT, MORE) GROUND FROM_ABOVE "plane { y, -0.5 } skin { surface { Flat(4) } texel { " BLADES " } mapping { repeat <8, 8> " HEIGHT " } " MORE "}"
+#define LYING(HEIGHT) GROUND FROM_ABOVE "plane { y, -0.5 } skin { surface { Flat(4) } texel { Leaves(30, 0.12) } mapping { repeat <8, 8> " HEIGHT " } }"
+
+/* Boxes without height beside such with height, and the way there: what stands upright has less and less area, what lies keeps it. */
+static void low(void **state) {
+    (void)state;
+    static const Trial trials[] = {
+        {"blades, no height where x < 0", UPRIGHT("height 0.8 function(x, y, z) { max(0, x)/2 }", ""), .05, .02, .04},
+        {"leaves, no height where x < 0", LYING("height 0.8 function(x, y, z) { max(0, x)/2 }"), .05, .02, .04},
+        {"blades, no height at all", UPRIGHT("height 0", ""), .003, .001, 0},
+        {"blades, a millionth", UPRIGHT("height 1e-6", ""), .003, .001, 0},
+        {"leaves, a hundredth", LYING("height 0.01"), .05, .02, .02},
+        {"leaves, a millionth", LYING("height 1e-6"), .05, .02, .02},
+        {"leaves, a ten-millionth", LYING("height 1e-7"), .05, .02, .02},
     };
     try_trials(trials, VTS_ARRAY_COUNT(trials));
 }
@@ -76,7 +97,7 @@ static void stretched(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(folded), cmocka_unit_test(crushed), cmocka_unit_test(flat), cmocka_unit_test(winds),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(folded), cmocka_unit_test(crushed), cmocka_unit_test(flat), cmocka_unit_test(low), cmocka_unit_test(winds),
                                        cmocka_unit_test(stretched)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

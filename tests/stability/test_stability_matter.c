@@ -22,6 +22,11 @@
 #define LIT_SHEET "texel { cyclic x + z resolution 32 layer { mesh { triangle { <0, 0.51, 0>, <1, 0.51, 0>, <0, 0.51, 1> }" \
                   " triangle { <1, 0.51, 1>, <1, 0.51, 0>, <0, 0.51, 1> } } } }"
 #define NEXT_TO_NOTHING "texel { cyclic x + z resolution 32 layer { mesh { triangle { <0.5, 0.5, 0.5>, <0.5001, 0.5, 0.5>, <0.5, 0.5001, 0.5> } } } }"
+/* Triangles without area, points and lines, by themselves and among some that have one: matrices of nothing. */
+#define EMPTY_ONES "#for (I, 1, 60) #local P = <rand(S), 0.1 + 0.8*rand(S), rand(S)>; #local E = <0.2*rand(S), 0.2*rand(S), 0>;" \
+                   " triangle { P, P, P } triangle { P, P + E, P + 2*E } triangle { P, P + E, P + E } #end"
+#define ONLY_EMPTY "texel { cyclic x + z resolution 64 layer { mesh { " EMPTY_ONES " } } }"
+#define EMPTY_AMONG "texel { cyclic x + z resolution 64 layer { mesh { " EMPTY_ONES " #for (I, 1, 12) Leaf(0.12) #end } } }"
 #define NOTHING "texel { cyclic x + z resolution 32 layer { mesh { triangle { <5, 5, 5>, <6, 5, 5>, <5, 6, 5> } } } }"
 
 static void distributions(void **state) {
@@ -38,6 +43,12 @@ static void opacities(void **state) {
     try_trials(trials, VTS_ARRAY_COUNT(trials));
 }
 
+static void no_matter(void **state) {
+    (void)state;
+    static const Trial trials[] = {SCALES("no area", ONLY_EMPTY, 1e-4, 1e-4, 1e-4, 0), SCALES("no area, among leaves", EMPTY_AMONG, .05, .04, .03, .02)};
+    try_trials(trials, VTS_ARRAY_COUNT(trials));
+}
+
 static void lit_matter(void **state) {
     (void)state;
     static const Trial trials[] = {SCALES("lit solid", LIT_WHOLE, .07, .04, .04, .02), SCALES("lit floor", LIT_FLOOR, .07, .04, .04, .02),
@@ -46,6 +57,6 @@ static void lit_matter(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(distributions), cmocka_unit_test(opacities), cmocka_unit_test(lit_matter)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(distributions), cmocka_unit_test(opacities), cmocka_unit_test(no_matter), cmocka_unit_test(lit_matter)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

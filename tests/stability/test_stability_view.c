@@ -14,8 +14,22 @@ static void rays(void **state) {
          "camera { orthographic location <0, 0.4, -6> direction z right 4*x up 3*y }\n skin { surface { Ground } texel { Leaves(30, 0.12) } mapping { repeat <8, 1> height 0.8 } }", .05, .02, .02},
         {"along walls and through vertices from above", GROUND "camera { orthographic location <0, 6, 0> direction -y right 4*x up 3*z }\n" SKIN, .05, .02, .04},
         {"down onto a vertex", GROUND "Look(<0, 3, -0.0001>, <0, 0, 0>, 50)\n" SKIN, .06, .02, .04},
+        /* Middles of pixels of 0.1 are moved onto multiples of it, and so onto the walls. */
+        {"in walls, from the side, one row of tiles", "#declare Ground = surface { patch_grid 8, 1 function(u, v) { <4*u - 2, 0, 0.5*v> } };\n"
+         "camera { orthographic location <0.05, 0.45, -6> direction z right 4*x up 3*y }\n skin { surface { Ground } texel { Leaves(30, 0.12) } mapping { repeat <8, 1> height 0.8 } }", .05, .02, .02},
+        {"in walls and vertices, from above", GROUND "camera { orthographic location <0.05, 6, 0.05> direction -y right 4*x up 3*z }\n" SKIN, .05, .02, .04},
+        {"in walls, down an edge between four boxes", GROUND "camera { location <0, 3, 0> direction <0.0125, -1, 0.0125> right x up 0.75*z }\n" SKIN, .06, .02, .04},
+        {"in walls of prisms", "camera { orthographic location <0.05, 6, 0.05> direction -y right 4*x up 3*z }\n"
+         "skin { surface { mesh2 { vertex_vectors { 4, <-2, 0, -2>, <2, 0, -2>, <2, 0, 2>, <-2, 0, 2> } face_indices { 2, <0, 2, 1>, <0, 3, 2> } } uv planar y } texel { Leaves(30, 0.12) } mapping { repeat <8, 8> height 0.8 } }\n", .05, .02, .04},
         {"poles and seam of a ball", "Look(<0, 2.5, -1.5>, <0, 0.3, 0>, 50) skin { surface { sphere { 0, 1 } uv spherical } texel { Leaves(20, 0.12) } mapping { repeat <16, 8> height 0.3 } }", .05, .02, .04},
     };
+    try_trials(trials, VTS_ARRAY_COUNT(trials));
+}
+
+/* Level, along rows of copies: the same gaps come again in each, and voxels take those of the next for others. */
+static void level_rows(void **state) {
+    (void)state;
+    static const Trial trials[] = {{"level along eight rows of tiles", GROUND "camera { orthographic location <0, 0.45, -6> direction z right 4*x up 3*y }\n" SKIN, .08, .03, .04}};
     try_trials(trials, VTS_ARRAY_COUNT(trials));
 }
 
@@ -67,7 +81,7 @@ static void far_hills(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(rays), cmocka_unit_test(cameras), cmocka_unit_test(jitters), cmocka_unit_test(coordinates),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(rays), cmocka_unit_test(level_rows), cmocka_unit_test(cameras), cmocka_unit_test(jitters), cmocka_unit_test(coordinates),
                                        cmocka_unit_test(far_hills)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -90,16 +90,21 @@ const SourceFile *source_add_text(SourceSet *set, const char *name, const char *
     return add_file(set, name, name, copy, size);
 }
 
+/* Where the line after the one that holds the place begins; NULL: it is the last. */
+static const char *next_line(const SourceFile *file, const char *from) {
+    const char *end = memchr(from, '\n', file->size - (size_t)(from - file->text));
+    return end ? end + 1 : NULL;
+}
+
 static void index_lines(SourceSet *set, SourceFile *file) {
-    uint32_t count = 1;
-    for (uint32_t i = 0; i < file->size; i++) count += file->text[i] == '\n';
+    uint32_t count = 0;
+    for (const char *at = file->text; at; at = next_line(file, at)) count++;
     file->lines = arena_new_array(set->arena, uint32_t, count);
     file->line_count = count;
+    uint32_t line = 0;
+    for (const char *at = file->text; at; at = next_line(file, at)) file->lines[line++] = (uint32_t)(at - file->text);
     /* A byte order mark is no part of the first line. */
     if (file->size >= 3 && memcmp(file->text, "\xEF\xBB\xBF", 3) == 0) file->lines[0] = 3;
-    uint32_t line = 1;
-    for (uint32_t i = 0; i < file->size; i++)
-        if (file->text[i] == '\n') file->lines[line++] = i + 1;
 }
 
 SourcePlace source_locate(SourceSet *set, Span span) {

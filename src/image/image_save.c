@@ -103,20 +103,38 @@ static bool fail(StrBuf *error, const char *path, const char *why) {
     return false;
 }
 
+/* Whether the picture's own rows are those of a PFM: its colours alone, in their order. */
+static bool is_all(const Image *image, const Selection *selection) {
+    bool all = image->channels == selection->colours;
+    for (int c = 0; c < selection->colours; c++) all &= selection->index[c] == c;
+    return all;
+}
+
+/* From the bottom to the top; of pictures that hold nothing else out of their own memory. */
 static bool save_pfm(const Image *image, const char *path, StrBuf *error) {
     Selection selection = select_channels(image, false);
-    size_t row = (size_t)image->width * (size_t)selection.colours;
-    float *samples = malloc(row * sizeof *samples);
-    if (!samples) return fail(error, path, "not enough memory");
-    StrBuf file = {0};
-    pnm_add_pfm_header(&file, image, selection.colours);
-    for (int y = image->height - 1; y >= 0; y--) {
-        select_row(image, &selection, y, samples);
-        pnm_add_floats(&file, samples, row);
+    const size_t row = (size_t)image->width * (size_t)selection.colours, height = (size_t)image->height;
+    const bool own = pnm_floats_are_own() && is_all(image, &selection);
+    FilePiece *pieces = malloc((height + 1) * sizeof *pieces);
+    float *samples = own ? NULL : malloc(row * height * sizeof *samples);
+    if (!pieces || (!own && !samples)) {
+        free(pieces);
+        free(samples);
+        return fail(error, path, "not enough memory");
     }
-    bool done = whole_file_replace(path, file.data, file.size, error);
-    strbuf_free(&file);
+    StrBuf header = {0};
+    pnm_add_pfm_header(&header, image, selection.colours);
+    pieces[0] = (FilePiece){header.data, header.size};
+    for (size_t y = 0; y < height; y++) {
+        const int from = image->height - 1 - (int)y;
+        if (!own) select_row(image, &selection, from, samples + y * row);
+        pieces[y + 1] = (FilePiece){own ? image_pixel(image, 0, from) : samples + y * row, row * sizeof *samples};
+    }
+    if (!own) pnm_floats_to_file(samples, row * height);
+    bool done = whole_file_replace_pieces(path, pieces, height + 1, error);
+    strbuf_free(&header);
     free(samples);
+    free(pieces);
     return done;
 }
 

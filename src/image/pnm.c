@@ -202,18 +202,19 @@ void pnm_add_header(StrBuf *out, const Image *image, int channels, int largest) 
     strbuf_addf(out, "%d\n", largest);
 }
 
-void pnm_add_floats(StrBuf *out, const float *samples, size_t count) {
+bool pnm_floats_are_own(void) {
     static const uint16_t one = 1;
-    if (*(const unsigned char *)&one == 1) { /* this machine has them as the file wants them */
-        strbuf_add(out, (const char *)samples, count * sizeof *samples);
-        return;
-    }
+    return *(const unsigned char *)&one == 1;
+}
+
+void pnm_floats_to_file(float *samples, size_t count) {
+    if (pnm_floats_are_own()) return;
     for (size_t i = 0; i < count; i++) {
         uint32_t bits;
         memcpy(&bits, &samples[i], sizeof bits);
-        char bytes[4] = {(char)(bits & 0xFF), (char)(bits >> 8 & 0xFF), (char)(bits >> 16 & 0xFF),
-                         (char)(bits >> 24)};
-        strbuf_add(out, bytes, sizeof bytes);
+        const unsigned char bytes[4] = {(unsigned char)(bits & 0xFF), (unsigned char)(bits >> 8 & 0xFF), (unsigned char)(bits >> 16 & 0xFF),
+                                        (unsigned char)(bits >> 24)};
+        memcpy(&samples[i], bytes, sizeof bytes);
     }
 }
 

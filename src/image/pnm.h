@@ -17,8 +17,11 @@ bool pnm_decode(Image *image, const unsigned char *data, size_t size, const char
  * is in the scale's decimals, behind so many zeros that no reader's number has room for them. */
 void pnm_add_pfm_header(StrBuf *out, const Image *image, int channels);
 void pnm_add_header(StrBuf *out, const Image *image, int channels, int largest);
-/* A row of `count` samples: floats; codes of one byte, or of two with the high byte first. */
-void pnm_add_floats(StrBuf *out, const float *samples, size_t count);
+/* Whether this machine has floats as a PFM wants them. */
+bool pnm_floats_are_own(void);
+/* Turns samples into what a PFM holds of them, in their place. */
+void pnm_floats_to_file(float *samples, size_t count);
+/* A row of `count` codes of one byte, or of two with the high byte first. */
 void pnm_add_codes(StrBuf *out, const uint16_t *codes, size_t count, bool wide);
 
 #endif

@@ -130,6 +130,10 @@ static int write_all(int file, const unsigned char *data, size_t size) {
 }
 
 bool whole_file_replace(const char *path, const void *data, size_t size, StrBuf *error) {
+    return whole_file_replace_pieces(path, &(FilePiece){data, size}, 1, error);
+}
+
+bool whole_file_replace_pieces(const char *path, const FilePiece *pieces, size_t count, StrBuf *error) {
     char temporary[PATH_MAX], target[PATH_MAX];
     struct stat info;
     if (!whole_file_can_replace(path, error)) return false;
@@ -138,7 +142,8 @@ bool whole_file_replace(const char *path, const void *data, size_t size, StrBuf 
     remove_leftovers(place);
     int file = open_beside(place, temporary, sizeof temporary);
     if (file < 0) return fail(error, "write", path, errno);
-    int number = write_all(file, data, size);
+    int number = 0;
+    for (size_t i = 0; i < count && number == 0; i++) number = write_all(file, pieces[i].data, pieces[i].size);
     if (close(file) != 0 && number == 0) number = errno;
     if (number == 0 && rename(temporary, place) != 0) number = errno;
     if (number == 0) return true;

@@ -10,6 +10,13 @@
  * link is followed. */
 bool whole_file_replace(const char *path, const void *data, size_t size, StrBuf *error);
 
+typedef struct FilePiece {
+    const void *data;
+    size_t size;
+} FilePiece;
+/* The same of content that lies in pieces, in the order of the file. */
+bool whole_file_replace_pieces(const char *path, const FilePiece *pieces, size_t count, StrBuf *error);
+
 /* Whether whole_file_replace() may succeed: the folder is there and can be written, the name is no folder's. */
 bool whole_file_can_replace(const char *path, StrBuf *error);
 

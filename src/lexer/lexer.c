@@ -97,7 +97,7 @@ static void skip_block_comment(Lexer *lx) {
     } while (depth);
 }
 
-static void skip_blanks(Lexer *lx) {
+static void skip_blanks_and_comments(Lexer *lx) {
     while (lx->at < lx->size) {
         unsigned char c = (unsigned char)lx->text[lx->at];
         if (c == '/' && lx->text[lx->at + 1] == '/') {
@@ -112,22 +112,30 @@ static void skip_blanks(Lexer *lx) {
     }
 }
 
+/* Most often there are none. */
+static inline void skip_blanks(Lexer *lx) {
+    const unsigned char c = (unsigned char)lx->text[lx->at];
+    if (c <= ' ' || c == '/') skip_blanks_and_comments(lx);
+}
+
 static bool is_word_start(char c) { return isalpha((unsigned char)c) || c == '_'; }
 static bool is_word_part(char c) { return isalnum((unsigned char)c) || c == '_'; }
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /* Digits as they are read, without the point. */
 typedef struct Decimal {
-    uint64_t digits; /* as a whole number, as long as it is exact */
-    int count;       /* of digits after leading zeros */
-    int after_point;
+    uint64_t digits; /* as a whole number; of more than 19 it is none */
+    size_t count;    /* of digits after leading zeros */
+    size_t after_point;
 } Decimal;
 
-static void take_digits(Lexer *lx, Decimal *d) {
-    for (char c; is_digit(c = lx->text[lx->at]); lx->at++) {
-        d->count += d->count || c != '0';
-        if (d->count <= 18) d->digits = d->digits * 10 + (uint64_t)(c - '0');
-    }
+static inline const char *take_digits(const char *at, Decimal *d) {
+    if (d->count == 0)
+        while (*at == '0') at++;
+    const char *begin = at;
+    for (; is_digit(*at); at++) d->digits = d->digits * 10 + (uint64_t)(*at - '0');
+    d->count += (size_t)(at - begin);
+    return at;
 }
 
 /* Clinger 1990: whole numbers below 2^53 and powers of ten to 10^22 are exact doubles, and so one division of them rounds as it
@@ -142,25 +150,25 @@ static bool short_decimal(const Decimal *d, double *out) {
 
 /* number = (digits ["." [digits]] | "." digits) [("e" | "E") ["+" | "-"] [digits]] */
 static double read_number(Lexer *lx) {
-    uint32_t begin = lx->at;
-    const char *text = lx->text;
+    const char *begin = lx->text + lx->at, *at;
     Decimal d = {0};
     double value;
-    take_digits(lx, &d);
-    if (text[lx->at] == '.') {
-        uint32_t point = ++lx->at;
-        take_digits(lx, &d);
-        d.after_point = (int)size_min(lx->at - point, 1000);
+    at = take_digits(begin, &d);
+    if (*at == '.') {
+        const char *point = ++at;
+        at = take_digits(at, &d);
+        d.after_point = (size_t)(at - point);
     }
     bool simple = short_decimal(&d, &value);
-    if (text[lx->at] == 'e' || text[lx->at] == 'E') {
-        uint32_t exponent = lx->at + 1;
+    if (*at == 'e' || *at == 'E') {
+        const char *exponent = at + 1;
         simple = false;
-        if (text[exponent] == '+' || text[exponent] == '-') exponent++;
-        if (!is_word_part(text[exponent]) || is_digit(text[exponent])) lx->at = exponent;
-        while (is_digit(text[lx->at])) lx->at++;
+        if (*exponent == '+' || *exponent == '-') exponent++;
+        if (!is_word_part(*exponent) || is_digit(*exponent)) at = exponent;
+        while (is_digit(*at)) at++;
     }
-    return simple ? value : strtod(text + begin, NULL);
+    lx->at = (uint32_t)(at - lx->text);
+    return simple ? value : strtod(begin, NULL);
 }
 
 static void lex_number(Lexer *lx) {

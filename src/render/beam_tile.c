@@ -125,19 +125,36 @@ static SurfaceTracer air_tracer(BeamTracer *tr) {
     return (SurfaceTracer){.compiled = tr->compiled};
 }
 
-/* The sky's pixels, where there is nothing else. */
-static bool see_sky(BeamTracer *tr, Radiance *out) {
-    const Scene *scene = tr->compiled->scene;
+/* Whether there is nothing else in the tile, which no cell of a skin is in. */
+static bool is_sky(const BeamTracer *tr) {
     if (!tr->bounded || beam_meets_box(&tr->beam, &tr->explicit_bounds) || !isinf(tr->compiled->all_exact_to)) return false;
-    if (tr->compiled->rigid && rigid_meets(tr->compiled->rigid, &tr->beam)) return false;
+    return !tr->compiled->rigid || !rigid_meets(tr->compiled->rigid, &tr->beam);
+}
+
+static void aim_cones(BeamTracer *tr) {
+    Cone *cone = tr->cones;
+    for (int y = 0; y < tr->rows; y++)
+        for (int x = 0; x < tr->columns; x++) *cone++ = view_cone(&tr->compiled->view, tr->x0 + x + 0.5, tr->y0 + y + 0.5, 1);
+}
+
+static Radiance sky_along(const Scene *scene, const Cone *cone, const Air *air) {
+    return (Radiance){air_over(air, sky_radiance(scene, cone->direction, cone->spread), 1), air->cover};
+}
+
+/* Where nothing depends on directions nobody asks for them. */
+static void see_sky(BeamTracer *tr, Radiance *out) {
+    const Scene *scene = tr->compiled->scene;
+    const int pixels = tr->columns * tr->rows;
+    const bool even = scene->sky_layer_count == 0 && air_is_clear(tr->compiled);
     SurfaceTracer surfaces = air_tracer(tr);
-    for (int i = 0; i < tr->columns * tr->rows; i++) {
-        Vec3f color = sky_radiance(scene, tr->cones[i].direction, tr->cones[i].spread);
-        Air air = air_from_eye(&surfaces, &tr->cones[i], VTS_INFINITY);
-        out[i] = (Radiance){air_over(&air, color, 1), air.cover};
+    if (!even) aim_cones(tr);
+    Air air = air_clear();
+    const Radiance all = sky_along(scene, &(Cone){.width = 0}, &air);
+    for (int i = 0; i < pixels; i++) {
+        if (!even) air = air_from_eye(&surfaces, &tr->cones[i], VTS_INFINITY);
+        out[i] = even ? all : sky_along(scene, &tr->cones[i], &air);
         if (tr->aovs) tr->aovs[i].samples = 1;
     }
-    return true;
 }
 
 /* ---- pixels ---- */
@@ -295,11 +312,14 @@ void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out, Ao
     tr->x0 = x0, tr->y0 = y0, tr->columns = x1 - x0, tr->rows = y1 - y0;
     tr->aovs = aovs;
     beam_aim(tr);
-    for (int i = 0; i < pixels; i++) tr->cones[i] = view_cone(&tr->compiled->view, x0 + i % tr->columns + 0.5, y0 + i / tr->columns + 0.5, 1);
-    memset(out, 0, (size_t)pixels * sizeof *out);
     tr->pixel_count += (uint64_t)pixels;
     tr->tile_noise = 0;
-    if (beam_gather(&tr->draft, tr->compiled) == 0 && see_sky(tr, out)) return;
+    if (beam_gather(&tr->draft, tr->compiled) == 0 && is_sky(tr)) {
+        see_sky(tr, out);
+        return;
+    }
+    aim_cones(tr);
+    memset(out, 0, (size_t)pixels * sizeof *out);
     allot_begin(&tr->allotment, &tr->plan.samples, tr->columns, tr->rows, most_in_pass);
     tr->first_pass = true;
     double fixed;

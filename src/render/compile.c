@@ -214,7 +214,8 @@ CompileStatus compile_scene(const Scene *scene, const CompileOptions *options, A
     const TerrainViewOptions terrains = {options->pool, out->max_error, options->exact, MOST_TERRAIN_VERTICES, skin_longest_cell};
     out->scene = scene = terrains_as_seen(scene, &out->view, &terrains, &out->scratch, arena, diags, &out->terrains);
     if (!scene) return COMPILE_FAILED;
-    out->hierarchy = hierarchy_build(scene, arena, diags);
+    const double pixels = (double)options->width * options->height, rays = options->exact ? VTS_INFINITY : pixels * int_max(scene->settings.samples, 1);
+    out->hierarchy = hierarchy_build(scene, rays, arena, diags);
     if (!out->hierarchy) return COMPILE_FAILED;
     out->clear_shadows = hierarchy_is_clear(out->hierarchy);
     out->solids_matter = scene->fog_count || scene->rainbow_count || scene->has_media;

@@ -7,7 +7,7 @@
 #include <embree3/rtcore.h>
 
 /* Changes with every change of the list; a module with another number is not used. */
-enum { EMBREE_SHIM_VERSION = 1 };
+enum { EMBREE_SHIM_VERSION = 2 };
 
 /* Embree's functions, each under its name without rtc. */
 #define EMBREE_FUNCTIONS(X) \
@@ -15,7 +15,7 @@ enum { EMBREE_SHIM_VERSION = 1 };
     X(Intersect1) X(Intersect8) X(NewDevice) X(NewGeometry) X(NewScene) X(Occluded1) X(Occluded8) X(ReleaseDevice) X(ReleaseGeometry) \
     X(ReleaseScene) X(RetainScene) X(SetGeometryBoundsFunction) X(SetGeometryInstancedScene) X(SetGeometryIntersectFilterFunction) \
     X(SetGeometryIntersectFunction) X(SetGeometryOccludedFilterFunction) X(SetGeometryOccludedFunction) X(SetGeometryTransform) \
-    X(SetGeometryUserData) X(SetGeometryUserPrimitiveCount) X(SetNewGeometryBuffer) X(SetSceneFlags) X(SetSharedGeometryBuffer)
+    X(SetGeometryBuildQuality) X(SetSceneBuildQuality) X(SetGeometryUserData) X(SetGeometryUserPrimitiveCount) X(SetNewGeometryBuffer) X(SetSceneFlags) X(SetSharedGeometryBuffer)
 
 typedef struct EmbreeShim {
     int version; /* EMBREE_SHIM_VERSION */

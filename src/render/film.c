@@ -23,7 +23,7 @@ typedef struct Film {
 } Film;
 
 /* Light. */
-static float exposed(const Film *film, float seen) {
+static inline float exposed(const Film *film, float seen) {
     return (film->gamma == 1 ? seen : (float)gamma_to_light((double)seen, film->gamma)) * film->gain;
 }
 
@@ -46,17 +46,17 @@ static void see(Film *film, Place p, int worker) {
     AovSum *aovs = film->aovs ? film->aovs + (size_t)worker * FILM_TILE * FILM_TILE : NULL;
     if (aovs) memset(aovs, 0, sizeof *aovs * FILM_TILE * FILM_TILE);
     film->tile(film->context, worker, p.x0, p.y0, p.x1, p.y1, seen, aovs);
-    for (int y = p.y0; y < p.y1; y++)
-        for (int x = p.x0; x < p.x1; x++) {
-            int i = (y - p.y0) * (p.x1 - p.x0) + x - p.x0;
-            Radiance r = seen[i];
-            float *sample = image_pixel(film->image, x - options->region[0], y - options->region[1]);
-            sample[0] = exposed(film, r.color.x);
-            sample[1] = exposed(film, r.color.y);
-            sample[2] = exposed(film, r.color.z);
-            if (options->alpha) sample[3] = r.alpha;
-            if (aovs) aov_write(options->aovs, &aovs[i], r.alpha, sample + (options->alpha ? 4 : 3));
+    const Radiance *r = seen;
+    for (int y = p.y0; y < p.y1; y++) {
+        float *sample = image_pixel(film->image, p.x0 - options->region[0], y - options->region[1]);
+        for (int x = p.x0; x < p.x1; x++, r++, sample += film->image->channels) {
+            sample[0] = exposed(film, r->color.x);
+            sample[1] = exposed(film, r->color.y);
+            sample[2] = exposed(film, r->color.z);
+            if (options->alpha) sample[3] = r->alpha;
+            if (aovs) aov_write(options->aovs, &aovs[r - seen], r->alpha, sample + (options->alpha ? 4 : 3));
         }
+    }
 }
 
 /* Between the tile's rows in the picture and `samples`. */

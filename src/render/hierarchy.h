@@ -52,8 +52,8 @@ typedef struct Filling {
     Affine to_interior;
 } Filling;
 
-/* NULL after a diagnostic. */
-Hierarchy *hierarchy_build(const Scene *scene, Arena *arena, DiagList *diags);
+/* For about so many rays, by which it is told how much building is worth. NULL after a diagnostic. */
+Hierarchy *hierarchy_build(const Scene *scene, double rays, Arena *arena, DiagList *diags);
 void hierarchy_destroy(Hierarchy *hierarchy);
 size_t hierarchy_object_count(const Hierarchy *hierarchy);
 /* How far from its true place, at most, a surface about this point may be met: some steps of floats that count from the middle of all

@@ -407,7 +407,7 @@ static Air volumes_in_fog(SurfaceTracer *tracer, const Cone *cone, double t_max,
     return out;
 }
 
-static bool air_is_clear(const CompiledScene *compiled) {
+bool air_is_clear(const CompiledScene *compiled) {
     const Scene *scene = compiled->scene;
     return !compiled->volumes && !scene->has_media && scene->fog_count == 0 && scene->rainbow_count == 0;
 }

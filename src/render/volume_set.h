@@ -76,6 +76,8 @@ static inline bool volume_counts(const CompiledVolume *v, RayPurpose purpose) { 
 
 /* What volumes make of what is seen at t_max along the cone: color·keep + add, and how much of it they cover. */
 Air volumes_air(SurfaceTracer *tracer, const Cone *cone, double t_max);
+/* Whether there is nothing in the air of the scene: no volumes, media, fogs or rainbows. */
+bool air_is_clear(const CompiledScene *compiled);
 /* The same with fogs, rainbows and media. */
 Air air_along(SurfaceTracer *tracer, const Leg *leg, double t_max);
 /* On the first leg. */

@@ -55,7 +55,7 @@ static Object *add_ball(World *w, Vec3 center, double radius) {
 }
 
 static const Blockers *world_blockers(World *w) {
-    w->hierarchy = hierarchy_build(&w->scene, &w->arena, &w->diags);
+    w->hierarchy = hierarchy_build(&w->scene, VTS_INFINITY, &w->arena, &w->diags);
     assert_non_null(w->hierarchy);
     assert_non_null(hierarchy_blockers(w->hierarchy));
     return hierarchy_blockers(w->hierarchy);

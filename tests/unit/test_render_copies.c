@@ -46,7 +46,7 @@ static void copies_keep_places_and_looks(void **state) {
     b.texture = &second;
     w.list[0] = &a, w.list[1] = &b;
     w.scene.object_count = 2;
-    Hierarchy *h = hierarchy_build(&w.scene, &w.arena, &w.diags);
+    Hierarchy *h = hierarchy_build(&w.scene, 1e4, &w.arena, &w.diags);
     const struct {
         double x, y, t;
         const Texture *texture;
@@ -81,7 +81,7 @@ static void differences_are_hollowed(void **state) {
     Object set = {.kind = OBJECT_DIFFERENCE, .as.group = GROUP(parts, 2)};
     w.list[0] = &set;
     w.scene.object_count = 1;
-    Hierarchy *h = hierarchy_build(&w.scene, &w.arena, &w.diags);
+    Hierarchy *h = hierarchy_build(&w.scene, 1e4, &w.arena, &w.diags);
     const Ray middle = {{0, 0, -5}, {0, 0, 1}}, side = {{0.7, 0, -5}, {0, 0, 1}};
     SurfaceHit hit;
     assert_true(hierarchy_intersect(h, &middle, 1e-9, VTS_INFINITY, &hit));
@@ -109,7 +109,7 @@ static void insides_are_found(void **state) {
     b.place = PLACE(right);
     w.list[0] = &a, w.list[1] = &b;
     w.scene.object_count = 2;
-    Hierarchy *h = hierarchy_build(&w.scene, &w.arena, &w.diags);
+    Hierarchy *h = hierarchy_build(&w.scene, 1e4, &w.arena, &w.diags);
     Filling at_left[4], at_right[4];
     assert_int_equal(hierarchy_inside(h, vec3(0, 0, 0), at_left, 4), 0);
     assert_int_equal(hierarchy_inside(h, vec3(5, 3, 0), at_left, 4), 0);

@@ -45,7 +45,7 @@ static Object *world_add(World *w, ObjectKind kind) {
 }
 
 static void world_build(World *w) {
-    w->hierarchy = hierarchy_build(&w->scene, &w->arena, &w->diags);
+    w->hierarchy = hierarchy_build(&w->scene, VTS_INFINITY, &w->arena, &w->diags);
     assert_non_null(w->hierarchy);
 }
 

@@ -2,18 +2,24 @@
 
 #include "base/random.h"
 
-/* Squares of this size are tried first; of patterns, mirrors and glass, whose details may be fine, none but the narrowest. */
-enum { WIDEST = 4, NARROW = 2 };
+/* Squares of this size are tried first; WIDE ones where something else may be seen within; of mirrors and glass, whose details may be fine, none but
+ * the narrowest. */
+enum { WIDEST = 8, WIDE = 4, NARROW = 2 };
 /* What is seen between corners is as smooth a part of the same surface. */
 static const float SAME_NORMAL = 0.98f;
-/* One guess of so many is tried. */
-enum { TRIED = 16 };
+/* One guess of so many is tried; of those where anything may be seen. */
+enum { TRIED = 32, TRIED_BLINDLY = 16 };
 /* Guesses are told apart by how much the light at the corners differs, in powers of four; what is known of all of them counts in each kind
  * as much as so many. */
 enum { KINDS = 6 };
 static const double PRIOR = 2;
 
-typedef enum Known { UNKNOWN, FOUND, GUESSED /* and those after it: plus the kind */ } Known;
+typedef enum Known {
+    UNKNOWN,
+    FOUND,
+    LOOKED = 2, /* and those after it, plus the kind: its light is guessed */
+    GUESSED = LOOKED + KINDS /* the same, and nobody looked what is there */
+} Known;
 
 typedef struct Tile {
     const GuessSight *sight;
@@ -129,15 +135,16 @@ static int kind_of(const Tile *t, const Square *s) {
     return kind;
 }
 
-/* Finds what could have been guessed, for all the others. */
-static void try_guess(Tile *t, const Guess *guess, struct Kind *kind, int x, int y) {
+/* Finds what could have been guessed, for all the others. Whether that would have been right. */
+static bool try_guess(Tile *t, const Guess *guess, struct Kind *kind, int x, int y) {
     const Middle *m = &t->middles[place(x, y)];
     find(t, x, y);
     Middle guessed = *m;
-    if (!guess_light(guess, &guessed)) return;
+    if (!guess_light(guess, &guessed)) return true;
     Vec3f off = error_of(&guessed, m);
     kind->wrong += (double)vec3f_dot(off, off) / 3;
     kind->tried++;
+    return (double)most_of(off) <= t->sight->tolerance;
 }
 
 /* Of what the corners see, in their light; `flat`: they have one normal. */
@@ -194,28 +201,34 @@ static bool put_mean(Tile *t, const Square *s, int x, int y) {
 /* What a square is filled by. */
 typedef struct Fill {
     Square square;
-    int kind, half;
+    int kind;
     VistaView view;
     Guess guess;
     bool patterned; /* its light is that of a pattern's colours, which have to be looked at */
     bool flat;      /* the corners have one normal */
 } Fill;
 
-/* First the one, then the other half of a checkerboard's squares. */
-static void fill_pixel(Tile *t, Fill *f, int x, int y) {
-    const Square *s = &f->square;
-    bool holds = true, even = f->view == VISTA_EVEN || (f->view == VISTA_SOME && f->half == 1);
-    weigh(&f->guess, s, x, y);
-    if (random_hash((uint64_t)x, (uint64_t)y, 0, 0) % TRIED == 0) {
-        try_guess(t, &f->guess, &t->kinds[f->kind], x, y);
+/* Whether somebody has to look what is at a pixel: where a few things may be at one of four, of patterns at one of two, like squares of a
+ * checkerboard. */
+static bool is_asked(const Fill *f, int x, int y) {
+    const int off_x = x - f->square.x0, off_y = y - f->square.y0;
+    return f->view == VISTA_OPEN || (f->patterned && !((off_x + off_y) & 1)) || (f->view == VISTA_SOME && !((off_x | off_y) & 1));
+}
+
+static void look(Tile *t, const Fill *f, int x, int y) {
+    const bool holds = t->sight->see(t->sight->context, x, y, &f->guess, &t->middles[place(x, y)]);
+    t->known[place(x, y)] = (uint8_t)(holds ? LOOKED + f->kind : FOUND);
+    t->kinds[f->kind].guessed += holds;
+}
+
+static void put(Tile *t, const Fill *f, int x, int y) {
+    if (f->patterned && !(is_among(t, &f->square, x, y) && put_mean(t, &f->square, x, y))) {
+        look(t, f, x, y);
         return;
     }
-    if (even && (f->patterned || f->view == VISTA_SOME)) even = f->half == 1 && is_among(t, s, x, y);
-    if (even && f->patterned) even = put_mean(t, s, x, y);
-    else if (even) put_guess(t, &f->guess, f->flat, x, y);
-    if (!even) holds = t->sight->see(t->sight->context, x, y, &f->guess, &t->middles[place(x, y)]);
-    t->known[place(x, y)] = (uint8_t)(holds ? GUESSED + f->kind : FOUND);
-    t->kinds[f->kind].guessed += holds;
+    if (!f->patterned) put_guess(t, &f->guess, f->flat, x, y);
+    t->known[place(x, y)] = (uint8_t)(GUESSED + f->kind);
+    t->kinds[f->kind].guessed++;
 }
 
 static void corners_are(const Tile *t, const Square *s, bool *calm, bool *tinted) {
@@ -248,16 +261,33 @@ static bool have_one_normal(const Middle *const corners[4]) {
     return one;
 }
 
-static void fill(Tile *t, const Square *s, bool even, bool patterned) {
-    const GuessSight *sight = t->sight;
-    Fill f = {*s, kind_of(t, s), 0, VISTA_OPEN, guess_of(t, s), patterned, false};
+/* Some guesses are tried first; false when one is wrong. */
+static bool try_some(Tile *t, Fill *f) {
+    const Square *s = &f->square;
+    const int tried = f->view == VISTA_OPEN ? TRIED_BLINDLY : TRIED;
+    bool right = true;
+    for (int y = s->y0; y <= s->y1; y++)
+        for (int x = s->x0; x <= s->x1; x++) {
+            if (t->known[place(x, y)] != UNKNOWN || random_hash((uint64_t)x, (uint64_t)y, 0, 0) % (uint64_t)tried) continue;
+            weigh(&f->guess, s, x, y);
+            right &= try_guess(t, &f->guess, &t->kinds[f->kind], x, y);
+        }
+    return right;
+}
+
+static bool fill(Tile *t, const Square *s, VistaView view, bool even, bool patterned) {
+    Fill f = {*s, kind_of(t, s), view, guess_of(t, s), patterned, false};
     f.guess.even = even;
     f.flat = have_one_normal(f.guess.corners);
-    if (sight->view) f.view = sight->view(sight->context, s->x0, s->y0, s->x1, s->y1, t->middles[place(s->x0, s->y0)].object);
-    for (; f.half < 2; f.half++)
+    if (!try_some(t, &f)) return false;
+    for (int asked = 1; asked >= 0; asked--)
         for (int y = s->y0; y <= s->y1; y++)
-            for (int x = s->x0 + ((s->x0 + y + f.half) & 1); x <= s->x1; x += 2)
-                if (t->known[place(x, y)] == UNKNOWN) fill_pixel(t, &f, x, y);
+            for (int x = s->x0; x <= s->x1; x++) {
+                if (t->known[place(x, y)] != UNKNOWN || is_asked(&f, x, y) != asked) continue;
+                weigh(&f.guess, s, x, y);
+                (asked ? look : put)(t, &f, x, y);
+            }
+    return true;
 }
 
 static void find_all(Tile *t, const Square *s) {
@@ -265,26 +295,73 @@ static void find_all(Tile *t, const Square *s) {
         for (int x = s->x0; x <= s->x1; x++) find(t, x, y);
 }
 
-/* The square's corners are found. */
+/* Whether it is filled by guesses; its corners are found. */
+static bool fill_square(Tile *t, const Square *s, int mx, int my) {
+    const GuessSight *sight = t->sight;
+    const int side = int_max(s->x1 - s->x0, s->y1 - s->y0);
+    bool calm, tinted;
+    corners_are(t, s, &calm, &tinted);
+    if (side > NARROW && !calm && !tinted) return false;
+    const VistaView view = sight->view ? sight->view(sight->context, s->x0, s->y0, s->x1, s->y1, t->middles[place(s->x0, s->y0)].object) : VISTA_OPEN;
+    if ((side > WIDE && view != VISTA_EVEN) || !agree(t, s, mx, my)) return false;
+    const bool even = calm || (tinted && has_even_color(t, s, mx, my));
+    return fill(t, s, view, even, tinted && !even);
+}
+
 static void divide(Tile *t, const Square *s) {
     int width = s->x1 - s->x0, height = s->y1 - s->y0, mx = s->x0 + width / 2, my = s->y0 + height / 2;
     if (width <= 1 || height <= 1) {
         find_all(t, s);
         return;
     }
-    bool calm, tinted;
-    corners_are(t, s, &calm, &tinted);
-    if (agree(t, s, mx, my) && (int_max(width, height) <= NARROW || calm || tinted)) {
-        bool even = calm || (tinted && has_even_color(t, s, mx, my));
-        fill(t, s, even, tinted && !even);
-        return;
-    }
+    if (fill_square(t, s, mx, my)) return;
     for (int k = 0; k < 9; k++)
         find(t, k % 3 == 0 ? s->x0 : k % 3 == 1 ? mx : s->x1, k / 3 == 0 ? s->y0 : k / 3 == 1 ? my : s->y1);
     divide(t, &(Square){s->x0, s->y0, mx, my});
     divide(t, &(Square){mx, s->y0, s->x1, my});
     divide(t, &(Square){s->x0, my, mx, s->y1});
     divide(t, &(Square){mx, my, s->x1, s->y1});
+}
+
+/* ---- edges that squares missed ---- */
+
+/* Looks whether what was guessed is there; false if not: its light is found then. */
+static bool holds_there(Tile *t, int x, int y) {
+    const Middle guessed = t->middles[place(x, y)];
+    const Guess guess = {.corners = {&guessed, &guessed, &guessed, &guessed}, .weights = {1, 0, 0, 0}, .even = guessed.tint.texture != NULL};
+    const int kind = t->known[place(x, y)] - GUESSED;
+    const bool holds = t->sight->see(t->sight->context, x, y, &guess, &t->middles[place(x, y)]);
+    t->known[place(x, y)] = (uint8_t)(holds ? LOOKED + kind : FOUND);
+    t->kinds[kind].guessed -= !holds;
+    return holds;
+}
+
+/* Pixels at which a guess did not hold. */
+typedef struct Misses {
+    uint16_t places[FILM_TILE * FILM_TILE];
+    int count;
+} Misses;
+
+/* Beside a pixel that sees another surface guesses are looked at. */
+static void question(Tile *t, int known, int guessed, Misses *misses) {
+    if (t->known[guessed] < GUESSED || t->known[known] >= GUESSED || same_surface(&t->middles[known], &t->middles[guessed])) return;
+    if (!holds_there(t, guessed % FILM_TILE, guessed / FILM_TILE)) misses->places[misses->count++] = (uint16_t)guessed;
+}
+
+/* An edge that goes from one square into another is followed there, where all corners may lie beside it. */
+static void follow_edges(Tile *t, int columns, int rows) {
+    Misses misses = {.count = 0};
+    for (int y = 0; y < rows; y++)
+        for (int x = 0; x < columns; x++) {
+            const int here = place(x, y), right = x + 1 < columns ? here + 1 : here, below = y + 1 < rows ? here + FILM_TILE : here;
+            question(t, here, right, &misses), question(t, right, here, &misses);
+            question(t, here, below, &misses), question(t, below, here, &misses);
+        }
+    while (misses.count > 0) {
+        const int here = misses.places[--misses.count], x0 = here % FILM_TILE, y0 = here / FILM_TILE;
+        for (int y = int_max(y0 - 1, 0); y <= int_min(y0 + 1, rows - 1); y++)
+            for (int x = int_max(x0 - 1, 0); x <= int_min(x0 + 1, columns - 1); x++) question(t, here, place(x, y), &misses);
+    }
 }
 
 /* ---- the tile ---- */
@@ -317,8 +394,9 @@ static void settle(Tile *t, int columns, int rows) {
     }
     for (int y = 0; y < rows; y++)
         for (int x = 0; x < columns; x++) {
-            int kind = t->known[place(x, y)] - GUESSED;
+            int kind = t->known[place(x, y)] - LOOKED;
             if (kind < 0) continue;
+            kind %= KINDS;
             if (t->kinds[kind].guessed == 0)
                 find(t, x, y);
             else
@@ -336,5 +414,6 @@ void guess_tile(const GuessSight *sight, int columns, int rows, Middle *out) {
     for (int y = 0; y < rows - 1; y += WIDEST)
         for (int x = 0; x < columns - 1; x += WIDEST)
             divide(&t, &(Square){x, y, int_min(x + WIDEST, columns - 1), int_min(y + WIDEST, rows - 1)});
+    if (sight->view) follow_edges(&t, columns, rows);
     settle(&t, columns, rows);
 }

@@ -283,7 +283,7 @@ static void add_piece(VistaPieces *pieces, const Item *item, bool convex) {
     if (item->hidden >> RAY_SEES & 1) return;
     bool plane = !item->body && !item->cluster && item->object->kind == OBJECT_PLANE;
     if (!vec3_is_finite(box.min) || !vec3_is_finite(box.max)) pieces->endless |= !plane;
-    else pieces->items[pieces->count++] = (VistaPiece){.box = box, .width = thin_item(item), .object = convex ? hit_object_of(item) + 1 : 0};
+    else pieces->items[pieces->count++] = (VistaPiece){.box = box, .width = thin_item(item), .whole = thin_is_known(item), .object = convex ? hit_object_of(item) + 1 : 0};
 }
 
 static void find_pieces(const Cluster *all, Arena *arena, VistaPieces *out) {

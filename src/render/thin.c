@@ -33,6 +33,8 @@ double thin_item(const Item *item) {
     return item->cluster ? own : fmin(own, fmax(least_of(vec3_sub(box.max, box.min)), 0));
 }
 
+bool thin_is_known(const Item *item) { return !item->cluster && !item->body && solid_width(item->object) >= 0; }
+
 /* Those that a cluster holds come before it. */
 void thin_clusters(const ClusterSet *set) {
     for (size_t i = 0; i < set->clusters.count; i++) {

@@ -9,9 +9,14 @@ static void lines_of(const TileSight *sight, int x0, int y0, int x1, int y1, Ray
     }
 }
 
+/* So many pixels at this place. */
+static VistaWidth width_of(const TileSight *sight, double pixels, double x, double y) {
+    const Cone cone = view_cone(&sight->compiled->view, x, y, pixels);
+    return (VistaWidth){cone.spread, cone.width};
+}
+
 static bool has_narrower(const TileSight *sight, const Ray corners[4], double pixels, int columns, int rows) {
-    const Cone middle = view_cone(&sight->compiled->view, sight->x0 + columns / 2.0, sight->y0 + rows / 2.0, pixels);
-    return vista_has_thin(hierarchy_pieces(sight->compiled->hierarchy), corners, middle.spread, middle.width);
+    return vista_has_thin(hierarchy_pieces(sight->compiled->hierarchy), corners, width_of(sight, pixels, sight->x0 + columns / 2.0, sight->y0 + rows / 2.0));
 }
 
 /* Only in flat pictures lines between others are between them in space, too. */
@@ -21,7 +26,7 @@ TileSight tile_sight(const CompiledScene *compiled, int x0, int y0, int columns,
     if (!view_is_flat(&compiled->view)) return sight;
     lines_of(&sight, 0, 0, columns - 1, rows - 1, corners);
     sight.vista = vista_of(hierarchy_pieces(compiled->hierarchy), corners);
-    sight.fine = has_narrower(&sight, corners, 2, columns, rows);
+    sight.fine = has_narrower(&sight, corners, 3, columns, rows);
     return sight;
 }
 
@@ -29,7 +34,8 @@ VistaView tile_sight_view(const TileSight *sight, int x0, int y0, int x1, int y1
     Ray corners[4];
     if (sight->vista.count > VISTA_MOST) return VISTA_OPEN;
     lines_of(sight, x0, y0, x1, y1, corners);
-    const VistaView view = vista_view(&sight->vista, corners, object);
+    const VistaWidth wide = width_of(sight, x1 - x0 + y1 - y0, sight->x0 + (x0 + x1) / 2.0, sight->y0 + (y0 + y1) / 2.0);
+    const VistaView view = vista_view(&sight->vista, corners, object, wide);
     return view == VISTA_SOME && sight->fine ? VISTA_OPEN : view;
 }
 

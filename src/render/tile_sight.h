@@ -9,7 +9,7 @@ typedef struct TileSight {
     const CompiledScene *compiled;
     int x0, y0;
     Vista vista;
-    bool fine; /* something in it is narrower than two pixels */
+    bool fine; /* something in it is narrower than three pixels */
 } TileSight;
 
 /* Of the tile whose first pixel is (x0, y0). */

@@ -55,20 +55,6 @@ Vista vista_of(const VistaPieces *pieces, const Ray corners[4]) {
     return vista;
 }
 
-/* Of what is convex the points that the corners meet span a part, which is seen between them; planes that are behind its corners are
- * behind all of it. From within it is not what is met first. */
-VistaView vista_view(const Vista *vista, const Ray corners[4], uint32_t object) {
-    Shaft shaft;
-    int others = 0;
-    if (vista->count > VISTA_MOST || !shaft_of(corners, &shaft)) return VISTA_OPEN;
-    for (int i = 0; i < vista->count; i++) {
-        const VistaPiece *piece = vista->near[i];
-        bool hides = piece->object && piece->object == object && !holds(&piece->box, corners[0].origin);
-        if (!hides && may_touch(&shaft, &piece->box)) others++;
-    }
-    return others == 0 ? VISTA_EVEN : VISTA_SOME;
-}
-
 static double distance_to(const Box3 *box, Vec3 p) { return vec3_length(vec3_sub(vec3_max(box->min, vec3_min(box->max, p)), p)); }
 
 /* How wide the piece is at least where it is nearest to the eye. What is flat along an axis, as a floor is, shows more than its thickness to an eye
@@ -83,14 +69,31 @@ static double width_seen(const VistaPiece *piece, Vec3 eye) {
     return fmax(piece->width, off * side / vec3_length(to_far));
 }
 
-bool vista_has_thin(const VistaPieces *pieces, const Ray corners[4], double spread, double width) {
+/* Lines that are parallel see what is flat from another side than their origins do. */
+static bool is_thin(const VistaPiece *piece, Vec3 eye, VistaWidth wide) {
+    const double seen = wide.spread > 0 ? width_seen(piece, eye) : piece->width;
+    return seen < wide.width + wide.spread * distance_to(&piece->box, eye);
+}
+
+/* Of what is convex the points that the corners meet span a part, which is seen between them; planes that are behind its corners are
+ * behind all of it. From within it is not what is met first. */
+VistaView vista_view(const Vista *vista, const Ray corners[4], uint32_t object, VistaWidth wide) {
+    Shaft shaft;
+    const Vec3 eye = corners[0].origin;
+    VistaView view = VISTA_EVEN;
+    if (vista->count > VISTA_MOST || !shaft_of(corners, &shaft)) return VISTA_OPEN;
+    for (int i = 0; i < vista->count && view == VISTA_EVEN; i++) {
+        const VistaPiece *piece = vista->near[i];
+        const bool hides = piece->object && piece->object == object && !holds(&piece->box, eye);
+        if (!hides && may_touch(&shaft, &piece->box) && (!piece->whole || is_thin(piece, eye, wide))) view = VISTA_SOME;
+    }
+    return view;
+}
+
+bool vista_has_thin(const VistaPieces *pieces, const Ray corners[4], VistaWidth wide) {
     Shaft shaft;
     if (pieces->count > MOST_PIECES || !shaft_of(corners, &shaft)) return false;
-    for (size_t i = 0; i < pieces->count; i++) {
-        const VistaPiece *piece = &pieces->items[i];
-        /* Lines that are parallel see what is flat from another side than their origins do. */
-        double seen = spread > 0 ? width_seen(piece, corners[0].origin) : piece->width;
-        if (seen < width + spread * distance_to(&piece->box, corners[0].origin) && may_touch(&shaft, &piece->box)) return true;
-    }
+    for (size_t i = 0; i < pieces->count; i++)
+        if (is_thin(&pieces->items[i], corners[0].origin, wide) && may_touch(&shaft, &pieces->items[i].box)) return true;
     return false;
 }

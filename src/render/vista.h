@@ -10,6 +10,7 @@
 typedef struct VistaPiece {
     Box3 box;
     double width;    /* of its thinnest part, as far as it is known */
+    bool whole;      /* one solid, of which it is known */
     uint32_t object; /* from 1; of what is not convex, or not known to be: 0 */
 } VistaPiece;
 
@@ -33,14 +34,19 @@ Vista vista_of(const VistaPieces *pieces, const Ray corners[4]);
 typedef enum VistaView {
     VISTA_OPEN, /* anything may be seen */
     VISTA_SOME, /* a few things may be seen besides planes, and holes in them */
-    VISTA_EVEN, /* all see what the corners see */
+    VISTA_EVEN, /* all see what the corners see, unless the edge of something goes through that is too wide to lie between them */
 } VistaView;
 
-/* What may be seen between these lines, which are of the vista's part and all meet `object` first (0: nothing, or a plane). */
-VistaView vista_view(const Vista *vista, const Ray corners[4], uint32_t object);
+/* How wide something is to count as wide: `spread` times its distance from where the lines begin, and `width` more. */
+typedef struct VistaWidth {
+    double spread, width;
+} VistaWidth;
 
-/* Whether something may be seen between the lines that is narrower there than `spread` times its distance from where they begin and `width` more, and so may lie between pixels' middles. Of
- * too many pieces nothing is told. */
-bool vista_has_thin(const VistaPieces *pieces, const Ray corners[4], double spread, double width);
+/* What may be seen between these lines, which are of the vista's part and all meet `object` first (0: nothing, or a plane). */
+VistaView vista_view(const Vista *vista, const Ray corners[4], uint32_t object, VistaWidth wide);
+
+/* Whether something may be seen between the lines that is not so wide there, and so may lie between pixels' middles. Of too many pieces nothing
+ * is told. */
+bool vista_has_thin(const VistaPieces *pieces, const Ray corners[4], VistaWidth wide);
 
 #endif

@@ -5,6 +5,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdlib.h>
 
 #include <cmocka.h>
 
@@ -48,12 +49,25 @@ static double worst(const Watch *w, const Middle *out, int columns, int rows) {
     return most;
 }
 
-static Watch look(World *world, double error, int columns, int rows, Middle *out) {
+typedef VistaView ViewOf(void *context, int x0, int y0, int x1, int y1, uint32_t object);
+
+static Watch look_with(World *world, ViewOf *view, double error, int columns, int rows, Middle *out) {
     Watch w = {.world = world};
-    const GuessSight sight = {.see = see, .context = &w, .tolerance = error, .accepted = error * error / 4};
+    const GuessSight sight = {.see = see, .view = view, .context = &w, .tolerance = error, .accepted = error * error / 4};
     guess_tile(&sight, columns, rows, out);
     assert_int_equal(w.wrong, 0);
     return w;
+}
+
+static Watch look(World *world, double error, int columns, int rows, Middle *out) { return look_with(world, NULL, error, columns, rows, out); }
+
+static VistaView all_even(void *context, int x0, int y0, int x1, int y1, uint32_t object) {
+    return VISTA_EVEN;
+    (void)context, (void)x0, (void)y0, (void)x1, (void)y1, (void)object;
+}
+static VistaView all_some(void *context, int x0, int y0, int x1, int y1, uint32_t object) {
+    return VISTA_SOME;
+    (void)context, (void)x0, (void)y0, (void)x1, (void)y1, (void)object;
 }
 
 static Middle even(int x, int y) { return grey(0.2f + 0.01f * (float)x + 0.005f * (float)y, 1); }
@@ -175,6 +189,28 @@ static void test_nothing_is_guessed_over_what_else_is_met(void **state) {
     assert_true(guessed_rightly(thin) > 0);
 }
 
+/* Within (8, 16) to (16, 24) it is met at none of the corners. */
+static Middle bulge(int x, int y) {
+    const float off_x = (float)x - 4.5f, off_y = (float)y - 20;
+    return off_x * off_x + off_y * off_y < 25 ? grey(0.6f, 2) : grey(0.3f, 1);
+}
+/* Along a slanted stripe three pixels wide, and of what lies within a square of four. */
+static Middle stripe(int x, int y) { return abs(2 * x - y - 11) < 4 ? grey(0.6f, 2) : grey(0.3f, 1); }
+static Middle spot(int x, int y) { return x > 16 && x < 20 && y > 12 && y < 16 ? grey(0.6f, 2) : grey(0.3f, 1); }
+
+static void test_edges_are_followed_into_even_squares(void **state) {
+    (void)state;
+    Middle out[FILM_TILE * FILM_TILE];
+    Watch w = look_with(bulge, all_even, 0.01, FILM_TILE, FILM_TILE, out);
+    assert_true(worst(&w, out, FILM_TILE, FILM_TILE) < 1e-5);
+    assert_in_range(w.found, 1, FILM_TILE * FILM_TILE / 3);
+    w = look_with(stripe, all_some, 0.01, FILM_TILE, FILM_TILE, out);
+    assert_true(worst(&w, out, FILM_TILE, FILM_TILE) < 1e-5);
+    w = look_with(spot, all_some, 0.01, FILM_TILE, FILM_TILE, out);
+    assert_true(worst(&w, out, FILM_TILE, FILM_TILE) < 1e-5);
+    assert_in_range(w.found + w.guessed, 1, FILM_TILE * FILM_TILE * 2 / 3);
+}
+
 /* Specks lie between the corners; the guesses that are tried tell. */
 static void test_guesses_that_are_wrong_are_given_up(void **state) {
     (void)state;
@@ -211,6 +247,7 @@ int main(void) {
                                        cmocka_unit_test(test_curved_light_is_as_exact_as_asked),
                                        cmocka_unit_test(test_edges_of_light_are_found),
                                        cmocka_unit_test(test_nothing_is_guessed_over_what_else_is_met),
+                                       cmocka_unit_test(test_edges_are_followed_into_even_squares),
                                        cmocka_unit_test(test_guesses_that_are_wrong_are_given_up),
                                        cmocka_unit_test(test_nothing_is_guessed_unless_asked),
                                        cmocka_unit_test(test_tiles_of_any_size)};

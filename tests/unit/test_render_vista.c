@@ -26,7 +26,7 @@ static bool even_with(VistaPiece piece, const Ray corners[4], uint32_t object) {
     corners_at(-1, -1, 1, 1, wide);
     const VistaPieces pieces = {&piece, 1, false};
     Vista vista = vista_of(&pieces, wide);
-    return vista_view(&vista, corners, object) == VISTA_EVEN;
+    return vista_view(&vista, corners, object, (VistaWidth){0, 0}) == VISTA_EVEN;
 }
 
 static void test_what_is_beside_does_not_count(void **state) {
@@ -57,16 +57,32 @@ static void test_few_things_are_told(void **state) {
     corners_at(0, 0, 0.1, 0.1, corners);
     VistaPieces pieces = {two, 1, false};
     Vista vista = vista_of(&pieces, corners);
-    assert_int_equal(vista_view(&vista, corners, 7), VISTA_SOME);
+    assert_int_equal(vista_view(&vista, corners, 7, (VistaWidth){0, 0}), VISTA_SOME);
     pieces.count = 2;
     vista = vista_of(&pieces, corners);
-    assert_int_equal(vista_view(&vista, corners, 7), VISTA_SOME);
-    assert_int_equal(vista_view(&vista, corners, 8), VISTA_SOME); /* what is before it may be seen */
+    assert_int_equal(vista_view(&vista, corners, 7, (VistaWidth){0, 0}), VISTA_SOME);
+    assert_int_equal(vista_view(&vista, corners, 8, (VistaWidth){0, 0}), VISTA_SOME); /* what is before it may be seen */
     VistaPiece many[VISTA_MOST + 1];
     for (int i = 0; i <= VISTA_MOST; i++) many[i] = two[0];
     pieces = (VistaPieces){many, VISTA_MOST + 1, false};
     vista = vista_of(&pieces, corners);
-    assert_int_equal(vista_view(&vista, corners, 7), VISTA_OPEN);
+    assert_int_equal(vista_view(&vista, corners, 7, (VistaWidth){0, 0}), VISTA_OPEN);
+}
+
+/* What is wider than what is asked about cannot lie between the corners without being met by one. Of what may have holes nobody knows how wide it is. */
+static void test_what_is_wide_is_no_surprise(void **state) {
+    (void)state;
+    Ray corners[4];
+    corners_at(0, 0, 0.1, 0.1, corners); /* 0.8 wide, 8 off, where the box begins */
+    VistaPiece piece = {.box = box_at(1.5, 0.5, 10, 2), .width = 4, .whole = true, .object = 8};
+    const VistaPieces pieces = {&piece, 1, false};
+    const Vista vista = vista_of(&pieces, corners);
+    assert_int_equal(vista_view(&vista, corners, 7, (VistaWidth){0.3, 0}), VISTA_EVEN);
+    assert_int_equal(vista_view(&vista, corners, 7, (VistaWidth){0.6, 0}), VISTA_SOME);
+    assert_int_equal(vista_view(&vista, corners, 7, (VistaWidth){0, 3.9}), VISTA_EVEN);
+    assert_int_equal(vista_view(&vista, corners, 7, (VistaWidth){0, 4.1}), VISTA_SOME);
+    piece.whole = false;
+    assert_int_equal(vista_view(&vista, corners, 7, (VistaWidth){0.3, 0}), VISTA_SOME);
 }
 
 /* Whatever a line between the corners meets must not be called nothing. */
@@ -87,7 +103,7 @@ static void test_nothing_that_can_be_met_is_left_out(void **state) {
         const VistaPiece piece = {.box = box, .object = 0};
         const VistaPieces pieces = {(VistaPiece *)&piece, 1, false};
         Vista vista = vista_of(&pieces, corners);
-        bool even = vista_view(&vista, corners, 0) == VISTA_EVEN;
+        bool even = vista_view(&vista, corners, 0, (VistaWidth){0, 0}) == VISTA_EVEN;
         told += even;
         for (int k = 0; even && k < 16; k++) {
             double u = x + w * (k % 4) / 3.0, v = y + w * (k / 4) / 3.0,
@@ -107,18 +123,18 @@ static void test_what_cannot_be_told(void **state) {
     corners_at(0, 0, 0.1, 0.1, corners);
     VistaPieces pieces = {many, 0, true};
     Vista vista = vista_of(&pieces, corners);
-    assert_int_equal(vista_view(&vista, corners, 0), VISTA_OPEN); /* something has no end */
+    assert_int_equal(vista_view(&vista, corners, 0, (VistaWidth){0, 0}), VISTA_OPEN); /* something has no end */
     for (int i = 0; i <= VISTA_MOST; i++) many[i] = (VistaPiece){.box = box_at(0.5, 0.5, 10 + i, 0.1), .object = 0};
     pieces = (VistaPieces){many, VISTA_MOST + 1, false};
     vista = vista_of(&pieces, corners);
-    assert_int_equal(vista_view(&vista, corners, 0), VISTA_OPEN);
+    assert_int_equal(vista_view(&vista, corners, 0, (VistaWidth){0, 0}), VISTA_OPEN);
     pieces.count = 0;
     vista = vista_of(&pieces, corners);
-    assert_int_equal(vista_view(&vista, corners, 0), VISTA_EVEN);
+    assert_int_equal(vista_view(&vista, corners, 0, (VistaWidth){0, 0}), VISTA_EVEN);
     for (int k = 0; k < 4; k++) corners[k].direction = vec3(0, 0, 1); /* no width */
-    assert_int_equal(vista_view(&vista, corners, 0), VISTA_OPEN);
+    assert_int_equal(vista_view(&vista, corners, 0, (VistaWidth){0, 0}), VISTA_OPEN);
     corners[1].direction = vec3((double)NAN, 0, 1);
-    assert_int_equal(vista_view(&vista, corners, 0), VISTA_OPEN);
+    assert_int_equal(vista_view(&vista, corners, 0, (VistaWidth){0, 0}), VISTA_OPEN);
 }
 
 static void test_thin_things_are_told(void **state) {
@@ -128,12 +144,12 @@ static void test_thin_things_are_told(void **state) {
     const double spread = 0.01;
     VistaPiece piece = {.box = box_at(1, 1, 10, 2), .width = 0.05};
     VistaPieces pieces = {&piece, 1, false};
-    assert_true(vista_has_thin(&pieces, corners, spread, 0)); /* 8 off, where a pixel is 0.08 wide */
+    assert_true(vista_has_thin(&pieces, corners, (VistaWidth){spread, 0})); /* 8 off, where a pixel is 0.08 wide */
     piece.width = 0.2;
-    assert_false(vista_has_thin(&pieces, corners, spread, 0));
-    assert_true(vista_has_thin(&pieces, corners, spread, 0.2));
+    assert_false(vista_has_thin(&pieces, corners, (VistaWidth){spread, 0}));
+    assert_true(vista_has_thin(&pieces, corners, (VistaWidth){spread, 0.2}));
     piece = (VistaPiece){.box = box_at(-20, 1, 10, 2), .width = 0.05};
-    assert_false(vista_has_thin(&pieces, corners, spread, 0));
+    assert_false(vista_has_thin(&pieces, corners, (VistaWidth){spread, 0}));
 }
 
 /* A floor of 20 × 20, `below` the eye, that begins 10 away. */
@@ -142,7 +158,7 @@ static bool floor_is_thin(double below, double thickness, double width, double s
     corners_at(-1, -1, 1, 1, corners);
     VistaPiece piece = {.box = {vec3(-10, -below - thickness, 10), vec3(10, -below, 30)}, .width = width};
     VistaPieces pieces = {&piece, 1, false};
-    return vista_has_thin(&pieces, corners, spread, pixel);
+    return vista_has_thin(&pieces, corners, (VistaWidth){spread, pixel});
 }
 
 static void test_floors_are_as_wide_as_they_look(void **state) {
@@ -161,6 +177,7 @@ int main(void) {
                                        cmocka_unit_test(test_what_is_convex_hides_what_is_behind),
                                        cmocka_unit_test(test_nothing_that_can_be_met_is_left_out),
                                        cmocka_unit_test(test_what_cannot_be_told), cmocka_unit_test(test_few_things_are_told),
+                                       cmocka_unit_test(test_what_is_wide_is_no_surprise),
                                        cmocka_unit_test(test_thin_things_are_told),
                                        cmocka_unit_test(test_floors_are_as_wide_as_they_look)};
     return cmocka_run_group_tests(tests, NULL, NULL);

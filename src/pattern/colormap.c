@@ -139,6 +139,34 @@ static void add_restarting(MapPieces *pieces, const Pigment *pigment, PatternTra
     if (rest > first) add_values(pieces, pigment, traits, 0, rest - first, (rest - first) / length);
 }
 
+/* The phases of values without a wave that bends; false where they go beyond one period. */
+static bool straight_phases(const Pigment *pigment, Restart restart, double values[3]) {
+    const double begin = restart == RESTART_NEVER ? 0 : floor(values[0]);
+    if (begin < 0 || (restart != RESTART_NEVER && values[1] - begin > 1)) return false;
+    for (int i = 0; i < 3; i++) values[i] = (values[i] - begin) * pigment->frequency + pigment->phase;
+    const double least = fmin(values[0], values[1]), most = fmax(values[0], values[1]), whole = least < 0 || most > 1 ? floor(least) : 0;
+    for (int i = 0; i < 3; i++) values[i] -= whole;
+    return most - whole <= 1 && most > least;
+}
+
+bool colormap_is_straight(const Pigment *pigment, ColorMap map, double lo, double hi, double mean, MapPlace *place) {
+    const WaveKind wave = pigment_wave(pigment);
+    double v[3] = {lo, hi, mean};
+    if ((wave != WAVE_RAMP && wave != WAVE_TRIANGLE) || !straight_phases(pigment, pattern_traits(pigment->kind).restart, v)) return false;
+    if (wave == WAVE_TRIANGLE) {
+        if (fmin(v[0], v[1]) < 0.5 && fmax(v[0], v[1]) > 0.5) return false;
+        for (int i = 0; i < 3; i++) v[i] = v[i] < 0.5 ? 2 * v[i] : 2 * (1 - v[i]);
+    }
+    const double least = fmin(v[0], v[1]), most = fmax(v[0], v[1]);
+    size_t k = 0;
+    while (k < map.count && map.entries[k].position < most) k++;
+    if (k > 0 && map.entries[k - 1].position > least) return false;
+    *place = (MapPlace){k > 0 ? k - 1 : 0, k < map.count ? k : map.count - 1, 0};
+    if (place->above > place->below)
+        place->share = (v[2] - map.entries[k - 1].position) / (map.entries[k].position - map.entries[k - 1].position);
+    return map.count > 0;
+}
+
 MapPieces colormap_pieces(const Pigment *pigment, Spread spread) {
     MapPieces pieces = {.count = 0};
     PatternTraits traits = pattern_traits(pigment->kind);

@@ -13,6 +13,16 @@ typedef struct ColorMap {
 ColorMap colormap_of(const Pigment *pigment);
 ColorMap colormap_own(PatternKind kind);
 
+/* Between two entries: `share` of that above. */
+typedef struct MapPlace {
+    size_t below, above;
+    double share;
+} MapPlace;
+
+/* Whether wave and map are straight over the values from `lo` to `hi`, so that whatever is spread over these has the colour of its mean, which is
+ * `mean`: most footprints are smaller than what a map shows. */
+bool colormap_is_straight(const Pigment *pigment, ColorMap map, double lo, double hi, double mean, MapPlace *place);
+
 /* Pieces of the range of values, each filled uniformly; weights add up to 1. */
 enum { MAX_PIECES = 32 };
 typedef struct MapPieces {

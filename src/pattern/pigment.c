@@ -15,6 +15,16 @@ static void blend_pieces(ColorMap map, const MapPieces *pieces, double share, Bl
     }
 }
 
+/* Where the map is straight all over the values that are `width` about the mean; false where it is not. */
+static bool blend_straight(const Pigment *pattern, double value, double width, double mean, double share, BlendVisit *visit, void *target) {
+    MapPlace place;
+    const double half = pattern_traits(pattern->kind).bounded ? fmin(width / 2, fmax(fmin(value, 1 - value), 0)) : width / 2;
+    if (!colormap_is_straight(pattern, colormap_of(pattern), value - half, value + half, mean, &place)) return false;
+    if (place.share < 1) visit(target, place.below, share * (1 - place.share));
+    if (place.share > 0) visit(target, place.above, share * place.share);
+    return true;
+}
+
 static void blend_range(const Pigment *pattern, Spread spread, double share, BlendVisit *visit, void *target) {
     MapPieces pieces = colormap_pieces(pattern, spread);
     blend_pieces(colormap_of(pattern), &pieces, share, visit, target);
@@ -24,6 +34,8 @@ static void blend_range(const Pigment *pattern, Spread spread, double share, Ble
  * polynomial of degree 5 (1.3556, 2.8570), here over the √12 σ / 2 of one range. */
 static void blend_spread(const Pigment *pattern, Spread spread, double share, BlendVisit *visit, void *target) {
     static const struct { double width, share; } ranges[] = {{0.782671, 0.816228}, {1.649472, 0.183772}};
+    const double widest = spread.bell ? ranges[1].width * spread.width : spread.width;
+    if (blend_straight(pattern, spread.value, widest, spread.value, share, visit, target)) return;
     if (!spread.bell || !(spread.width > 0)) {
         blend_range(pattern, spread, share, visit, target);
         return;
@@ -77,13 +89,14 @@ static void blend_sampled(const Pigment *pattern, const Spot *spot, BlendVisit *
     static const double places[4][2] = {{-0.125, -0.375}, {0.375, -0.125}, {0.125, 0.375}, {-0.375, 0.125}};
     Vec3 u = spot->axes[0], v = spot->axes[1];
     if (spot->blur > 0) u = vec3(spot_size(spot), 0, 0), v = vec3(0, 0, spot_size(spot));
-    double values[4], lo = (double)INFINITY, hi = -(double)INFINITY;
+    double values[4], lo = (double)INFINITY, hi = -(double)INFINITY, sum = 0;
     for (int k = 0; k < 4; k++) {
         Spot place = *spot;
         place.p = vec3_madd(vec3_madd(spot->p, u, places[k][0]), v, places[k][1]);
         values[k] = pattern_value(pattern, &place).value;
-        lo = fmin(lo, values[k]), hi = fmax(hi, values[k]);
+        lo = fmin(lo, values[k]), hi = fmax(hi, values[k]), sum += values[k];
     }
+    if (blend_straight(pattern, (lo + hi) / 2, 1.5 * (hi - lo), sum / 4, 1, visit, target)) return;
     for (int k = 0; k < 4; k++) blend_spread(pattern, (Spread){values[k], (hi - lo) / 2, false}, 0.25, visit, target);
 }
 

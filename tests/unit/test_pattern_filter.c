@@ -1,5 +1,6 @@
 /* Footprints: filtered colours against means of many point samples over the same disc. */
 #include "base/random.h"
+#include "pattern/colormap.h"
 #include "pattern/pattern.h"
 
 #include <math.h>
@@ -154,6 +155,34 @@ static void maps_are_averaged_not_their_values(void **state) {
     assert_true(e.rms < 0.1);
 }
 
+/* Where a map is said to be straight over a range its pieces say the same. */
+static void straight_ranges_are_as_their_pieces(void **state) {
+    (void)state;
+    const ColorMapEntry entries[] = {{0.1, {0, 0, 0, 0, 0}, NULL}, {0.4, {1, 1, 1, 0, 0}, NULL}, {0.4, {0, 1, 1, 0, 0}, NULL}, {0.9, {1, 0, 1, 0, 0}, NULL}};
+    const PatternKind kinds[] = {PATTERN_BOZO, PATTERN_GRADIENT, PATTERN_ONION, PATTERN_MARBLE, PATTERN_SPIRAL1, PATTERN_RADIAL};
+    const double frequencies[] = {1, 3.5, -2, 0};
+    RandomStream random = {11};
+    int straight = 0;
+    for (int n = 0; n < 20000; n++) {
+        Pigment p = make_pigment(kinds[n % 6]);
+        p.entries = entries, p.entry_count = 4;
+        p.frequency = (float)frequencies[n / 6 % 4], p.phase = n % 5 ? 0 : 0.3f;
+        if (n % 7 == 0) p.wave = WAVE_SINE;
+        const double middle = n % 6 == 0 ? random_next_unit(&random) : 4 * random_next_unit(&random) - 1, half = 0.2 * random_next_unit(&random);
+        const bool bounded = n % 6 == 0 && (middle < half || middle > 1 - half);
+        const ColorMap map = colormap_of(&p);
+        MapPlace place;
+        if (bounded || !colormap_is_straight(&p, map, middle - half, middle + half, middle, &place)) continue;
+        straight++;
+        const MapPieces pieces = colormap_pieces(&p, (Spread){middle, 2 * half, false});
+        for (size_t k = 0; k < 4; k++) {
+            const double weight = (k == place.below ? 1 - place.share : 0) + (k == place.above ? place.share : 0);
+            assert_float_equal(colormap_weight(map, k, &pieces), weight, 1e-6);
+        }
+    }
+    assert_in_range(straight, 2000, 17000);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boxes_are_averaged_exactly),
@@ -162,6 +191,7 @@ int main(void) {
         cmocka_unit_test(widening_is_continuous),
         cmocka_unit_test(filtering_beats_a_point_sample),
         cmocka_unit_test(maps_are_averaged_not_their_values),
+        cmocka_unit_test(straight_ranges_are_as_their_pieces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

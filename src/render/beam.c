@@ -149,6 +149,90 @@ bool beam_draw_seen(Beam *beam, Vec3f a, Vec3f b, Vec3f c, uint32_t mark) {
     return any;
 }
 
+/* ---- meshes before few samples ---- */
+
+/* Rectangles around a mesh's triangles, and their greatest keys: a little more than rounding makes of them. The last few hold nothing. */
+typedef struct Outlines {
+    float left[BEAM_MESH], right[BEAM_MESH], top[BEAM_MESH], bottom[BEAM_MESH], key[BEAM_MESH];
+    float all_left, all_right, all_top, all_bottom;
+} Outlines;
+
+static void outline(const BeamMesh *mesh, Outlines *o) {
+    const float slack = 2e-5f, relative = 4e-6f;
+    o->all_left = o->all_top = INFINITY, o->all_right = o->all_bottom = -INFINITY;
+    for (int i = 0; i < mesh->count; i++) {
+        const uint8_t *corner = mesh->triangles[mesh->which[i]];
+        const int a = corner[0], b = corner[1], c = corner[2];
+        o->left[i] = float_min(mesh->x[a], float_min(mesh->x[b], mesh->x[c])) - slack;
+        o->right[i] = float_max(mesh->x[a], float_max(mesh->x[b], mesh->x[c])) + slack;
+        o->top[i] = float_min(mesh->y[a], float_min(mesh->y[b], mesh->y[c])) - slack;
+        o->bottom[i] = float_max(mesh->y[a], float_max(mesh->y[b], mesh->y[c])) + slack;
+        o->key[i] = float_max(mesh->key[a], float_max(mesh->key[b], mesh->key[c]));
+        o->key[i] += relative * (fabsf(mesh->key[a]) + fabsf(mesh->key[b]) + fabsf(mesh->key[c]));
+        o->all_left = float_min(o->all_left, o->left[i]), o->all_right = float_max(o->all_right, o->right[i]);
+        o->all_top = float_min(o->all_top, o->top[i]), o->all_bottom = float_max(o->all_bottom, o->bottom[i]);
+    }
+    for (int i = mesh->count; i % BEAM_LANES; i++) o->left[i] = INFINITY, o->right[i] = o->top[i] = o->bottom[i] = o->key[i] = -INFINITY;
+}
+
+/* The key at which the sample sees the triangle before what it has seen; false where it does not. */
+static bool passes(const Beam *beam, const BeamMesh *mesh, int triangle, uint32_t sample, float *key) {
+    const BeamSamples *s = &beam->samples;
+    const uint8_t *at = mesh->triangles[triangle];
+    Vec3f corners[3];
+    Triangle t;
+    for (int k = 0; k < 3; k++) corners[k] = vec3f(mesh->x[at[k]], mesh->y[at[k]], mesh->key[at[k]]);
+    if (!set_up(corners, &t)) return false;
+    const float dx = s->x[sample] - t.x, dy = s->y[sample] - t.y, e1 = t.a1 * dx + t.b1 * dy, e2 = t.a2 * dx + t.b2 * dy;
+    if (!(e1 >= 0 && e2 >= 0 && e1 + e2 <= 1)) return false;
+    const float k = t.key + (t.key_x * dx + t.key_y * dy), most = beam->perspective ? INFINITY : (float)beam->nearest;
+    if (!(k > *key && k <= most && (beam->light ? beam->exact_to : k * beam->exact_to) >= s->limit[sample])) return false;
+    *key = k;
+    return true;
+}
+
+/* The nearest of the mesh's triangles that the sample sees, or just one that hides it from a light; -1: none. */
+static int nearest_of(const Beam *beam, const BeamMesh *mesh, const Outlines *o, uint32_t sample) {
+    const BeamSamples *s = &beam->samples;
+    const float x = s->x[sample], y = s->y[sample];
+    int nearest = -1;
+    for (int i = 0; i < mesh->count; i += BEAM_LANES) {
+        Masks in = (floats_at(o->left + i) <= x) & (floats_at(o->right + i) >= x) & (floats_at(o->top + i) <= y) & (floats_at(o->bottom + i) >= y) &
+                   (floats_at(o->key + i) > s->key[sample]);
+        if (!any_of(in)) continue;
+        for (int k = 0; k < BEAM_LANES; k++) {
+            float key = s->key[sample];
+            if (!in[k] || !passes(beam, mesh, mesh->which[i + k], sample, &key)) continue;
+            nearest = mesh->which[i + k];
+            if (beam->light) return nearest;
+            s->key[sample] = key;
+        }
+    }
+    return nearest;
+}
+
+int beam_draw_mesh(Beam *beam, const BeamMesh *mesh, BeamSeen seen[BEAM_FEW_SAMPLES]) {
+    const BeamSamples *s = &beam->samples;
+    Outlines o;
+    outline(mesh, &o);
+    if (!(o.all_right >= 0 && o.all_left <= (float)s->columns && o.all_bottom >= 0 && o.all_top <= (float)s->rows)) return 0;
+    const int x0 = bin_below(o.all_left, s->columns - 1), x1 = bin_below(o.all_right, s->columns - 1);
+    const int y0 = bin_below(o.all_top, s->rows - 1), y1 = bin_below(o.all_bottom, s->rows - 1);
+    uint32_t samples = 0;
+    int count = 0;
+    for (int row = y0; row <= y1; row++) samples += s->first[row * s->columns + x1 + 1] - s->first[row * s->columns + x0];
+    if (samples > BEAM_FEW_SAMPLES) return -1;
+    for (int row = y0; row <= y1; row++)
+        for (uint32_t i = s->first[row * s->columns + x0], end = s->first[row * s->columns + x1 + 1]; i < end; i++) {
+            if ((beam->light && s->mark[i]) || s->x[i] < o.all_left || s->x[i] > o.all_right || s->y[i] < o.all_top || s->y[i] > o.all_bottom) continue;
+            const int triangle = nearest_of(beam, mesh, &o, i);
+            if (triangle < 0) continue;
+            if (beam->light) s->mark[i] = 1;
+            else seen[count++] = (BeamSeen){i, (uint8_t)triangle};
+        }
+    return count;
+}
+
 /* The part with q.z >= nearest. */
 static int clip_near(const Vec3f *in, int count, float nearest, Vec3f *out) {
     int kept = 0;

@@ -312,14 +312,39 @@ static Vec3f vertex_in_cell(const MappedVertices *v, int i) { return vec3f(v->a[
 static Vec3f vertex_in_beam(const MappedVertices *v, int i) { return vec3f(v->x[i], v->y[i], v->z[i]); }
 static Vec3f vertex_seen(const MappedVertices *v, int i) { return vec3f(v->seen_x[i], v->seen_y[i], v->key[i]); }
 
-/* A triangle that needs neither be cut nor bent. */
-static void draw_plain(Drawing *d, const MappedVertices *v, const uint8_t *corner, int triangle) {
-    BeamDraft *draft = d->draft;
-    draft->triangles++;
-    if (!beam_draw_seen(draft->beam, vertex_seen(v, corner[0]), vertex_seen(v, corner[1]), vertex_seen(v, corner[2]), draft->facet_count + 1)) return;
-    if (!draft->facets) return;
+static void keep_plain(Drawing *d, const MappedVertices *v, int triangle) {
+    const uint8_t *corner = d->cluster->triangles[triangle];
     const Vec3f p[3] = {vertex_in_cell(v, corner[0]), vertex_in_cell(v, corner[1]), vertex_in_cell(v, corner[2])};
     keep_facet(d, p, triangle);
+}
+
+/* Keeps the triangles that some samples see. */
+static void keep_seen(Drawing *d, const MappedVertices *v, const BeamMesh *mesh, const BeamSeen *seen, int count) {
+    uint32_t *mark = d->draft->beam->samples.mark;
+    uint32_t left = 0;
+    for (int i = 0; i < count; i++) left |= 1u << seen[i].triangle;
+    for (int k = 0; k < mesh->count && left; k++) {
+        if (!(left >> mesh->which[k] & 1)) continue;
+        for (int i = 0; i < count; i++)
+            if (seen[i].triangle == mesh->which[k]) mark[seen[i].sample] = d->draft->facet_count + 1;
+        keep_plain(d, v, mesh->which[k]);
+        left &= ~(1u << mesh->which[k]);
+    }
+}
+
+/* Triangles that need neither be cut nor bent. */
+static void draw_plain(Drawing *d, const MappedVertices *v, const BeamMesh *mesh) {
+    BeamDraft *draft = d->draft;
+    BeamSeen seen[BEAM_FEW_SAMPLES];
+    draft->triangles += (uint64_t)mesh->count;
+    const int count = beam_draw_mesh(draft->beam, mesh, seen);
+    if (count > 0) keep_seen(d, v, mesh, seen, count);
+    if (count >= 0) return;
+    for (int i = 0; i < mesh->count; i++) {
+        const uint8_t *corner = mesh->triangles[mesh->which[i]];
+        if (beam_draw_seen(draft->beam, vertex_seen(v, corner[0]), vertex_seen(v, corner[1]), vertex_seen(v, corner[2]), draft->facet_count + 1) && draft->facets)
+            keep_plain(d, v, mesh->which[i]);
+    }
 }
 
 /* `box` holds the part of the cluster that is in the cell. */
@@ -327,6 +352,7 @@ static void draw_cluster(Drawing *d, const TexelCluster *cluster, const CellBox 
     MappedVertices v;
     const CellFrame *f = d->at.frame;
     const bool plain = bend_of(f, box->a1 - box->a0, box->b1 - box->b0, box->w1 - box->w0) <= d->at.tolerance;
+    BeamMesh whole = {.x = v.seen_x, .y = v.seen_y, .key = v.key, .triangles = cluster->triangles};
     d->cluster = cluster;
     map_vertices(d, cluster, &v);
     for (int i = 0; i < cluster->triangle_count; i++) {
@@ -340,13 +366,14 @@ static void draw_cluster(Drawing *d, const TexelCluster *cluster, const CellBox 
         }
         if (all & (OUT_OF_CELL - 1)) continue;
         if (plain && inside && !(any & BEAM_TOO_NEAR)) {
-            draw_plain(d, &v, corner, i);
+            whole.which[whole.count++] = (uint8_t)i;
             continue;
         }
         Piece piece = {.triangle = i, .inside = inside};
         for (int k = 0; k < 3; k++) piece.p[k] = vertex_in_cell(&v, corner[k]), piece.q[k] = vertex_in_beam(&v, corner[k]), piece.x[k] = x[k];
         draw_bent(d, &piece, 0);
     }
+    if (whole.count) draw_plain(d, &v, &whole);
 }
 
 /* ---- copies ---- */
@@ -551,13 +578,15 @@ static int nearer_first(const void *a, const void *b) {
     return x->cell < y->cell ? -1 : 1;
 }
 
-/* The farthest that any sample sees yet: what lies beyond is hidden. Samples without a limit see everything. */
-static void draw_in_limit(Beam *beam) {
+/* The farthest that any sample sees yet: what lies beyond is hidden. Samples without a limit see everything. `farthest` is the one that did when this was asked
+ * before: as long as it still does nothing has changed. */
+static void draw_in_limit(Beam *beam, uint32_t *farthest) {
     const BeamSamples *s = &beam->samples;
-    uint32_t count = s->first[s->columns * s->rows];
-    float least = INFINITY;
-    for (uint32_t i = 0; i < count; i++) least = float_min(least, s->key[i]);
-    if (least > 0 && 1 / (double)least < beam->farthest) beam->farthest = 1 / (double)least;
+    const uint32_t count = s->first[s->columns * s->rows];
+    if (count == 0 || !(s->key[*farthest] > 0 && 1 / (double)s->key[*farthest] < beam->farthest)) return;
+    for (uint32_t i = 0; i < count; i++)
+        if (s->key[i] < s->key[*farthest]) *farthest = i;
+    if (s->key[*farthest] > 0) beam->farthest = fmin(beam->farthest, 1 / (double)s->key[*farthest]);
 }
 
 uint32_t beam_gather(BeamDraft *draft, const CompiledScene *compiled) {
@@ -570,6 +599,7 @@ void beam_draw_cells(BeamDraft *draft, const CompiledScene *compiled, uint32_t c
     enum { CELLS_BETWEEN_LIMITS = 4 };
     Beam *beam = draft->beam;
     bool sorted = ordered(beam);
+    uint32_t farthest = 0;
     if (sorted) qsort(draft->cells, count, sizeof *draft->cells, nearer_first);
     for (uint32_t i = 0; i < count && !beam_is_interrupted(draft); i++) {
         const BeamCell *at = &draft->cells[i];
@@ -579,6 +609,6 @@ void beam_draw_cells(BeamDraft *draft, const CompiledScene *compiled, uint32_t c
         const SkinCell *cell = &skin->cells[at->cell];
         Drawing d = {.draft = draft, .skin = skin, .cell = cell, .size = 1};
         if (cell->side != CELL_FLAT) draw_part(&d, cell, 0); /* a layer without height holds nothing */
-        if (sorted && i % CELLS_BETWEEN_LIMITS == 0) draw_in_limit(beam);
+        if (sorted && i % CELLS_BETWEEN_LIMITS == 0) draw_in_limit(beam, &farthest);
     }
 }

@@ -128,6 +128,46 @@ static void eye_in_parallel(void **state) { (void)state, check_kind(false, false
 static void light_in_perspective(void **state) { (void)state, check_kind(true, true, 3); }
 static void light_in_parallel(void **state) { (void)state, check_kind(false, true, 4); }
 
+/* A mesh is seen as its triangles are one by one, to the bit; before too many samples nothing is done. */
+static void meshes_are_their_triangles(void **state) {
+    (void)state;
+    enum { ROUNDS = 600, CORNERS = 24 };
+    static Field f, other;
+    int drawn = 0, refused = 0, met = 0;
+    RandomStream r = {12};
+    for (int round = 0; round < ROUNDS; round++) {
+        const bool perspective = round & 1, light = round & 2;
+        float x[CORNERS], y[CORNERS], key[CORNERS];
+        uint8_t triangles[BEAM_MESH][3];
+        BeamMesh mesh = {.x = x, .y = y, .key = key, .triangles = (const uint8_t(*)[3])triangles};
+        lay(&f, &r, perspective, light);
+        const double size = pow(10, between(&r, -1, 0.6)), left = between(&r, -size, COLUMNS), top = between(&r, -size, ROWS);
+        for (int i = 0; i < CORNERS; i++)
+            x[i] = (float)(left + between(&r, 0, size)), y[i] = (float)(top + between(&r, 0, size)), key[i] = (float)between(&r, 0.1, 2);
+        for (int i = 0; i < BEAM_MESH; i++) {
+            for (int k = 0; k < 3; k++) triangles[i][k] = (uint8_t)between(&r, 0, CORNERS);
+            if (random_next_unit(&r) < 0.7) mesh.which[mesh.count++] = (uint8_t)i;
+        }
+        other = f;
+        other.beam.samples = (BeamSamples){COLUMNS, ROWS, other.first, other.x, other.y, other.key, other.limit, other.mark};
+        BeamSeen seen[BEAM_FEW_SAMPLES];
+        const int count = beam_draw_mesh(&f.beam, &mesh, seen);
+        for (int i = 0; i < count; i++) f.mark[seen[i].sample] = seen[i].triangle + 1u;
+        drawn += count >= 0, refused += count < 0;
+        for (int i = 0; count >= 0 && i < mesh.count; i++) {
+            const uint8_t *v = triangles[mesh.which[i]];
+            beam_draw_seen(&other.beam, vec3f(x[v[0]], y[v[0]], key[v[0]]), vec3f(x[v[1]], y[v[1]], key[v[1]]), vec3f(x[v[2]], y[v[2]], key[v[2]]), mesh.which[i] + 1u);
+        }
+        for (int i = 0; i < SAMPLES; i++) {
+            assert_true(f.key[i] == other.key[i]);
+            assert_int_equal(light ? f.mark[i] != 0 : f.mark[i], light ? other.mark[i] != 0 : other.mark[i]);
+            met += f.mark[i] != 0;
+        }
+    }
+    print_message("%d meshes drawn, %d before too many samples, %d samples met\n", drawn, refused, met);
+    assert_true(drawn > ROUNDS / 4 && refused > ROUNDS / 50 && met > ROUNDS);
+}
+
 /* Nothing that is no triangle is seen, or harms. */
 static void nonsense_is_not_seen(void **state) {
     (void)state;
@@ -147,6 +187,7 @@ static void nonsense_is_not_seen(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(eye_in_perspective), cmocka_unit_test(eye_in_parallel), cmocka_unit_test(light_in_perspective),
-                                       cmocka_unit_test(light_in_parallel), cmocka_unit_test(nonsense_is_not_seen)};
+                                       cmocka_unit_test(light_in_parallel), cmocka_unit_test(meshes_are_their_triangles),
+                                       cmocka_unit_test(nonsense_is_not_seen)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -83,15 +83,15 @@ static VoxelLayer *build(const TestMesh *mesh, int resolution, Pool *pool, Texel
 }
 
 static void measure_areas(void) {
-    printf("\nprojected area in 64 directions: rms error relative to the mean, by level from 128³ (solids: "
-           "as long as walls stand alone)\n");
+    printf("\nprojected area in 64 directions, relative to its mean: greatest error, and rms, by level from 128³\n");
     for (size_t i = 0; i < VTS_ARRAY_COUNT(contents) - 3; i++) {
         TestMesh mesh = contents[i].make();
         VoxelLayer *layer = build(&mesh, 128, NULL, NULL, NULL);
-        bool solid = mesh.solid[0];
         printf("%-10s", contents[i].name);
-        for (int level = 0; level < (solid && contents[i].walls == 1 ? 4 : 8); level++)
-            printf(" %5.1f %%", 100 * measure_area_error(layer, level, &mesh, contents[i].walls).rms);
+        for (int level = 0; level < 8; level++) {
+            AreaError e = measure_area_error(layer, level, &mesh, contents[i].walls);
+            printf("  %4.1f, %4.1f %%", 100 * e.worst_shape, 100 * e.shape);
+        }
         printf("\n");
         voxel_layer_destroy(layer);
         scene_free(&mesh);

@@ -183,12 +183,13 @@ static inline Vec3f texel_copy_rate(const TexelCopy *copy, Vec3 rate) {
     return vec3f((float)(copy->xu * rate.x + copy->xv * rate.y) * e.x, (float)(rate.z * copy->inverse_scale) * e.y,
                  (float)(copy->zu * rate.x + copy->zv * rate.y) * e.z);
 }
+/* A direction of the scene in the copy's texel space, of another length: zero where the mapping is singular. */
+static inline Vec3f skin_way_in_texel(const TexelCopy *copy, const TexturePlace *place, Vec3 d) {
+    return texel_copy_rate(copy, vec3(vec3_dot(place->grad_u, d), vec3_dot(place->grad_v, d), vec3_dot(place->grad_w, d)));
+}
 /* skin_sky.c. The share of the hemisphere over the layer that `at`, in the space of a texel that has a sky, sees past its texel's own matter, if
  * the eye, which is in the unit direction `to_eye` of the scene, sees it. */
 float skin_sky_seen(const TexelCopy *copy, const TexturePlace *place, Vec3f at, Vec3 to_eye);
-/* What the eye sees has a gap towards it, and gaps have a width: so much of what voxels, who know the mean place alone, would hide in a
- * direction under this cosine to the eye's is open. */
-float skin_open_to_eye(double cosine);
 /* A normal of texel space at the place, in the scene: by the transposed map world → texel. Its length is that of texel space against the scene along it;
  * zero where the mapping is singular. */
 Vec3 texel_normal_in_scene(const TexelCopy *copy, const TexturePlace *place, Vec3 normal);

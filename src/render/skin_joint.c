@@ -10,8 +10,7 @@ static const double GROUND_HEIGHT = 0.1;
 
 /* A direction of the scene, in a copy of the texel. */
 static Vec3f in_texel(const SkinJoint *at, int copy, Vec3 d) {
-    const TexturePlace *place = &at->place;
-    return texel_copy_rate(&at->of->copies[copy], vec3(vec3_dot(place->grad_u, d), vec3_dot(place->grad_v, d), vec3_dot(place->grad_w, d)));
+    return skin_way_in_texel(&at->of->copies[copy], &at->place, d);
 }
 
 static bool turned_alike(const TexelCopy *a, const TexelCopy *b) { return a->xu == b->xu && a->xv == b->xv && a->zu == b->zu && a->zv == b->zv; }

@@ -1,6 +1,7 @@
 /* Ambient light as the light of an even sky: what of the hemisphere over a surface is open. */
 #include "base/random.h"
 #include "render/surface.h"
+#include "texel/texel_sky.h"
 
 /* So many directions at first, and where they do not all see the same, many; both for a whole pixel. */
 enum { FEWEST = 8, MOST_OF_FEW = 64, MOST_OF_MANY = 256, FEWEST_CONES = 4, MOST_CONES = 16 };
@@ -73,7 +74,7 @@ static float through_skins(SurfaceTracer *tracer, const SkyPlace *place, const S
         float weight = open.x + open.y + open.z;
         if (!(weight > 0)) continue;
         float passed = tracer->passing(tracer->skins, &cone, VTS_INFINITY, to_eye);
-        sum += weight * (passed + (1 - passed) * skin_open_to_eye(vec3_dot(cone.direction, to_eye)));
+        sum += weight * (passed + (1 - passed) * sky_open_to_eye((float)vec3_dot(cone.direction, to_eye)));
         asked += weight;
     }
     return asked > 0 ? sum / asked : 1;

@@ -1,5 +1,6 @@
 #include "texel/texel_sky.h"
 
+#include "texel/sky_powers.h"
 #include "texel/voxel_layer.h"
 #include "texel/voxel_trim.h"
 
@@ -23,6 +24,7 @@ struct TexelSky {
     float per_side[3];
     bool repeated[3];
     int16_t (*views)[VIEW_NUMBERS];
+    float power[PAIR_NODES]; /* of the share that is seen, by direction to the eye */
     MemoryBudget *memory;
     size_t bytes;
 };
@@ -318,7 +320,8 @@ TexelSky *texel_sky_build(const VoxelLayer *const *layers, size_t count, const T
     b.finest = cbrtf(finest->sides[0] * finest->sides[1] * finest->sides[2]);
     b.longest_finest = 1 / finest->density_unit;
     spread_directions(b.direction);
-    if (find_views(&b)) return b.sky;
+    for (int i = 0; i < PAIR_NODES; i++) b.sky->power[i] = 1;
+    if (find_views(&b) && sky_powers_find(b.sky, layers, count, options, b.sky->power)) return b.sky;
     texel_sky_destroy(b.sky);
     return NULL;
 }
@@ -362,4 +365,35 @@ SkyView texel_sky_at(const TexelSky *sky, Vec3f p) {
     }
     return (SkyView){
         .mean = n[0], .first = {n[1], n[2], n[3]}, .second = {n[4], n[5], n[6], n[7], n[8], n[9]}};
+}
+
+/* ---- what the eye sees ---- */
+
+/* Two rings, at the middles of equal heights. */
+static const Vec3f WAYS[SKY_WAYS] = {{0.9682458f, 0.25f, 0}, {0, 0.25f, 0.9682458f}, {-0.9682458f, 0.25f, 0}, {0, 0.25f, -0.9682458f},
+                                     {0.4677072f, 0.75f, 0.4677072f}, {-0.4677072f, 0.75f, 0.4677072f}, {-0.4677072f, 0.75f, -0.4677072f}, {0.4677072f, 0.75f, -0.4677072f}};
+
+Vec3f texel_sky_way(int i) { return WAYS[i]; }
+
+float sky_open_to_eye(float cosine) {
+    float near = 2 * cosine - 1;
+    return near > 0 ? near * near : 0;
+}
+
+static float power_to_eye(const TexelSky *sky, Vec3f to_eye) {
+    int node[PAIR_NODES_AROUND];
+    float weight[PAIR_NODES_AROUND], power = 0;
+    if (!pair_nodes_around(to_eye, node, weight)) return 1;
+    for (int i = 0; i < PAIR_NODES_AROUND; i++) power += weight[i] * sky->power[node[i]];
+    return power;
+}
+
+float texel_sky_seen(const TexelSky *sky, Vec3f at, const Vec3f ways[SKY_WAYS], const float gaps[SKY_WAYS], Vec3f to_eye) {
+    SkyView view = texel_sky_at(sky, at);
+    float sum = 0;
+    for (int i = 0; i < SKY_WAYS; i++) {
+        float open = sky_view_toward(&view, ways[i]);
+        sum += open + (1 - open) * gaps[i];
+    }
+    return powf(sum / SKY_WAYS, power_to_eye(sky, to_eye));
 }

@@ -54,4 +54,17 @@ static inline float sky_view_cosine(const SkyView *v, Vec3f d) {
                        0, 1);
 }
 
+/* ---- what the eye sees ---- */
+
+/* Unit directions over the hemisphere about y, each for the same solid angle. */
+enum { SKY_WAYS = 8 };
+Vec3f texel_sky_way(int i);
+/* What the eye sees has a gap towards it, and gaps have a width: so much of what voxels, who know the mean place alone, would hide in a
+ * direction under this cosine to the eye's is open. */
+float sky_open_to_eye(float cosine);
+/* The share of the hemisphere that is seen from `at`, a place in the extent that the eye sees: ways[] are the directions of texel_sky_way() in texel space,
+ * unit or zero, gaps[] what sky_open_to_eye() says of each, to_eye the eye's direction in texel space, of any length. Where triangles tell which share of what is
+ * seen is lit (voxel_pairs.h), the mean over all that is seen from there is theirs. */
+float texel_sky_seen(const TexelSky *sky, Vec3f at, const Vec3f ways[SKY_WAYS], const float gaps[SKY_WAYS], Vec3f to_eye);
+
 #endif

@@ -290,6 +290,18 @@ static bool find_place(Vec3f d, NetPlace *out) {
     return true;
 }
 
+bool pair_nodes_around(Vec3f d, int node[PAIR_NODES_AROUND], float weight[PAIR_NODES_AROUND]) {
+    NetPlace place;
+    if (!find_place(d, &place)) return false;
+    int first = (int)place.turns;
+    float a = place.turns - (float)first;
+    for (int i = 0; i < PAIR_NODES_AROUND; i++) {
+        node[i] = node_of(place.ring + (i >> 1), first + (i & 1));
+        weight[i] = (i & 1 ? a : 1 - a) * (i >> 1 ? place.part : 1 - place.part);
+    }
+    return true;
+}
+
 /* Light depends on how far eye and light are apart around the zenith much more than on where they both are: interpolation is between nodes of the
  * lower direction, and between the differences that nodes have. (Between nodes of each, eye and light that are one would count as 45 degrees apart.) */
 bool pair_place(Vec3f to_eye, Vec3f to_light, PairPlace *out) {

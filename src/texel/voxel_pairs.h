@@ -63,6 +63,9 @@ typedef struct PairPlace {
     float weight[PAIR_CORNERS];
 } PairPlace;
 bool pair_place(Vec3f to_eye, Vec3f to_light, PairPlace *out);
+/* The nodes around one direction of any length, and their weights, which sum to 1. False below the horizon. */
+enum { PAIR_NODES_AROUND = 4 };
+bool pair_nodes_around(Vec3f d, int node[PAIR_NODES_AROUND], float weight[PAIR_NODES_AROUND]);
 
 /* Directions of texel space, of any length, to the eye and to the light, and widths like pairs.glow: how much of what is seen is lit for no other reason than
  * that: 1 where both are one, 0 where they have nothing in common or nothing is known, and where they are so far apart that the tables of pairs know it. */

@@ -156,15 +156,22 @@ static void test_same_for_any_threads_and_all_memory_returned(void **state) {
                                .pool = pool,
                                .memory = &memory};
     TexelSky *other = texel_sky_build(layers, 1, &options), *two = texel_sky_build(layers, 2, &options);
-    double darker = 0;
+    double darker = 0, brighter = 0;
+    Vec3f ways[SKY_WAYS];
+    float none_open[SKY_WAYS] = {0};
+    for (int i = 0; i < SKY_WAYS; i++) ways[i] = texel_sky_way(i);
     for (int i = 0; i < 50; i++) {
         Vec3f p = vec3f((float)(i % 5) / 5, .1f + (float)(i % 3) / 4, (float)(i % 7) / 7),
               up = vec3f(0, 1, 0);
         SkyView a = texel_sky_at(one, p), b = texel_sky_at(other, p), c = texel_sky_at(two, p);
         assert_memory_equal(&a, &b, sizeof a);
+        float flat = texel_sky_seen(one, p, ways, none_open, vec3f(1, .1f, .3f)), steep = texel_sky_seen(one, p, ways, none_open, vec3f(.1f, 1, .3f));
+        assert_true(flat == texel_sky_seen(other, p, ways, none_open, vec3f(1, .1f, .3f)) && flat >= 0 && flat <= 1);
+        brighter += (double)(flat - steep) / 50;
         darker += (double)(sky_view_hemisphere(&a, up) - sky_view_hemisphere(&c, up)) / 50;
     }
-    assert_true(darker > .03); /* two layers in one place hide more */
+    assert_true(darker > .03);   /* two layers in one place hide more */
+    assert_true(brighter > .03); /* of what stands on the same place the eye sees what the sky sees, the more the flatter it looks */
     assert_int_equal(atomic_load(&memory.used), texel_sky_bytes(other) + texel_sky_bytes(two));
     texel_sky_destroy(other);
     texel_sky_destroy(two);
@@ -174,6 +181,7 @@ static void test_same_for_any_threads_and_all_memory_returned(void **state) {
     assert_null(texel_sky_build(layers, 1, &options));
     SkyView absurd = texel_sky_at(one, vec3f(NAN, 1e30f, -INFINITY));
     assert_true(isfinite(absurd.mean));
+    assert_true(isfinite(texel_sky_seen(one, vec3f(.5f, .5f, .5f), ways, none_open, vec3f(NAN, 1e30f, 0))));
     texel_sky_destroy(one);
     voxel_layer_destroy(layer);
     pool_destroy(pool);

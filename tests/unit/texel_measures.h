@@ -32,13 +32,14 @@ static inline double measure_area(const VoxelLayer *layer, int index, double see
 }
 
 typedef struct AreaError {
-    double total, rms, worst; /* relative to the mean over directions */
+    double total, rms, worst;  /* relative to the mean over directions */
+    double shape, worst_shape; /* of what is seen, relative to its own mean: rms, and at most */
 } AreaError;
 
 /* walls: how often each wall of a solid is expected to count: 1 where they stand alone, ½ where solids are thin. */
 static inline AreaError measure_area_error(const VoxelLayer *layer, int level, const TestMesh *mesh,
                                            double walls) {
-    double seen[MEASURE_DIRECTIONS], truth[MEASURE_DIRECTIONS], mean = 0;
+    double seen[MEASURE_DIRECTIONS], truth[MEASURE_DIRECTIONS], mean = 0, own = 0;
     AreaError e = {.total = measure_area(layer, level, seen)};
     for (int d = 0; d < MEASURE_DIRECTIONS; d++) {
         truth[d] = scene_projected_area(mesh, scene_spread_direction(d, MEASURE_DIRECTIONS)) * 2 * walls;
@@ -48,8 +49,15 @@ static inline AreaError measure_area_error(const VoxelLayer *layer, int level, c
         double error = (seen[d] - truth[d]) / mean;
         e.rms += error * error / MEASURE_DIRECTIONS;
         e.worst = fmax(e.worst, fabs(error));
+        own += seen[d] / MEASURE_DIRECTIONS;
+    }
+    for (int d = 0; d < MEASURE_DIRECTIONS; d++) {
+        double error = seen[d] / own - truth[d] / mean;
+        e.shape += error * error / MEASURE_DIRECTIONS;
+        e.worst_shape = fmax(e.worst_shape, fabs(error));
     }
     e.rms = sqrt(e.rms);
+    e.shape = sqrt(e.shape);
     e.total = e.total / mean - 1;
     return e;
 }

@@ -3,7 +3,7 @@
 #include "render/volume_set.h"
 
 /* Paths end by lot where little is left of them, and for good after so many turns. */
-enum { MOST_TURNS = 20000 };
+enum { MOST_TURNS = 200000 };
 static const double ROULETTE_BELOW = 0.1;
 
 static double most_of(const double w[3]) { return double_max(w[0], double_max(w[1], w[2])); }

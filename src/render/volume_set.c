@@ -46,7 +46,7 @@ int volume_spans(const CompiledVolume *v, const Ray *ray, double t0, double t1, 
     return 1;
 }
 
-double volume_length(const CompiledVolume *v, const Ray *ray, double t0, double t1) {
+static double length_in(const CompiledVolume *v, const Lattice *lattice, const Ray *ray, double t0, double t1) {
     VolumeSpan spans[VOLUME_MOST_SPANS];
     int count = volume_spans(v, ray, t0, t1, spans);
     Ray cells = volume_ray_in_cells(v, ray);
@@ -54,11 +54,15 @@ double volume_length(const CompiledVolume *v, const Ray *ray, double t0, double 
     for (int i = 0; i < count; i++) {
         LatticeWalk walk;
         LatticePiece piece;
-        lattice_walk_begin(&walk, &v->lattice, &cells, spans[i].t0, spans[i].t1);
+        lattice_walk_begin(&walk, lattice, &cells, spans[i].t0, spans[i].t1);
         while (lattice_walk_next(&walk, &piece)) sum += piece.length;
     }
     return sum;
 }
+
+double volume_length(const CompiledVolume *v, const Ray *ray, double t0, double t1) { return length_in(v, &v->lattice, ray, t0, t1); }
+
+double volume_whole_length(const CompiledVolume *v, const Ray *ray, double t0, double t1) { return length_in(v, v->dense ? v->dense : &v->lattice, ray, t0, t1); }
 
 bool volume_reach(const CompiledVolume *v, const Ray *ray, double t0, double t1, double length, double *t) {
     VolumeSpan spans[VOLUME_MOST_SPANS];
@@ -85,7 +89,7 @@ static Vec3f share_passing(const VolumeSet *set, const Ray *ray, double t0, doub
     for (size_t i = 0; i < set->count; i++) {
         const CompiledVolume *v = &set->items[i];
         if (!volume_counts(v, purpose)) continue;
-        double length = volume_length(v, ray, t0, t1);
+        double length = thinned ? volume_length(v, ray, t0, t1) : volume_whole_length(v, ray, t0, t1);
         for (int c = 0; c < 3; c++) depth[c] += length * (thinned ? v->thinned : v->extinction)[c];
     }
     return vec3f((float)exp(-depth[0]), (float)exp(-depth[1]), (float)exp(-depth[2]));
@@ -288,6 +292,7 @@ static bool needs_paths(const VolumeSet *set) {
 /* What is left of a volume without the peak. Where orders are counted, none is passed over. */
 static CompiledVolume without_peak(const CompiledVolume *v, bool counted) {
     CompiledVolume out = *v;
+    out.dense = NULL;
     double peak = counted ? 0 : phase_without_peak(&v->phase, &out.phase);
     for (int c = 0; c < 3; c++) {
         out.scattering[c] -= peak * v->scattering[c];
@@ -334,6 +339,7 @@ bool volumes_compile(CompiledScene *compiled, DiagList *diags) {
     set->fineness = fineness_of(compiled->max_error);
     set->rays_are_paths = set->method == VOLUME_PATH;
     if (set->method == VOLUME_TWO_PASS && needs_paths(set)) set->method = VOLUME_PATH;
+    if (set->method == VOLUME_TWO_PASS) volumes_cap(set, compiled->arena);
     if (set->method == VOLUME_PUBLISHED) volumes_publish(set);
     else
         for (size_t i = 0; i < set->count; i++) see_peak(&set->items[i], set->orders != 0, compiled->arena);

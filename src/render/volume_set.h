@@ -13,7 +13,8 @@ typedef struct VolumeLight VolumeLight;
 
 typedef struct CompiledVolume {
     const Volume *volume;
-    Lattice lattice;
+    Lattice lattice;          /* by two passes: no denser than bins can tell, see volumes_cap() */
+    const Lattice *dense;     /* as dense as it is, where that is more; NULL: it is no more */
     Affine to_cells;          /* scene → the lattice's cells */
     Mat3 from_cells;          /* of vectors, back */
     const Body *body;         /* what it fills; NULL: all of the lattice's box */
@@ -45,6 +46,8 @@ typedef struct VolumeSet {
 /* The set as the two passes see light that was scattered before: forward peaks of phase functions, which harmonics of low degrees cannot have, turn nothing aside (Wiscombe
  * 1977). On the arena; with its volumes' `light` still to be made. */
 VolumeSet *volumes_without_peaks(const VolumeSet *set, Arena *arena);
+/* What is denser than light that is kept can tell apart is as dense as that for light within: sets `dense`. The set's methods must be known. volume_cap.c */
+void volumes_cap(VolumeSet *set, Arena *arena);
 /* The scene's volumes without their light; NULL where there are none. False after a diagnostic. */
 bool volumes_compile(CompiledScene *compiled, DiagList *diags);
 
@@ -58,8 +61,10 @@ enum { VOLUME_MOST_SPANS = 32 };
 int volume_spans(const CompiledVolume *volume, const Ray *ray, double t0, double t1, VolumeSpan spans[VOLUME_MOST_SPANS]);
 /* The same ray in the lattice's cells, same t. */
 Ray volume_ray_in_cells(const CompiledVolume *volume, const Ray *ray);
-/* The integral of density over length. */
+/* The integral of density over length, as light within goes. */
 double volume_length(const CompiledVolume *volume, const Ray *ray, double t0, double t1);
+/* The same of all there is. */
+double volume_whole_length(const CompiledVolume *volume, const Ray *ray, double t0, double t1);
 /* Where it reaches `length`; false where it does not. */
 bool volume_reach(const CompiledVolume *volume, const Ray *ray, double t0, double t1, double length, double *t);
 /* The share of light that passes all volumes that cast shadows; what is not seen is left out of sights. */

@@ -64,13 +64,13 @@ static void add_volume(Gathering *g, int number, double t_max) {
             }
             if (open.length > 0) add_step(g, number, open.t0, open.t1, open.length, &before);
             open.length = 0;
-            int parts = (int)double_clamp(ceil(double_max(most * piece.length / step_depth, (piece.t1 - piece.t0) / stride)), 1, 64);
+            int parts = (int)double_clamp(ceil(double_max(most * piece.length / step_depth, (piece.t1 - piece.t0) / stride)), 1, MOST_STEPS);
             if (parts == 1) {
                 open = (Step){.t0 = piece.t0, .t1 = piece.t1, .length = piece.length};
                 continue;
             }
             double t0 = piece.t0;
-            for (int k = 1; k <= parts; k++) {
+            for (int k = 1; k <= parts && most * before < -log(OPAQUE_BELOW); k++) {
                 double t1 = k < parts ? lattice_piece_invert(&walk, &piece, piece.length * k / parts) : piece.t1;
                 add_step(g, number, t0, t1, piece.length / parts, &before);
                 t0 = t1;
@@ -117,6 +117,11 @@ static Vec3f source(const Gathering *g, const CompiledVolume *v, Vec3 point, dou
 /* The mean of exp(-x) over [0, depth]. */
 static double mean_passing(double depth) { return depth > 1e-4 ? -expm1(-depth) / depth : 1 - depth / 2; }
 
+/* Where a volume is denser than light within goes by, nothing behind is seen through it, and it is as bright as what hides all that. */
+static Vec3f part_hidden(Vec3f whole, Vec3f seen) {
+    return vec3f(seen.x < 1 ? (1 - whole.x) / (1 - seen.x) : 1, seen.y < 1 ? (1 - whole.y) / (1 - seen.y) : 1, seen.z < 1 ? (1 - whole.z) / (1 - seen.z) : 1);
+}
+
 static Vec3f passing(const double depth[3]) { return vec3f((float)exp(-depth[0]), (float)exp(-depth[1]), (float)exp(-depth[2])); }
 
 Air volumes_gather(SurfaceTracer *tracer, const Cone *cone, double t_max, double *mean_t) {
@@ -132,7 +137,8 @@ Air volumes_gather(SurfaceTracer *tracer, const Cone *cone, double t_max, double
         if (g.count > before) bounds[met++] = before;
     }
     bounds[met] = g.count;
-    double shape[VOLUME_HARMONICS], weights = 0, depth_sum[3] = {0, 0, 0}, thinned_sum[3] = {0, 0, 0};
+    double shape[VOLUME_HARMONICS], weights = 0, depth_sum[3] = {0, 0, 0}, whole_sum[3] = {0, 0, 0}, thinned_sum[3] = {0, 0, 0};
+    bool capped = false;
     Air air = air_clear();
     volume_harmonics(vec3_negate(cone->direction), VOLUME_HARMONICS, shape);
     *mean_t = 0;
@@ -158,13 +164,16 @@ Air volumes_gather(SurfaceTracer *tracer, const Cone *cone, double t_max, double
             *mean_t += (double)share[1] * t, weights += (double)share[1];
         }
         const Step *last = &g.steps[bounds[m + 1] - 1];
+        const double length = last->before + last->length, whole = v->dense ? volume_whole_length(v, &g.ray, 0, t_max) : length;
+        capped |= v->dense != NULL;
         for (int c = 0; c < 3; c++) {
-            depth_sum[c] += v->extinction[c] * (last->before + last->length);
-            thinned_sum[c] += v->thinned[c] * (last->before + last->length);
+            depth_sum[c] += v->extinction[c] * length, whole_sum[c] += v->extinction[c] * whole;
+            thinned_sum[c] += v->thinned[c] * length;
         }
     }
     if (weights > 0) *mean_t /= weights;
-    air.keep = passing(depth_sum);
+    air.keep = passing(whole_sum);
+    if (capped) air.add = vec3f_mul(air.add, part_hidden(air.keep, passing(depth_sum)));
     if (set->sky && t_max >= VTS_INFINITY) { /* what peaks alone turn here comes from about there */
         Vec3f turned = vec3f_sub(passing(thinned_sum), air.keep);
         air.add = vec3f_add(air.add, vec3f_mul(turned, sky_radiance(tracer->compiled->scene, cone->direction, 0)));

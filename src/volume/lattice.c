@@ -76,6 +76,13 @@ void lattice_coarsen(Lattice *l, const Lattice *from, const int size[3], Arena *
     lattice_finish(l);
 }
 
+void lattice_clamp(Lattice *l, const Lattice *from, float most, Arena *arena) {
+    const size_t count = (size_t)from->nodes[0] * (size_t)from->nodes[1] * (size_t)from->nodes[2];
+    lattice_init(l, from->size, arena);
+    for (size_t i = 0; i < count; i++) l->values[i] = float_min(from->values[i], most);
+    lattice_finish(l);
+}
+
 double lattice_mean(const Lattice *l) {
     double sum = 0;
     for (int z = 1; z <= l->size[2]; z++)

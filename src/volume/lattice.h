@@ -25,6 +25,8 @@ void lattice_finish(Lattice *lattice);
 double lattice_value(const Lattice *lattice, Vec3 place);
 /* A lattice over the same place with at most as many cells along each axis: means over those of `from`. */
 void lattice_coarsen(Lattice *lattice, const Lattice *from, const int size[3], Arena *arena);
+/* The same with no number above `most`. */
+void lattice_clamp(Lattice *lattice, const Lattice *from, float most, Arena *arena);
 /* The mean over all cells. */
 double lattice_mean(const Lattice *lattice);
 

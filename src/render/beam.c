@@ -154,12 +154,12 @@ bool beam_draw_seen(Beam *beam, Vec3f a, Vec3f b, Vec3f c, uint32_t mark) {
 /* Rectangles around a mesh's triangles, and their greatest keys: a little more than rounding makes of them. The last few hold nothing. */
 typedef struct Outlines {
     float left[BEAM_MESH], right[BEAM_MESH], top[BEAM_MESH], bottom[BEAM_MESH], key[BEAM_MESH];
-    float all_left, all_right, all_top, all_bottom;
+    float all_left, all_right, all_top, all_bottom, all_key;
 } Outlines;
 
 static void outline(const BeamMesh *mesh, Outlines *o) {
     const float slack = 2e-5f, relative = 4e-6f;
-    o->all_left = o->all_top = INFINITY, o->all_right = o->all_bottom = -INFINITY;
+    o->all_left = o->all_top = INFINITY, o->all_right = o->all_bottom = o->all_key = -INFINITY;
     for (int i = 0; i < mesh->count; i++) {
         const uint8_t *corner = mesh->triangles[mesh->which[i]];
         const int a = corner[0], b = corner[1], c = corner[2];
@@ -171,6 +171,7 @@ static void outline(const BeamMesh *mesh, Outlines *o) {
         o->key[i] += relative * (fabsf(mesh->key[a]) + fabsf(mesh->key[b]) + fabsf(mesh->key[c]));
         o->all_left = float_min(o->all_left, o->left[i]), o->all_right = float_max(o->all_right, o->right[i]);
         o->all_top = float_min(o->all_top, o->top[i]), o->all_bottom = float_max(o->all_bottom, o->bottom[i]);
+        o->all_key = float_max(o->all_key, o->key[i]);
     }
     for (int i = mesh->count; i % BEAM_LANES; i++) o->left[i] = INFINITY, o->right[i] = o->top[i] = o->bottom[i] = o->key[i] = -INFINITY;
 }
@@ -224,7 +225,8 @@ int beam_draw_mesh(Beam *beam, const BeamMesh *mesh, BeamSeen seen[BEAM_FEW_SAMP
     if (samples > BEAM_FEW_SAMPLES) return -1;
     for (int row = y0; row <= y1; row++)
         for (uint32_t i = s->first[row * s->columns + x0], end = s->first[row * s->columns + x1 + 1]; i < end; i++) {
-            if ((beam->light && s->mark[i]) || s->x[i] < o.all_left || s->x[i] > o.all_right || s->y[i] < o.all_top || s->y[i] > o.all_bottom) continue;
+            if (!(s->key[i] < o.all_key) || s->x[i] < o.all_left || s->x[i] > o.all_right || s->y[i] < o.all_top || s->y[i] > o.all_bottom) continue;
+            if (beam->light && s->mark[i]) continue;
             const int triangle = nearest_of(beam, mesh, &o, i);
             if (triangle < 0) continue;
             if (beam->light) s->mark[i] = 1;

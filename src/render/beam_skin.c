@@ -347,6 +347,12 @@ static void draw_plain(Drawing *d, const MappedVertices *v, const BeamMesh *mesh
     }
 }
 
+/* Whether the mapping bends the triangle no more than is tolerated. */
+static bool is_flat(const Drawing *d, const MappedVertices *v, const uint8_t *corner) {
+    const Vec3f p[3] = {vertex_in_cell(v, corner[0]), vertex_in_cell(v, corner[1]), vertex_in_cell(v, corner[2])};
+    return bend(d->at.frame, p) <= d->at.tolerance;
+}
+
 /* `box` holds the part of the cluster that is in the cell. */
 static void draw_cluster(Drawing *d, const TexelCluster *cluster, const CellBox *box) {
     MappedVertices v;
@@ -359,14 +365,15 @@ static void draw_cluster(Drawing *d, const TexelCluster *cluster, const CellBox 
         const uint8_t *corner = cluster->triangles[i];
         const uint32_t any = v.code[corner[0]] | v.code[corner[1]] | v.code[corner[2]], all = v.code[corner[0]] & v.code[corner[1]] & v.code[corner[2]];
         const bool inside = !(any & OUT_OF_CELL);
-        const Vec3f x[3] = {vertex_in_box(cluster, corner[0]), vertex_in_box(cluster, corner[1]), vertex_in_box(cluster, corner[2])};
-        if (!f->affine && !inside) {
-            draw_across(d, x, i);
+        const bool across = !f->affine && !inside; /* of the cell: what is out of it has no place in the beam */
+        if (!across && all & (OUT_OF_CELL - 1)) continue;
+        if (inside && !(any & BEAM_TOO_NEAR) && (plain || is_flat(d, &v, corner))) {
+            whole.which[whole.count++] = (uint8_t)i;
             continue;
         }
-        if (all & (OUT_OF_CELL - 1)) continue;
-        if (plain && inside && !(any & BEAM_TOO_NEAR)) {
-            whole.which[whole.count++] = (uint8_t)i;
+        const Vec3f x[3] = {vertex_in_box(cluster, corner[0]), vertex_in_box(cluster, corner[1]), vertex_in_box(cluster, corner[2])};
+        if (across) {
+            draw_across(d, x, i);
             continue;
         }
         Piece piece = {.triangle = i, .inside = inside};

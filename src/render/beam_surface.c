@@ -17,7 +17,7 @@ static void see_surface(BeamTracer *tr, double x, double y, HitPool *pool, SeenS
     BeamLine line = beam_line_at(tr, x, y);
     Ray ray = {line.origin, vec3_scale(line.direction, 1 / line.length)};
     SurfaceHit hit;
-    bool found = hierarchy_intersect(tr->compiled->hierarchy, &ray, 1e-9, VTS_INFINITY, &hit);
+    bool found = hierarchy_meet_wide(tr->compiled->hierarchy, RAY_SEES, &ray, (RayWidth){0, 0}, 1e-9, VTS_INFINITY, tr->aovs != NULL, &hit);
     tr->counters.camera_rays++;
     out->hit = found ? keep_hit(pool, &hit) : NULL;
     if (!found) return;

@@ -2,6 +2,8 @@
 #include "render/beam_cell.h"
 #include "render/compile.h"
 
+#include <string.h>
+
 /* What is round is tessellated to this part of the finest voxels that would be seen: a tenth of a pixel. */
 static const double BEAM_TOLERANCE_VOXELS = 0.2;
 /* As many triangles in a pixel's footprint cost as much as its voxels do. */
@@ -82,6 +84,31 @@ static void seen_range(const CompiledSkin *skin, const View *view, double *neare
     }
 }
 
+/* Whether their triangles are the same, whatever they look like. */
+static bool same_contents(const TexelDef *a, const TexelDef *b) {
+    bool same = !a->file && !b->file && a->cyclic == b->cyclic && a->layer_count == b->layer_count && memcmp(&a->bounds, &b->bounds, sizeof a->bounds) == 0;
+    for (size_t i = 0; same && i < a->layer_count; i++) same = hash_equal(a->layers[i].hash, b->layers[i].hash);
+    return same;
+}
+
+/* Trees that differ by their colours alone have one list of triangles, as fine as the nearest of them asks, which takes less time and less room in caches
+ * than several. */
+static void share_triangles(const BuiltTexel *texel, const CompiledScene *compiled) {
+    for (size_t i = 0; i < compiled->texel_count; i++) {
+        BuiltTexel *other = compiled->texels[i];
+        if (other->beam || !same_contents(texel->def, other->def)) continue;
+        other->beam = texel->beam;
+        other->triangles_known = texel->triangles_known;
+    }
+}
+
+static int finest_of_contents(const BuiltTexel *texel, const CompiledScene *compiled) {
+    int finest = 16;
+    for (size_t i = 0; i < compiled->texel_count; i++)
+        if (compiled->texels[i]->finest_seen > finest && same_contents(texel->def, compiled->texels[i]->def)) finest = compiled->texels[i]->finest_seen;
+    return finest;
+}
+
 /* Triangles of a texel for beams, unless there are more than `most` or none that beams can draw; false after a diagnostic. */
 static bool build_texel(BuiltTexel *texel, size_t most, CompiledScene *compiled, DiagList *diags) {
     const TexelDef *def = texel->def;
@@ -90,15 +117,19 @@ static bool build_texel(BuiltTexel *texel, size_t most, CompiledScene *compiled,
         if (def->layers[i].density) return true; /* flakes only stand for it; voxels are what it is drawn with */
     ArenaMark mark = arena_mark(&compiled->scratch);
     BeamTexelDraft *draft = beam_texel_begin(texel->extent, def->cyclic, &compiled->scratch);
+    const TexelFineness fineness = {BEAM_TOLERANCE_VOXELS / finest_of_contents(texel, compiled), 0};
     size_t triangles = 0;
     for (size_t i = 0; i < def->layer_count && triangles <= most; i++) {
         TexelMesh mesh;
-        if (!texel_mesh_layer(texel, &def->layers[i], &(TexelFineness){BEAM_TOLERANCE_VOXELS / int_max(texel->finest_seen, 16), 0}, compiled, diags, &mesh)) return false;
+        if (!texel_mesh_layer(texel, &def->layers[i], &fineness, compiled, diags, &mesh)) return false;
         triangles += mesh.triangle_count;
         if (triangles <= most) beam_texel_add_layer(draft, &mesh);
     }
-    if (triangles <= most) texel->beam = beam_texel_finish(draft, compiled->arena);
     texel->triangles_known = triangles;
+    if (triangles <= most) {
+        texel->beam = beam_texel_finish(draft, compiled->arena);
+        share_triangles(texel, compiled);
+    }
     arena_reset_to(&compiled->scratch, mark);
     return true;
 }

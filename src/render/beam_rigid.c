@@ -18,8 +18,11 @@ typedef struct TileRect {
     int64_t u0, u1, v0, v1;
 } TileRect;
 
+typedef struct RigidTexel RigidTexel;
+
 /* A copy: box coordinates of its texel → (a, b, w) of the cell. */
 typedef struct RigidCopy {
+    const RigidTexel *texel;
     const CompiledSkin *skin;
     const SkinCell *cell;
     const PlacedTexel *placed;
@@ -29,15 +32,24 @@ typedef struct RigidCopy {
     const TileRect *cut;                 /* the surface, if it ends within the copy; else NULL */
 } RigidCopy;
 
-/* A texel's triangles; of each, its cluster's number times CLUSTER_TRIANGLES, and its own there. */
-typedef struct RigidTexel {
+/* Of a triangle, what facets have. */
+typedef struct RigidFacet {
+    uint32_t cluster;
+    uint16_t layer;
+    uint8_t triangle;
+    bool round;
+} RigidFacet;
+
+/* A texel's triangles. Hits are random ones, and what is asked of them lies side by side: memory is what they wait for. */
+struct RigidTexel {
     const BeamTexel *beam;
     RTCScene scene;
     bool cut; /* some copy of it is */
-    const uint32_t *facets;
+    const float (*corners)[3][3];
+    const RigidFacet *facets;
     const RigidCopies *copies;
-    struct RigidTexel *next;
-} RigidTexel;
+    RigidTexel *next;
+};
 
 struct RigidCopies {
     const EmbreeShim *rtc;
@@ -163,27 +175,25 @@ typedef struct Building {
     } copies;
 } Building;
 
-static void fill_texel(const BeamTexel *beam, float *vertices, unsigned *indices, uint32_t *facets) {
-    size_t vertex = 0, triangle = 0;
+static void fill_texel(const BeamTexel *beam, float (*corners)[3][3], RigidFacet *facets) {
+    size_t triangle = 0;
     for (size_t c = 0; c < beam->cluster_count; c++) {
         const TexelCluster *cluster = &beam->clusters[c];
         for (int i = 0; i < cluster->triangle_count; i++, triangle++) {
-            for (int k = 0; k < 3; k++) indices[3 * triangle + (size_t)k] = (unsigned)(vertex + cluster->triangles[i][k]);
-            facets[triangle] = (uint32_t)(c * CLUSTER_TRIANGLES + (size_t)i);
-        }
-        for (int i = 0; i < cluster->vertex_count; i++, vertex++) {
-            vertices[3 * vertex] = cluster->x[i], vertices[3 * vertex + 1] = cluster->y[i], vertices[3 * vertex + 2] = cluster->z[i];
+            for (int k = 0; k < 3; k++) {
+                int v = cluster->triangles[i][k];
+                corners[triangle][k][0] = cluster->x[v], corners[triangle][k][1] = cluster->y[v], corners[triangle][k][2] = cluster->z[v];
+            }
+            facets[triangle] = (RigidFacet){.cluster = (uint32_t)c, .layer = cluster->layers[i], .triangle = (uint8_t)i, .round = cluster->normals};
         }
     }
 }
 
 /* Whether the surface goes on where a ray meets a triangle of a copy that it ends in. */
 static bool is_on_surface(const RigidTexel *texel, const RigidCopy *copy, unsigned triangle, double s, double t) {
-    uint32_t number = texel->facets[triangle];
-    const TexelCluster *cluster = &texel->beam->clusters[number / CLUSTER_TRIANGLES];
-    const uint8_t *v = cluster->triangles[number % CLUSTER_TRIANGLES];
-    double x = (1 - s - t) * (double)cluster->x[v[0]] + s * (double)cluster->x[v[1]] + t * (double)cluster->x[v[2]];
-    double z = (1 - s - t) * (double)cluster->z[v[0]] + s * (double)cluster->z[v[1]] + t * (double)cluster->z[v[2]];
+    const float(*p)[3] = texel->corners[triangle];
+    double x = (1 - s - t) * (double)p[0][0] + s * (double)p[1][0] + t * (double)p[2][0];
+    double z = (1 - s - t) * (double)p[0][2] + s * (double)p[1][2] + t * (double)p[2][2];
     double at[2] = {copy->u_x * x + copy->u_z * z + copy->u_0, copy->v_x * x + copy->v_z * z + copy->v_0};
     for (int k = 0; k < 2; k++)
         if (at[k] < copy->cut->lo[k] || at[k] > copy->cut->hi[k]) return false;
@@ -203,47 +213,21 @@ static void leave_cut_off(const struct RTCFilterFunctionNArguments *args) {
     }
 }
 
-static bool same_clusters(const TexelCluster *a, const TexelCluster *b) {
-    size_t row = (size_t)a->vertex_count * sizeof *a->x;
-    return a->vertex_count == b->vertex_count && a->triangle_count == b->triangle_count &&
-           memcmp(a->triangles, b->triangles, (size_t)a->triangle_count * sizeof *a->triangles) == 0 && memcmp(a->x, b->x, row) == 0 &&
-           memcmp(a->y, b->y, row) == 0 && memcmp(a->z, b->z, row) == 0;
-}
-
-/* Whether their triangles are, whatever they are made of. */
-static bool same_triangles(const BeamTexel *a, const BeamTexel *b) {
-    if (a->triangle_count != b->triangle_count || a->cluster_count != b->cluster_count) return false;
-    for (size_t i = 0; i < a->cluster_count; i++)
-        if (!same_clusters(&a->clusters[i], &b->clusters[i])) return false;
-    return true;
-}
-
-/* Trees that differ by their colours alone have one hierarchy, which takes less room in caches than several. */
-static RigidTexel *texel_like(Building *b, const RigidTexel *like, const BeamTexel *beam) {
-    RigidTexel *texel = arena_new(b->compiled->arena, RigidTexel);
-    *texel = *like;
-    texel->beam = beam;
-    texel->next = b->out->texels;
-    b->embree->rtc->RetainScene(texel->scene);
-    return b->out->texels = texel;
-}
-
 static RigidTexel *texel_of(Building *b, const BeamTexel *beam) {
     const EmbreeShim *rtc = b->embree->rtc;
     for (RigidTexel *t = b->out->texels; t; t = t->next)
         if (t->beam == beam) return t;
-    for (RigidTexel *t = b->out->texels; t; t = t->next)
-        if (same_triangles(t->beam, beam)) return texel_like(b, t, beam);
     RigidTexel *texel = arena_new(b->compiled->arena, RigidTexel);
-    uint32_t *facets = arena_new_array(b->compiled->arena, uint32_t, beam->triangle_count);
-    size_t vertices = 0;
-    for (size_t c = 0; c < beam->cluster_count; c++) vertices += (size_t)beam->clusters[c].vertex_count;
-    *texel = (RigidTexel){beam, rtc->NewScene(b->embree->device), false, facets, b->out, b->out->texels};
+    size_t count = beam->triangle_count;
+    float(*corners)[3][3] = arena_push_array_(b->compiled->arena, count + 1, sizeof *corners); /* Embree reads past the last */
+    RigidFacet *facets = arena_new_array(b->compiled->arena, RigidFacet, count);
+    fill_texel(beam, corners, facets);
+    *texel = (RigidTexel){.beam = beam, .scene = rtc->NewScene(b->embree->device), .corners = (const float(*)[3][3])corners, .facets = facets, .copies = b->out, .next = b->out->texels};
     b->out->texels = texel;
     RTCGeometry geometry = rtc->NewGeometry(b->embree->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    float *v = rtc->SetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices);
-    unsigned *t = rtc->SetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), beam->triangle_count);
-    if (v && t) fill_texel(beam, v, t, facets);
+    rtc->SetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, corners, 0, sizeof **corners, 3 * count);
+    unsigned *indices = rtc->SetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), count);
+    for (unsigned i = 0; indices && i < 3 * count; i++) indices[i] = i;
     rtc->SetGeometryUserData(geometry, texel);
     rtc->SetSceneFlags(texel->scene, RTC_SCENE_FLAG_ROBUST);
     rtc->CommitGeometry(geometry);
@@ -287,7 +271,7 @@ static void put_column(float *out, Vec3 v) {
     out[0] = f.x, out[1] = f.y, out[2] = f.z;
 }
 
-static void add_copy(Building *b, const RigidCopy *r) {
+static void add_copy(Building *b, RigidCopy *r) {
     const EmbreeShim *rtc = b->embree->rtc;
     const Vec3 *foot = r->cell->foot.c, high = r->cell->height.c[0];
     float columns[12];
@@ -297,6 +281,7 @@ static void add_copy(Building *b, const RigidCopy *r) {
     put_column(columns + 6, vec3_madd(vec3_scale(foot[1], r->a_z), foot[2], r->b_z));
     put_column(columns + 9, vec3_sub(from, b->out->origin));
     RigidTexel *texel = texel_of(b, r->copy.texel->beam);
+    r->texel = texel;
     if (r->cut && !texel->cut) have_cut(texel);
     RTCGeometry geometry = rtc->NewGeometry(b->embree->device, RTC_GEOMETRY_TYPE_INSTANCE);
     rtc->SetGeometryInstancedScene(geometry, texel->scene);
@@ -304,7 +289,7 @@ static void add_copy(Building *b, const RigidCopy *r) {
     rtc->CommitGeometry(geometry);
     rtc->AttachGeometryByID(b->out->scene, geometry, (unsigned)b->copies.count);
     rtc->ReleaseGeometry(geometry);
-    *list_push(b->compiled->arena, &b->copies) = *r;
+    *list_push_sole(b->compiled->arena, &b->copies) = *r;
 }
 
 /* Whether the surface has a part of the tile; *cut: not all of it. */
@@ -393,22 +378,15 @@ typedef struct Seeing {
     } kept[KEPT_FACETS];
 } Seeing;
 
-static const RigidTexel *texel_of_copy(const RigidCopies *copies, const RigidCopy *copy) {
-    const RigidTexel *texel = copies->texels;
-    while (texel->beam != copy->copy.texel->beam) texel = texel->next;
-    return texel;
-}
-
 static uint32_t new_facet(const Seeing *s, const RigidCopy *copy, uint32_t triangle) {
     BeamDraft *draft = s->draft;
-    uint32_t number = texel_of_copy(s->copies, copy)->facets[triangle];
-    const TexelCluster *cluster = &copy->copy.texel->beam->clusters[number / CLUSTER_TRIANGLES];
+    const float(*p)[3] = copy->texel->corners[triangle];
+    const RigidFacet *is = &copy->texel->facets[triangle];
     BeamFacet *f = &draft->facets[draft->facet_count++];
-    *f = (BeamFacet){.skin = copy->skin, .cell = copy->cell, .placed = copy->placed, .copy = copy->copy, .cluster = cluster,
-                     .triangle = (int)(number % CLUSTER_TRIANGLES), .from_a = copy->a_0, .from_b = copy->b_0, .size = 1};
+    *f = (BeamFacet){.skin = copy->skin, .cell = copy->cell, .placed = copy->placed, .copy = copy->copy, .cluster = &copy->texel->beam->clusters[is->cluster],
+                     .triangle = is->triangle, .round = is->round, .layer = is->layer, .from_a = copy->a_0, .from_b = copy->b_0, .size = 1};
     for (int i = 0; i < 3; i++) {
-        int v = cluster->triangles[f->triangle][i];
-        double x = (double)cluster->x[v], y = (double)cluster->y[v], z = (double)cluster->z[v];
+        double x = (double)p[i][0], y = (double)p[i][1], z = (double)p[i][2];
         f->corner[i] = vec3f((float)(copy->a_x * x + copy->a_z * z), (float)(copy->b_x * x + copy->b_z * z), (float)(copy->w_y * y + copy->w_0));
     }
     return draft->facet_count;

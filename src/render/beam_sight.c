@@ -90,11 +90,14 @@ static float sky_at(const TexelCopy *copy, const TexturePlace *place, Vec3 in, V
     return skin_sky_seen(copy, place, vec3f_mul(vec3f_from(in), copy->texel->extent), vec3_from_f(to_eye));
 }
 
+/* What it stands for is as flat as the facet, in the scene as in texel space. */
+static bool is_as_flat(const BeamFacet *f) { return f->skin->rigid && !f->round; }
+
 /* When all samples of the sight are known: it is what they see on average. */
 static void see_facet(const BeamTracer *tr, Sight *sight) {
     const BeamFacet *f = &tr->draft.facets[tr->beam.samples.mark[sight->first] - 1];
     const TexelCopy *copy = &f->copy;
-    const Look *own = &copy->texel->matter[beam_facet_layer(f)].look;
+    const Look *own = &copy->texel->matter[f->layer].look;
     FacetPlane plane = plane_of(f);
     Vec3 flat = vec3_normalize(plane.normal);
     if (vec3f_dot(vec3f_from(flat), sight->view) < 0) flat = vec3_negate(flat);
@@ -105,7 +108,8 @@ static void see_facet(const BeamTracer *tr, Sight *sight) {
     sight->up = vec3f_from(vec3_normalize(place.grad_layer));
     sight->sky = sky_at(copy, &place, place_in_box(copy, &place), sight->view);
     sight->flat = vec3f_from(flat);
-    sight->normal = sheet_normal(normal_on_side(copy, &place, beam_facet_normal(f, place_in_box(copy, &place)), flat), sight->flat, sight->view);
+    Vec3f round = is_as_flat(f) ? sight->flat : normal_on_side(copy, &place, beam_facet_normal(f, place_in_box(copy, &place)), flat);
+    sight->normal = sheet_normal(round, sight->flat, sight->view);
     sight->bias = vec3f_from(vec3_scale(flat, BIAS_TILES * f->skin->tile_size + BIAS_DISTANCES * (double)sight->t));
     sight->clear = vec3f_length(sight->bias);
     sight->color = vec3f_mul(facet_color(tr, &plane, own, sight), copy->tint);

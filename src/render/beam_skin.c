@@ -111,8 +111,8 @@ static void drop_hidden(BeamDraft *draft) {
 static void keep_facet(const Drawing *d, const Vec3f corner[3], int triangle) {
     BeamDraft *draft = d->draft;
     BeamFacet *f = &draft->facets[draft->facet_count++];
-    *f = (BeamFacet){.skin = d->skin, .cell = d->cell, .placed = d->at.placed, .copy = *d->at.copy, .cluster = d->cluster, .triangle = triangle,
-                     .period = d->at.period, .from_a = d->from_a, .from_b = d->from_b, .size = d->size};
+    *f = (BeamFacet){.skin = d->skin, .cell = d->cell, .placed = d->at.placed, .copy = *d->at.copy, .cluster = d->cluster, .triangle = (uint8_t)triangle,
+                     .round = d->cluster->normals, .layer = d->cluster->layers[triangle], .period = d->at.period, .from_a = d->from_a, .from_b = d->from_b, .size = d->size};
     for (int i = 0; i < 3; i++) f->corner[i] = corner[i];
     if (draft->facet_count == draft->facet_capacity) drop_hidden(draft);
 }

@@ -15,13 +15,14 @@ typedef struct BeamFacet {
     const PlacedTexel *placed;
     TexelCopy copy;
     const TexelCluster *cluster; /* the triangle of the texel that it is, or a part of */
-    int triangle;
+    uint8_t triangle;
+    bool round;      /* it stands for what is not as flat */
+    uint16_t layer;
     int period;      /* of cyclic y: how many boxes above the foot's */
     Vec3f corner[3]; /* (a, b, w) of the part of the cell that was drawn: its (a, b) times `size`, plus `from` */
     double from_a, from_b, size;
 } BeamFacet;
 
-static inline size_t beam_facet_layer(const BeamFacet *f) { return f->cluster->layers[f->triangle]; }
 /* The unit normal in texel space, at a place in the copy's box, of what the facet stands for; zero of a line. Which side is the front is not told. */
 Vec3 beam_facet_normal(const BeamFacet *f, Vec3 in);
 

@@ -13,7 +13,7 @@ enum { EMBREE_SHIM_VERSION = 2 };
 #define EMBREE_FUNCTIONS(X) \
     X(AttachGeometry) X(AttachGeometryByID) X(CommitGeometry) X(CommitScene) X(GetDeviceError) X(GetDeviceProperty) X(GetGeometry) \
     X(Intersect1) X(Intersect8) X(NewDevice) X(NewGeometry) X(NewScene) X(Occluded1) X(Occluded8) X(ReleaseDevice) X(ReleaseGeometry) \
-    X(ReleaseScene) X(RetainScene) X(SetGeometryBoundsFunction) X(SetGeometryInstancedScene) X(SetGeometryIntersectFilterFunction) \
+    X(ReleaseScene) X(SetGeometryBoundsFunction) X(SetGeometryInstancedScene) X(SetGeometryIntersectFilterFunction) \
     X(SetGeometryIntersectFunction) X(SetGeometryOccludedFilterFunction) X(SetGeometryOccludedFunction) X(SetGeometryTransform) \
     X(SetGeometryBuildQuality) X(SetSceneBuildQuality) X(SetGeometryUserData) X(SetGeometryUserPrimitiveCount) X(SetNewGeometryBuffer) X(SetSceneFlags) X(SetSharedGeometryBuffer)
 

@@ -11,15 +11,15 @@ typedef struct TreeNode {
 } TreeNode;
 
 struct CurveTree {
+    const TreeNode *nodes;
+};
+
+typedef struct Builder {
     struct {
         TreeNode *items;
         size_t count, capacity;
     } nodes;
-};
-
-typedef struct Builder {
-    CurveTree *tree;
-    Arena *arena;
+    Arena *arena; /* of the list */
     const Box3 *boxes;
     uint32_t *order;
 } Builder;
@@ -135,9 +135,9 @@ static uint32_t make_node(Builder *b, Range whole, int depth) {
         ranges[i] = range_of(b, r.first, left);
         ranges[count] = range_of(b, r.first + left, r.count - left);
     }
-    uint32_t index = (uint32_t)b->tree->nodes.count;
+    uint32_t index = (uint32_t)b->nodes.count;
     TreeNode node;
-    list_push(b->arena, &b->tree->nodes);
+    list_push_sole(b->arena, &b->nodes);
     for (int k = 0; k < WIDE; k++) {
         if (k >= count || ranges[k].count == 0) {
             set_absent(&node, k);
@@ -148,15 +148,16 @@ static uint32_t make_node(Builder *b, Range whole, int depth) {
         node.first[k] = make_node(b, ranges[k], depth + 1);
         node.count[k] = 0;
     }
-    b->tree->nodes.items[index] = node;
+    b->nodes.items[index] = node;
     return index;
 }
 
-const CurveTree *curve_tree_build(const Box3 *boxes, size_t count, uint32_t *order, Arena *arena) {
+const CurveTree *curve_tree_build(const Box3 *boxes, size_t count, uint32_t *order, Arena *arena, Arena *scratch) {
     CurveTree *tree = arena_new(arena, CurveTree);
     for (size_t i = 0; i < count; i++) order[i] = (uint32_t)i;
-    Builder b = {tree, arena, boxes, order};
+    Builder b = {.arena = scratch, .boxes = boxes, .order = order};
     make_node(&b, range_of(&b, 0, (uint32_t)count), 0);
+    tree->nodes = arena_copy(arena, b.nodes.items, b.nodes.count * sizeof *b.nodes.items);
     return tree;
 }
 
@@ -216,7 +217,7 @@ void curve_tree_walk(const CurveTree *tree, const Curve *curve, double margin, d
             if (visit(context, at.first, at.count)) return;
             continue;
         }
-        const TreeNode *node = &tree->nodes.items[at.first];
+        const TreeNode *node = &tree->nodes[at.first];
         float enter[WIDE], leave[WIDE];
         meet_children(node, &slabs, length, enter, leave);
         int base = depth;

@@ -8,8 +8,9 @@
 typedef struct CurveTree CurveTree;
 
 /* Finite boxes only; they are kept as floats that hold them. `order` gets the numbers of the boxes in the order that visits
- * call places: neighbours in space are neighbours there. count < 2³¹. The tree lives in `arena`. */
-const CurveTree *curve_tree_build(const Box3 *boxes, size_t count, uint32_t *order, Arena *arena);
+ * call places: neighbours in space are neighbours there. count < 2³¹. The tree lives in `arena`; `scratch` is
+ * left with pieces that nobody needs. */
+const CurveTree *curve_tree_build(const Box3 *boxes, size_t count, uint32_t *order, Arena *arena, Arena *scratch);
 
 /* Calls visit(context, first, count), with places in `order`, for what may be nearer than `margin` to the curve at an s between s0 and
  * *s1, which the visitor may lower; ends when it returns true. The curve's coordinates must be such as floats can hold. */

@@ -16,7 +16,7 @@ bool exact_build_texel(BuiltTexel *texel, const ExactMaking *how, CompiledScene 
     }
     Arena *arena = how->arena ? how->arena : compiled->arena;
     size_t left = how->most ? how->most : SIZE_MAX;
-    texel->exact = exact_texel_begin(texel->extent, def->cyclic, def->layer_count, arena);
+    texel->exact = exact_texel_begin(texel->extent, def->cyclic, arena);
     for (size_t i = 0; i < def->layer_count; i++) {
         TexelMesh mesh;
         ArenaMark mark = arena_mark(&compiled->scratch);

@@ -2,25 +2,20 @@
 
 #include "render/curve_tree.h"
 
+#include <string.h>
+
 typedef struct ExactTriangle {
     Vec3f corner[3];
     uint32_t layer;
 } ExactTriangle;
 
-/* Triangles of one layer, as they were added. */
-typedef struct ExactLayer {
-    ExactTriangle *triangles;
-    FacetNormals *normals; /* the same; NULL: all are flat */
-    size_t count;
-} ExactLayer;
-
 struct ExactTexel {
     Vec3 extent;
     bool cyclic[3];
-    ExactLayer *layers;
-    size_t layer_count;
-    ExactTriangle *triangles; /* of all layers, in the order of the tree */
+    uint32_t layer_count;
+    ExactTriangle *triangles; /* as they were added; then in the order of the tree */
     FacetNormals *normals;    /* the same; NULL: all are flat */
+    size_t count;
     const CurveTree *tree;
 };
 
@@ -29,9 +24,9 @@ enum { MOST_WRAPS = 64, MOST_CURVES = 1 << 13 };
 /* Content in the walls of the box counts as inside, whatever rounding says; in extents. */
 static const double WALL = 1e-5;
 
-ExactTexel *exact_texel_begin(Vec3f extent, unsigned cyclic, size_t layers, Arena *arena) {
+ExactTexel *exact_texel_begin(Vec3f extent, unsigned cyclic, Arena *arena) {
     ExactTexel *texel = arena_new(arena, ExactTexel);
-    *texel = (ExactTexel){.extent = vec3_from_f(extent), .layers = arena_new_array(arena, ExactLayer, layers)};
+    *texel = (ExactTexel){.extent = vec3_from_f(extent)};
     for (int k = 0; k < 3; k++) texel->cyclic[k] = cyclic >> k & 1;
     return texel;
 }
@@ -75,23 +70,29 @@ typedef struct Source {
     FacetNormals normals;
 } Source;
 
-static void add_moved(const ExactTexel *texel, ExactLayer *layer, const Source *source, int x, int y, int z) {
+static void add_moved(ExactTexel *texel, const Source *source, int x, int y, int z) {
     Vec3 move = vec3_mul(vec3(x, y, z), texel->extent);
-    if (layer->normals) layer->normals[layer->count] = source->normals;
-    ExactTriangle *triangle = &layer->triangles[layer->count++];
+    if (texel->normals) texel->normals[texel->count] = source->normals;
+    ExactTriangle *triangle = &texel->triangles[texel->count++];
     for (int i = 0; i < 3; i++) triangle->corner[i] = vec3f_from(vec3_add(vec3_from_f(source->corner[i]), move));
-    triangle->layer = (uint32_t)(layer - texel->layers);
+    triangle->layer = texel->layer_count;
 }
 
-static void add_wrapped(const ExactTexel *texel, ExactLayer *layer, const Source *source, const Wraps *w) {
+static void add_wrapped(ExactTexel *texel, const Source *source, const Wraps *w) {
     for (int z = w->from[2]; z <= w->to[2]; z++)
         for (int y = w->from[1]; y <= w->to[1]; y++)
-            for (int x = w->from[0]; x <= w->to[0]; x++) add_moved(texel, layer, source, x, y, z);
+            for (int x = w->from[0]; x <= w->to[0]; x++) add_moved(texel, source, x, y, z);
+}
+
+/* Of a triangle that is flat, as if it had three normals of length 0. */
+static FacetNormals flat_normals(void) {
+    static const Vec3f none[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    return facet_normals_pack(none);
 }
 
 static FacetNormals normals_of(const TexelMesh *mesh, size_t triangle) {
-    Vec3f normals[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, found[3];
-    return facet_normals_pack(facet_normals_of(mesh, triangle, found) ? found : normals);
+    Vec3f found[3];
+    return facet_normals_of(mesh, triangle, found) ? facet_normals_pack(found) : flat_normals();
 }
 
 static bool load_corners(const TexelMesh *mesh, size_t triangle, Vec3f corner[3]) {
@@ -103,27 +104,36 @@ static bool load_corners(const TexelMesh *mesh, size_t triangle, Vec3f corner[3]
     return true;
 }
 
+/* For `count` more triangles, with normals if `round` are among them. What there was is given back where that is possible. */
+static void make_room(ExactTexel *texel, size_t count, bool round, Arena *arena) {
+    size_t had = texel->count, all = had + count;
+    const ExactTriangle *triangles = texel->triangles;
+    const FacetNormals *normals = texel->normals;
+    texel->triangles = arena_new_array(arena, ExactTriangle, all);
+    if (had) memcpy(texel->triangles, triangles, had * sizeof *triangles);
+    arena_release(arena, triangles, had * sizeof *triangles);
+    if (!normals && !round) return;
+    texel->normals = arena_new_array(arena, FacetNormals, all);
+    for (size_t i = 0; i < all; i++) texel->normals[i] = normals && i < had ? normals[i] : flat_normals();
+    arena_release(arena, normals, had * sizeof *normals);
+}
+
 void exact_texel_add_layer(ExactTexel *texel, const TexelMesh *mesh, Arena *arena) {
-    ExactLayer *layer = &texel->layers[texel->layer_count++];
     size_t count = 0;
-    Source source;
+    Source source = {.normals = flat_normals()};
     Wraps wraps;
     for (size_t i = 0; i < mesh->triangle_count; i++)
         if (load_corners(mesh, i, source.corner) && find_wraps(texel, source.corner, &wraps)) count += wrap_count(&wraps);
-    layer->triangles = arena_new_array(arena, ExactTriangle, count);
-    if (mesh->normals) layer->normals = arena_new_array(arena, FacetNormals, count);
+    make_room(texel, count, mesh->normals, arena);
     for (size_t i = 0; i < mesh->triangle_count; i++) {
         if (!load_corners(mesh, i, source.corner) || !find_wraps(texel, source.corner, &wraps)) continue;
         if (mesh->normals) source.normals = normals_of(mesh, i);
-        add_wrapped(texel, layer, &source, &wraps);
+        add_wrapped(texel, &source, &wraps);
     }
+    texel->layer_count++;
 }
 
-size_t exact_texel_triangles(const ExactTexel *texel) {
-    size_t count = 0;
-    for (size_t i = 0; i < texel->layer_count; i++) count += texel->layers[i].count;
-    return count;
-}
+size_t exact_texel_triangles(const ExactTexel *texel) { return texel->count; }
 
 static Box3 triangle_box(const ExactTriangle *t) {
     Box3 box = box3_empty();
@@ -131,35 +141,19 @@ static Box3 triangle_box(const ExactTriangle *t) {
     return box;
 }
 
-/* The normals of all layers in the order of the tree. */
-static FacetNormals *order_normals(const ExactTexel *texel, const uint32_t *order, size_t count, Arena *arena, Arena *scratch) {
-    static const Vec3f none[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-    bool any = false;
-    for (size_t l = 0; l < texel->layer_count; l++) any |= texel->layers[l].normals != NULL;
-    if (!any) return NULL;
-    FacetNormals *all = arena_new_array(scratch, FacetNormals, count), *out = arena_new_array(arena, FacetNormals, count);
-    size_t n = 0;
-    for (size_t l = 0; l < texel->layer_count; l++)
-        for (size_t i = 0; i < texel->layers[l].count; i++) all[n++] = texel->layers[l].normals ? texel->layers[l].normals[i] : facet_normals_pack(none);
-    for (size_t i = 0; i < count; i++) out[i] = all[order[i]];
-    return out;
-}
-
 void exact_texel_commit(ExactTexel *texel, Arena *arena, Arena *scratch) {
-    size_t count = exact_texel_triangles(texel), n = 0;
+    size_t count = texel->count;
     ArenaMark mark = arena_mark(scratch);
     Box3 *boxes = arena_new_array(scratch, Box3, count);
-    const ExactTriangle **all = arena_push_array_(scratch, count, sizeof *all);
     uint32_t *order = arena_new_array(scratch, uint32_t, count);
-    for (size_t l = 0; l < texel->layer_count; l++)
-        for (size_t i = 0; i < texel->layers[l].count; i++, n++) {
-            all[n] = &texel->layers[l].triangles[i];
-            boxes[n] = triangle_box(all[n]);
-        }
-    texel->tree = curve_tree_build(boxes, count, order, arena);
-    texel->triangles = arena_new_array(arena, ExactTriangle, count);
-    for (size_t i = 0; i < count; i++) texel->triangles[i] = *all[order[i]];
-    texel->normals = order_normals(texel, order, count, arena, scratch);
+    for (size_t i = 0; i < count; i++) boxes[i] = triangle_box(&texel->triangles[i]);
+    texel->tree = curve_tree_build(boxes, count, order, arena, scratch);
+    const ExactTriangle *triangles = arena_copy(scratch, texel->triangles, count * sizeof *triangles);
+    const FacetNormals *normals = texel->normals ? arena_copy(scratch, texel->normals, count * sizeof *normals) : NULL;
+    for (size_t i = 0; i < count; i++) {
+        texel->triangles[i] = triangles[order[i]];
+        if (normals) texel->normals[i] = normals[order[i]];
+    }
     arena_reset_to(scratch, mark);
 }
 

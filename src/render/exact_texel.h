@@ -28,10 +28,10 @@ typedef struct ExactWay {
 } ExactWay;
 
 /* An empty texel in `arena`. `extent` and `cyclic` as for TexelBuildOptions. */
-ExactTexel *exact_texel_begin(Vec3f extent, unsigned cyclic, size_t layers, Arena *arena);
-/* Copies a layer's triangles. Those that are no numbers or wrap around too often (as voxel_layer_build() has it) are left out. */
+ExactTexel *exact_texel_begin(Vec3f extent, unsigned cyclic, Arena *arena);
+/* Copies a layer's triangles into `arena`, the same as before. Those that are no numbers or wrap around too often (as voxel_layer_build() has it) are left out. */
 void exact_texel_add_layer(ExactTexel *texel, const TexelMesh *mesh, Arena *arena);
-/* Builds the tree, once, after the last layer; `scratch` is left as it was. */
+/* Builds the tree, once, after the last layer, and puts the triangles in its order; `scratch` is left as it was. */
 void exact_texel_commit(ExactTexel *texel, Arena *arena, Arena *scratch);
 /* How many triangles there are, repetitions included. */
 size_t exact_texel_triangles(const ExactTexel *texel);

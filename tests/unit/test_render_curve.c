@@ -129,7 +129,7 @@ static void the_tree_leaves_out_nothing(void **state) {
             if (i % 5 == 0 && i) at = boxes[i - 1].min; /* some in one place */
             boxes[i] = (Box3){at, vec3_add(at, size)};
         }
-        const CurveTree *tree = curve_tree_build(boxes, counts[k], order, &arena);
+        const CurveTree *tree = curve_tree_build(boxes, counts[k], order, &arena, &arena);
         for (int i = 0; i < 200; i++) {
             Curve c = any_curve(&r, i % 3 ? 0.2 : 0);
             if (i % 4 == 0) c.chord.y = c.bow_from.y = c.bow_to.y = 0;

@@ -151,29 +151,73 @@ bool beam_draw_seen(Beam *beam, Vec3f a, Vec3f b, Vec3f c, uint32_t mark) {
 
 /* ---- meshes before few samples ---- */
 
-/* Rectangles around a mesh's triangles, and their greatest keys: a little more than rounding makes of them. The last few hold nothing. */
+/* Beyond corners and keys, as rounding may put what is computed from them. */
+static const float CORNER_SLACK = 2e-5f, KEY_SLACK = 4e-6f;
+
+/* Rectangles around a mesh's triangles, and their greatest keys. The last few hold nothing. */
 typedef struct Outlines {
     float left[BEAM_MESH], right[BEAM_MESH], top[BEAM_MESH], bottom[BEAM_MESH], key[BEAM_MESH];
-    float all_left, all_right, all_top, all_bottom, all_key;
 } Outlines;
 
 static void outline(const BeamMesh *mesh, Outlines *o) {
-    const float slack = 2e-5f, relative = 4e-6f;
-    o->all_left = o->all_top = INFINITY, o->all_right = o->all_bottom = o->all_key = -INFINITY;
     for (int i = 0; i < mesh->count; i++) {
         const uint8_t *corner = mesh->triangles[mesh->which[i]];
         const int a = corner[0], b = corner[1], c = corner[2];
-        o->left[i] = float_min(mesh->x[a], float_min(mesh->x[b], mesh->x[c])) - slack;
-        o->right[i] = float_max(mesh->x[a], float_max(mesh->x[b], mesh->x[c])) + slack;
-        o->top[i] = float_min(mesh->y[a], float_min(mesh->y[b], mesh->y[c])) - slack;
-        o->bottom[i] = float_max(mesh->y[a], float_max(mesh->y[b], mesh->y[c])) + slack;
+        o->left[i] = float_min(mesh->x[a], float_min(mesh->x[b], mesh->x[c])) - CORNER_SLACK;
+        o->right[i] = float_max(mesh->x[a], float_max(mesh->x[b], mesh->x[c])) + CORNER_SLACK;
+        o->top[i] = float_min(mesh->y[a], float_min(mesh->y[b], mesh->y[c])) - CORNER_SLACK;
+        o->bottom[i] = float_max(mesh->y[a], float_max(mesh->y[b], mesh->y[c])) + CORNER_SLACK;
         o->key[i] = float_max(mesh->key[a], float_max(mesh->key[b], mesh->key[c]));
-        o->key[i] += relative * (fabsf(mesh->key[a]) + fabsf(mesh->key[b]) + fabsf(mesh->key[c]));
-        o->all_left = float_min(o->all_left, o->left[i]), o->all_right = float_max(o->all_right, o->right[i]);
-        o->all_top = float_min(o->all_top, o->top[i]), o->all_bottom = float_max(o->all_bottom, o->bottom[i]);
-        o->all_key = float_max(o->all_key, o->key[i]);
+        o->key[i] += KEY_SLACK * (fabsf(mesh->key[a]) + fabsf(mesh->key[b]) + fabsf(mesh->key[c]));
     }
     for (int i = mesh->count; i % BEAM_LANES; i++) o->left[i] = INFINITY, o->right[i] = o->top[i] = o->bottom[i] = o->key[i] = -INFINITY;
+}
+
+/* A rectangle around all of them, and the greatest key. */
+typedef struct Extent {
+    float left, right, top, bottom, key;
+} Extent;
+
+static Floats lesser(Floats a, Floats b) {
+    const Masks less = a < b;
+    return (Floats)(((Masks)a & less) | ((Masks)b & ~less));
+}
+
+static float least_of(Floats f) { return float_min(float_min(f[0], f[1]), float_min(f[2], f[3])); }
+
+static const Extent NOWHERE = {INFINITY, -INFINITY, INFINITY, -INFINITY, -INFINITY};
+
+static Extent extent_of_some(const BeamMesh *mesh, float *least_key) {
+    Extent e = NOWHERE;
+    *least_key = INFINITY;
+    for (int i = 0; i < mesh->count; i++)
+        for (int k = 0; k < 3; k++) {
+            const int at = mesh->triangles[mesh->which[i]][k];
+            e.left = float_min(e.left, mesh->x[at]), e.right = float_max(e.right, mesh->x[at]);
+            e.top = float_min(e.top, mesh->y[at]), e.bottom = float_max(e.bottom, mesh->y[at]);
+            e.key = float_max(e.key, mesh->key[at]), *least_key = float_min(*least_key, mesh->key[at]);
+        }
+    return e;
+}
+
+/* The same of all corners: the greatest of each as the least of its negative. */
+static Extent extent_of_all(const BeamMesh *mesh, float *least_key) {
+    const float end = INFINITY;
+    Floats left = {end, end, end, end}, right = left, top = left, bottom = left, key = left, least = left;
+    for (int i = 0; i < mesh->corners; i += BEAM_LANES) {
+        const int from = int_min(i, mesh->corners - BEAM_LANES);
+        const Floats x = floats_at(mesh->x + from), y = floats_at(mesh->y + from), k = floats_at(mesh->key + from);
+        left = lesser(left, x), right = lesser(right, -x), top = lesser(top, y), bottom = lesser(bottom, -y), key = lesser(key, -k), least = lesser(least, k);
+    }
+    *least_key = least_of(least);
+    return (Extent){least_of(left), -least_of(right), least_of(top), -least_of(bottom), -least_of(key)};
+}
+
+static Extent extent_of(const BeamMesh *mesh) {
+    float least_key;
+    const Extent e = mesh->corners >= BEAM_LANES ? extent_of_all(mesh, &least_key) : extent_of_some(mesh, &least_key);
+    return (Extent){e.left - CORNER_SLACK, e.right + CORNER_SLACK, e.top - CORNER_SLACK, e.bottom + CORNER_SLACK,
+                    e.key + 3 * KEY_SLACK * float_max(fabsf(e.key), fabsf(least_key))};
 }
 
 /* The key at which the sample sees the triangle before what it has seen; false where it does not. */
@@ -212,26 +256,37 @@ static int nearest_of(const Beam *beam, const BeamMesh *mesh, const Outlines *o,
     return nearest;
 }
 
-int beam_draw_mesh(Beam *beam, const BeamMesh *mesh, BeamSeen seen[BEAM_FEW_SAMPLES]) {
+/* The samples that the mesh may be seen by; returns how many, -1 if there are more samples in the bins that it meets than few. */
+static int samples_before(const Beam *beam, const BeamMesh *mesh, uint32_t at[BEAM_FEW_SAMPLES]) {
     const BeamSamples *s = &beam->samples;
+    const Extent e = extent_of(mesh);
+    if (!(e.right >= 0 && e.left <= (float)s->columns && e.bottom >= 0 && e.top <= (float)s->rows)) return 0;
+    const int x0 = bin_below(e.left, s->columns - 1), x1 = bin_below(e.right, s->columns - 1);
+    const int y0 = bin_below(e.top, s->rows - 1), y1 = bin_below(e.bottom, s->rows - 1);
+    uint32_t all = 0;
+    int count = 0;
+    for (int row = y0; row <= y1; row++) all += s->first[row * s->columns + x1 + 1] - s->first[row * s->columns + x0];
+    if (all > BEAM_FEW_SAMPLES) return -1;
+    for (int row = y0; row <= y1; row++)
+        for (uint32_t i = s->first[row * s->columns + x0], end = s->first[row * s->columns + x1 + 1]; i < end; i++)
+            if (s->key[i] < e.key && s->x[i] >= e.left && s->x[i] <= e.right && s->y[i] >= e.top && s->y[i] <= e.bottom && !(beam->light && s->mark[i]))
+                at[count++] = i;
+    return count;
+}
+
+int beam_draw_mesh(Beam *beam, const BeamMesh *mesh, BeamSeen seen[BEAM_FEW_SAMPLES]) {
+    uint32_t at[BEAM_FEW_SAMPLES];
+    const int before = samples_before(beam, mesh, at);
+    if (before <= 0) return before;
     Outlines o;
     outline(mesh, &o);
-    if (!(o.all_right >= 0 && o.all_left <= (float)s->columns && o.all_bottom >= 0 && o.all_top <= (float)s->rows)) return 0;
-    const int x0 = bin_below(o.all_left, s->columns - 1), x1 = bin_below(o.all_right, s->columns - 1);
-    const int y0 = bin_below(o.all_top, s->rows - 1), y1 = bin_below(o.all_bottom, s->rows - 1);
-    uint32_t samples = 0;
     int count = 0;
-    for (int row = y0; row <= y1; row++) samples += s->first[row * s->columns + x1 + 1] - s->first[row * s->columns + x0];
-    if (samples > BEAM_FEW_SAMPLES) return -1;
-    for (int row = y0; row <= y1; row++)
-        for (uint32_t i = s->first[row * s->columns + x0], end = s->first[row * s->columns + x1 + 1]; i < end; i++) {
-            if (!(s->key[i] < o.all_key) || s->x[i] < o.all_left || s->x[i] > o.all_right || s->y[i] < o.all_top || s->y[i] > o.all_bottom) continue;
-            if (beam->light && s->mark[i]) continue;
-            const int triangle = nearest_of(beam, mesh, &o, i);
-            if (triangle < 0) continue;
-            if (beam->light) s->mark[i] = 1;
-            else seen[count++] = (BeamSeen){i, (uint8_t)triangle};
-        }
+    for (int i = 0; i < before; i++) {
+        const int triangle = nearest_of(beam, mesh, &o, at[i]);
+        if (triangle < 0) continue;
+        if (beam->light) beam->samples.mark[at[i]] = 1;
+        else seen[count++] = (BeamSeen){at[i], (uint8_t)triangle};
+    }
     return count;
 }
 

@@ -61,6 +61,7 @@ bool beam_draw_seen(Beam *beam, Vec3f a, Vec3f b, Vec3f c, uint32_t mark);
 /* Triangles that share corners, which lie before the beam's near end, as they are seen. */
 typedef struct BeamMesh {
     const float *x, *y, *key;
+    int corners;              /* how many there are, if all of them are corners of what is drawn; else 0 */
     const uint8_t (*triangles)[3];
     uint8_t which[BEAM_MESH]; /* of the triangles: those to be drawn */
     int count;

@@ -380,6 +380,7 @@ static void draw_cluster(Drawing *d, const TexelCluster *cluster, const CellBox 
         for (int k = 0; k < 3; k++) piece.p[k] = vertex_in_cell(&v, corner[k]), piece.q[k] = vertex_in_beam(&v, corner[k]), piece.x[k] = x[k];
         draw_bent(d, &piece, 0);
     }
+    whole.corners = whole.count == cluster->triangle_count ? cluster->vertex_count : 0;
     if (whole.count) draw_plain(d, &v, &whole);
 }
 

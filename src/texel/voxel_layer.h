@@ -5,7 +5,7 @@
 #include "texel/texel.h"
 #include "texel/voxel_code.h"
 
-enum { BRICK_SIDE = 8, BRICK_VOXELS = 512 };
+enum { BRICK_SIDE = 8, BRICK_VOXELS = 512, PLAIN_FLOATS = 12 };
 /* Levels of up to 8 voxels, and directions each way, for which it is known how much they have to be trimmed. */
 enum { TRIM_LEVELS = 7, TRIM_NODES = 9 };
 /* Directions that are looked along in pairs: the zenith, and rings of so many below it. */
@@ -51,6 +51,9 @@ typedef struct VoxelLevel {
     VoxelBrick *bricks;
     VoxelCode *codes; /* two more than code_count: readers look past the last before they know */
     size_t brick_count, code_count;
+    /* While voxel_layer_unpack() has it so, codes taken apart, behind one that is empty, and the number there of each voxel and of one more along each axis, x fastest; else NULL. */
+    float (*plain)[PLAIN_FLOATS];
+    uint16_t *plain_at;
 } VoxelLevel;
 
 /* Angles over which what is seen and what is lit forget each other, radians: up and down, and around the zenith, by height; 0: not known. */
@@ -97,6 +100,10 @@ VoxelLayer *voxel_layer_create(const TexelBuildOptions *options);
 void *voxel_layer_allocate(VoxelLayer *layer, size_t count, size_t size);
 /* Fills `support` of a level from its bricks; false when memory ran out. */
 bool voxel_level_mark_support(VoxelLayer *layer, VoxelLevel *level);
+/* Lays the voxels of coarse levels side by side, taken apart, so that reading them, which gives the same, takes a third of the time: for building, which reads each
+ * many times. Of levels that would take much memory, or when there is none, nothing. Ends with voxel_layer_pack(). */
+void voxel_layer_unpack(VoxelLayer *layer);
+void voxel_layer_pack(VoxelLayer *layer);
 /* Of every byte that reading depends on. */
 Hash128 voxel_layer_hash(const VoxelLayer *layer);
 

@@ -1,6 +1,7 @@
 #include "texel/voxel_layer.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /* The eight voxels around a point: x in bit 0, y in bit 1, z in bit 2. Empty ones have weight 0 and any code: testing each
  * would cost more, in mispredicted branches, than decoding them. */
@@ -119,24 +120,35 @@ static inline bool gather(const VoxelLevel *level, const bool cyclic[3], Vec3f p
 
 /* Sums of weight·density, weight·density·gamma and weight·density·S. */
 enum { SUM_DENSITY, SUM_GAMMA, SUM_SOLID, SUM_XX, SUM_YY, SUM_ZZ, SUM_XY, SUM_XZ, SUM_YZ, SUMS };
+/* A voxel that is taken apart has its density behind what is summed with it. */
+enum { PLAIN_DENSITY = SUMS };
+_Static_assert((int)PLAIN_DENSITY < (int)PLAIN_FLOATS, "a voxel's sums do not fit");
 
-/* Of four corners, side by side so that compilers vectorise it. */
-static inline void decode_four(const uint32_t diagonal[4], const uint32_t rest[4], const float weight[4],
-                               float lanes[SUMS][4]) {
+/* What is summed of four voxels of density 1, side by side so that compilers vectorise it. */
+static inline void decode_plain(const uint32_t diagonal[4], const uint32_t rest[4], float lanes[SUMS][4]) {
     for (int l = 0; l < 4; l++) {
         uint32_t d = diagonal[l], r = rest[l];
-        float w = weight[l] * voxel_code_density(r);
         float xx = voxel_code_diagonal(d, 0), yy = voxel_code_diagonal(d, 1), zz = voxel_code_diagonal(d, 2);
         float xy = voxel_code_mixed(d, 3), xz = voxel_code_mixed(r, 0), yz = voxel_code_mixed(r, 1);
-        lanes[SUM_DENSITY][l] = w;
-        lanes[SUM_GAMMA][l] = w * voxel_code_gamma(r);
-        lanes[SUM_SOLID][l] = w * voxel_code_solid(r);
-        lanes[SUM_XX][l] = w * (xx * xx + xy * xy + xz * xz);
-        lanes[SUM_YY][l] = w * (xy * xy + yy * yy + yz * yz);
-        lanes[SUM_ZZ][l] = w * (xz * xz + yz * yz + zz * zz);
-        lanes[SUM_XY][l] = w * (xx * xy + xy * yy + xz * yz);
-        lanes[SUM_XZ][l] = w * (xx * xz + xy * yz + xz * zz);
-        lanes[SUM_YZ][l] = w * (xy * xz + yy * yz + yz * zz);
+        lanes[SUM_DENSITY][l] = 1;
+        lanes[SUM_GAMMA][l] = voxel_code_gamma(r);
+        lanes[SUM_SOLID][l] = voxel_code_solid(r);
+        lanes[SUM_XX][l] = xx * xx + xy * xy + xz * xz;
+        lanes[SUM_YY][l] = xy * xy + yy * yy + yz * yz;
+        lanes[SUM_ZZ][l] = xz * xz + yz * yz + zz * zz;
+        lanes[SUM_XY][l] = xx * xy + xy * yy + xz * yz;
+        lanes[SUM_XZ][l] = xx * xz + xy * yz + xz * zz;
+        lanes[SUM_YZ][l] = xy * xz + yy * yz + yz * zz;
+    }
+}
+
+/* With their weights, and densities. */
+static inline void decode_four(const uint32_t diagonal[4], const uint32_t rest[4], const float weight[4],
+                               float lanes[SUMS][4]) {
+    decode_plain(diagonal, rest, lanes);
+    for (int l = 0; l < 4; l++) {
+        const float w = weight[l] * voxel_code_density(rest[l]);
+        for (int i = 0; i < SUMS; i++) lanes[i][l] *= w;
     }
 }
 
@@ -148,6 +160,101 @@ static void add_corners(const Corners *c, float factor, float sums[SUMS]) {
         for (int l = 0; l < 4; l++) lanes[i][l] += more[i][l];
     for (int i = 0; i < SUMS; i++)
         sums[i] += factor * ((lanes[i][0] + lanes[i][1]) + (lanes[i][2] + lanes[i][3]));
+}
+
+/* ---- taken apart ---- */
+
+/* The lower of the two voxels along an axis, and the weights of both. */
+static inline bool plain_on_axis(float x, int size, bool cyclic, size_t *lower, float weight[2]) {
+    if (!cyclic) {
+        if (!(x >= 0 && x <= (float)size)) return false;
+        x = float_clamp(x, 0.5f, (float)size - 0.5f);
+    }
+    x -= 0.5f;
+    if (!(fabsf(x) < 1e9f)) return false;
+    int whole = (int)x;
+    whole -= x < (float)whole;
+    weight[1] = x - (float)whole;
+    weight[0] = 1 - weight[1];
+    *lower = (size_t)(cyclic ? whole & (size - 1) : whole);
+    return true;
+}
+
+static inline size_t plain_cell(const VoxelLevel *level, size_t x, size_t y, size_t z) {
+    return (z * (size_t)(level->size[1] + 1) + y) * (size_t)(level->size[0] + 1) + x;
+}
+
+/* In the order in which add_corners() adds. */
+static void add_plain(const VoxelLevel *level, const bool cyclic[3], Vec3f p, float factor, float sums[SUMS]) {
+    size_t lower[3];
+    float side[3][2], w[8], all[PLAIN_FLOATS];
+    if (!plain_on_axis(p.x * level->per_side[0], level->size[0], cyclic[0], &lower[0], side[0]) ||
+        !plain_on_axis(p.y * level->per_side[1], level->size[1], cyclic[1], &lower[1], side[1]) ||
+        !plain_on_axis(p.z * level->per_side[2], level->size[2], cyclic[2], &lower[2], side[2]))
+        return;
+    const uint16_t *cell = level->plain_at + plain_cell(level, lower[0], lower[1], lower[2]);
+    const size_t row = plain_cell(level, 0, 1, 0), slice = plain_cell(level, 0, 0, 1);
+    const uint16_t at[8] = {cell[0], cell[1], cell[row], cell[row + 1], cell[slice], cell[slice + 1], cell[slice + row], cell[slice + row + 1]};
+    if (!(at[0] | at[1] | at[2] | at[3] | at[4] | at[5] | at[6] | at[7])) return;
+    const float(*v)[PLAIN_FLOATS] = (const float(*)[PLAIN_FLOATS])level->plain;
+    for (int i = 0; i < 8; i++) w[i] = side[0][i & 1] * (side[1][i >> 1 & 1] * side[2][i >> 2]) * v[at[i]][PLAIN_DENSITY];
+    for (int i = 0; i < PLAIN_FLOATS; i++)
+        all[i] = ((w[0] * v[at[0]][i] + w[4] * v[at[4]][i]) + (w[1] * v[at[1]][i] + w[5] * v[at[5]][i])) +
+                 ((w[2] * v[at[2]][i] + w[6] * v[at[6]][i]) + (w[3] * v[at[3]][i] + w[7] * v[at[7]][i]));
+    for (int i = 0; i < SUMS; i++) sums[i] += factor * all[i];
+}
+
+static void take_apart(const VoxelCode *code, float out[PLAIN_FLOATS]) {
+    const uint32_t diagonal[4] = {code->diagonal}, rest[4] = {code->rest};
+    float lanes[SUMS][4];
+    decode_plain(diagonal, rest, lanes);
+    for (int i = 0; i < SUMS; i++) out[i] = lanes[i][0];
+    out[PLAIN_DENSITY] = voxel_code_density(code->rest);
+}
+
+/* What lies one voxel beyond is the first again along cyclic axes, else nothing. */
+static void number_cells(VoxelLevel *level, const bool cyclic[3]) {
+    uint16_t *cell = level->plain_at;
+    for (int z = 0; z <= level->size[2]; z++)
+        for (int y = 0; y <= level->size[1]; y++)
+            for (int x = 0; x <= level->size[0]; x++, cell++) {
+                int at[3] = {x, y, z};
+                bool within = true;
+                for (int k = 0; k < 3; k++) {
+                    within &= cyclic[k] || at[k] < level->size[k];
+                    if (at[k] == level->size[k]) at[k] = 0;
+                }
+                const VoxelCode *code;
+                const int32_t brick = level->index[voxel_level_brick_at(level, at[0] / BRICK_SIDE, at[1] / BRICK_SIDE, at[2] / BRICK_SIDE)];
+                const uint32_t bit = (uint32_t)(at[1] % BRICK_SIDE * BRICK_SIDE + at[0] % BRICK_SIDE);
+                if (within && find_row(level, brick, (uint32_t)(at[2] % BRICK_SIDE), bit, &code) & 1) *cell = (uint16_t)(code - level->codes + 1);
+            }
+}
+
+void voxel_layer_unpack(VoxelLayer *layer) {
+    enum { MOST_CELLS = UINT16_MAX };
+    for (int i = 0; i < layer->levels; i++) {
+        VoxelLevel *level = &layer->level[i];
+        const size_t cells = plain_cell(level, 0, 0, (size_t)level->size[2] + 1);
+        if (cells > MOST_CELLS || level->plain) continue;
+        level->plain = calloc(level->code_count + 1, sizeof *level->plain);
+        level->plain_at = calloc(cells, sizeof *level->plain_at);
+        if (!level->plain || !level->plain_at) {
+            voxel_layer_pack(layer);
+            return;
+        }
+        for (size_t k = 0; k < level->code_count; k++) take_apart(&level->codes[k], level->plain[k + 1]);
+        number_cells(level, layer->cyclic);
+    }
+}
+
+void voxel_layer_pack(VoxelLayer *layer) {
+    for (int i = 0; i < layer->levels; i++) {
+        free(layer->level[i].plain);
+        free(layer->level[i].plain_at);
+        layer->level[i].plain = NULL;
+        layer->level[i].plain_at = NULL;
+    }
 }
 
 static bool finish(const float sums[SUMS], VoxelSample *out) {
@@ -185,7 +292,8 @@ static void add_level(const VoxelLayer *layer, int number, Vec3f p, float factor
         return;
     }
     Corners corners;
-    if (gather(level, layer->cyclic, p, &corners)) add_corners(&corners, factor * level->density_unit, sums);
+    if (level->plain) add_plain(level, layer->cyclic, p, factor * level->density_unit, sums);
+    else if (gather(level, layer->cyclic, p, &corners)) add_corners(&corners, factor * level->density_unit, sums);
 }
 
 bool voxel_layer_sample(const VoxelLayer *layer, int level, Vec3f p, VoxelSample *out) {

@@ -314,7 +314,9 @@ void voxel_layer_trim(VoxelLayer *layer, const TexelMesh *mesh, Vec3f extent, La
     TrimWork work = {.layer = layer, .mesh = mesh, .extent = extent, .coarse = mesh->triangle_count > TRIM_MANY_TRIANGLES, .views = views};
     views->triangles = mesh->triangle_count;
     views->levels = levels_to_trim(layer, mesh->triangle_count);
+    voxel_layer_unpack(layer);
     bool known = find_bounds(&work) && pool_run(pool, TRIM_DIRECTIONS + VIEWS_KEPT, look_through, &work);
+    voxel_layer_pack(layer);
     for (int node = 0; node < TRIM_DIRECTIONS; node++) known &= work.known[node];
     if (known) fill_between(layer->trim, work.coarse ? 0 : OFTEN_TRIMMED);
     if (known) join_horizon(layer->trim);
@@ -402,9 +404,12 @@ void voxel_layers_join(VoxelLayer *const *layers, LayerViews *const *views, size
         if (layers[k]->level[0].code_count > most->level[0].code_count) most = layers[k];
         views[0]->levels = int_max(views[0]->levels, views[k]->levels);
     }
-    if (count > 1 && !trim_all(&work, pool)) return;
-    see_all(&work);
-    compare_views(&work, most, pool);
+    for (size_t k = 0; k < count; k++) voxel_layer_unpack(layers[k]);
+    if (count == 1 || trim_all(&work, pool)) {
+        see_all(&work);
+        compare_views(&work, most, pool);
+    }
+    for (size_t k = 0; k < count; k++) voxel_layer_pack(layers[k]);
 }
 
 /* ---- reading ---- */

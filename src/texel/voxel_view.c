@@ -3,6 +3,7 @@
 #include "texel/voxel_layer.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Triangles that cross more lines and cover more places than this, over and over, are no texel's; nor those that lie so many grids off. */
 static const int64_t MOST_WORK = 1 << 26;
@@ -13,7 +14,7 @@ typedef struct ViewCorner {
     float column, row, height;
 } ViewCorner;
 
-enum { BATCH = 64, GROUP = 8 };
+enum { BATCH = 32, GROUP = 8 };
 
 /* Triangles on the grid, side by side, so that the compiler computes several at once. Lines of places are the grid's rows, or its columns where a
  * triangle crosses fewer of these; they are cut by GROUPs. */
@@ -32,7 +33,7 @@ typedef struct ViewBatch {
 
 /* Of lines nearly along a triangle's edge the place may be anything: it is cut off later. */
 static int least_not_below(float x) {
-    int whole = (int)float_clamp(x, -1e9f, 1e9f);
+    int whole = (int)float_min(float_max(x, -1e9f), 1e9f);
     return whole + ((float)whole < x);
 }
 
@@ -215,7 +216,7 @@ static int64_t mark_lines(const LayerView *v, const ViewBatch *b, int i, int num
         uint64_t bits = 0;
         for (int l = 0; l < GROUP; l++) bits |= (uint64_t)((1u << b->places[l][i]) - 1) << (GROUP * l);
         for (; bits; bits &= bits - 1) {
-            int bit = (int)count_bits((bits & (~bits + 1)) - 1), l = bit / GROUP;
+            int bit = __builtin_ctzll(bits), l = bit / GROUP;
             mark_place(v, b, i, b->first[i] + number + l, b->from[l][i] + bit % GROUP, out);
         }
         return GROUP;
@@ -234,7 +235,9 @@ static int64_t mark_batch(const LayerView *v, ViewBatch *b, const ViewSeen *out)
     int64_t work = b->count;
     for (int i = 0; i < b->count; i++) most = int_max(most, b->lines[i]);
     for (int number = 0; number < most && work < MOST_WORK; number += GROUP) {
-        for (int l = 0; l < GROUP; l++) cut_lines(b, number + l);
+        for (int l = 0; l < GROUP; l++)
+            if (number + l < most) cut_lines(b, number + l);
+            else memset(b->places[l], 0, sizeof b->places[l]);
         for (int i = 0; i < b->count; i++)
             if (number < b->lines[i]) work += mark_lines(v, b, i, number, out);
     }

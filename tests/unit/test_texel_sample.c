@@ -315,11 +315,50 @@ static void test_nearest_is_what_counts_most(void **state) {
     scene_free(&mesh);
 }
 
+/* Levels that are taken apart read as they did, to the bit, also beyond their sides. */
+static void test_unpacked_reads_the_same(void **state) {
+    (void)state;
+    enum { PLACES = 20000 };
+    TestMesh mesh = scene_leaves(40, .06, 8);
+    static VoxelSample before[PLACES], after;
+    static bool was[PLACES];
+    const unsigned cyclic[] = {0, TEXEL_CYCLIC_X | TEXEL_CYCLIC_Z, TEXEL_CYCLIC_Y};
+    int found = 0, unpacked = 0;
+    for (int kind = 0; kind < 3; kind++) {
+        VoxelLayer *layer = build(&mesh, 64, cyclic[kind], vec3f(1, .5f, 1));
+        for (int pass = 0; pass < 2; pass++) {
+            RandomStream random = {(uint64_t)kind};
+            if (pass) voxel_layer_unpack(layer);
+            for (int i = 0; i < PLACES; i++) {
+                Vec3f p = {(float)(1.4 * random_next_unit(&random) - .2), (float)(.8 * random_next_unit(&random) - .15), (float)(1.4 * random_next_unit(&random) - .2)};
+                if (i % 50 == 0) p = vec3f((float)(i / 50 % 2), (float)(i / 100 % 2) * .5f, (float)(i / 200 % 2));
+                const float lod = (float)(7 * random_next_unit(&random));
+                VoxelSample *v = pass ? &after : &before[i];
+                const bool any = voxel_layer_sample_lod(layer, lod, p, v);
+                if (!pass) {
+                    was[i] = any;
+                    continue;
+                }
+                assert_int_equal(any, was[i]);
+                assert_memory_equal(v, &before[i], sizeof *v);
+                found += any;
+            }
+        }
+        for (int level = 0; level < layer->levels; level++) unpacked += layer->level[level].plain != NULL;
+        voxel_layer_pack(layer);
+        for (int level = 0; level < layer->levels; level++) assert_null(layer->level[level].plain);
+        voxel_layer_destroy(layer);
+    }
+    assert_true(found > PLACES / 4 && unpacked >= 3 * 6);
+    scene_free(&mesh);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_interpolation),        cmocka_unit_test(test_clamped_levels_and_strange_points),
         cmocka_unit_test(test_wrapping_is_seamless), cmocka_unit_test(test_skipping_is_conservative),
         cmocka_unit_test(test_march_with_skipping), cmocka_unit_test(test_nearest_is_what_counts_most),
+        cmocka_unit_test(test_unpacked_reads_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

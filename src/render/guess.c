@@ -2,8 +2,8 @@
 
 #include "base/random.h"
 
-/* Squares of this size are tried first; WIDE ones where something else may be seen within; of mirrors and glass, whose details may be fine, none but
- * the narrowest. */
+/* Squares of this size are tried first; WIDE ones where something else may be seen within, or the details of light may be fine, as of mirrors and
+ * glass, of which the NARROW ones are asked less. */
 enum { WIDEST = 8, WIDE = 4, NARROW = 2 };
 /* What is seen between corners is as smooth a part of the same surface. */
 static const float SAME_NORMAL = 0.98f;
@@ -107,18 +107,29 @@ static Vec3f error_of(const Middle *guessed, const Middle *m) { return vec3f_sub
 
 static float most_of(Vec3f c) { return float_max(fabsf(c.x), float_max(fabsf(c.y), fabsf(c.z))); }
 
-/* Whether the corners and the middle, which is found for this, see the same surface, and its light there is what they tell: an edge that
- * parts them would show, and how much the light curves does. */
-static bool agree(Tile *t, const Square *s, int mx, int my) {
-    const Middle *corners[4], *middle = &t->middles[place(mx, my)];
+static bool corners_agree(const Tile *t, const Square *s) {
+    const Middle *corners[4];
     corners_of(t, s, corners);
     for (int k = 0; k < 4; k++)
         if (!has_finite_light(corners[k]) || !same_surface(corners[k], corners[0])) return false;
-    find(t, mx, my);
+    return true;
+}
+
+/* Whether a place of the square, which is found for this, sees the same surface as the corners, and its light there is what they tell: an edge that
+ * parts them would show, and how much the light curves does. */
+static bool agrees_at(Tile *t, const Square *s, int x, int y) {
+    const Middle *found = &t->middles[place(x, y)];
+    find(t, x, y);
     Guess guess = guess_of(t, s);
-    weigh(&guess, s, mx, my);
-    Middle guessed = *middle;
-    return guess_light(&guess, &guessed) && (double)most_of(error_of(&guessed, middle)) <= t->sight->tolerance;
+    weigh(&guess, s, x, y);
+    Middle guessed = *found;
+    return guess_light(&guess, &guessed) && (double)most_of(error_of(&guessed, found)) <= t->sight->tolerance;
+}
+
+/* In the middle, and where the light may have fine details in the middles of the sides. */
+static bool agree(Tile *t, const Square *s, int mx, int my, bool fine) {
+    if (!corners_agree(t, s) || !agrees_at(t, s, mx, my)) return false;
+    return !fine || (agrees_at(t, s, mx, s->y0) && agrees_at(t, s, s->x0, my) && agrees_at(t, s, s->x1, my) && agrees_at(t, s, mx, s->y1));
 }
 
 static int kind_of(const Tile *t, const Square *s) {
@@ -301,9 +312,10 @@ static bool fill_square(Tile *t, const Square *s, int mx, int my) {
     const int side = int_max(s->x1 - s->x0, s->y1 - s->y0);
     bool calm, tinted;
     corners_are(t, s, &calm, &tinted);
-    if (side > NARROW && !calm && !tinted) return false;
+    const bool fine = side > NARROW && !calm && !tinted;
+    if (side > WIDE && fine) return false;
     const VistaView view = sight->view ? sight->view(sight->context, s->x0, s->y0, s->x1, s->y1, t->middles[place(s->x0, s->y0)].object) : VISTA_OPEN;
-    if ((side > WIDE && view != VISTA_EVEN) || !agree(t, s, mx, my)) return false;
+    if ((side > WIDE && view != VISTA_EVEN) || !agree(t, s, mx, my, fine)) return false;
     const bool even = calm || (tinted && has_even_color(t, s, mx, my));
     return fill(t, s, view, even, tinted && !even);
 }

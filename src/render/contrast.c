@@ -8,24 +8,21 @@ static const float STEP_TO_ERROR = 0.408f;
 /* Where light changes alike on both sides a second difference is that of something smooth, of which the middle has but a small error. */
 static const float SMOOTH = 0.05f;
 
-/* With the pixels `away` before and after. Loops over arrays, which compilers turn into vectors. */
+/* With the pixels `away` before and after. A loop that compilers turn into vectors. */
 static inline void add_direction(const LightPlanes *light, int first, int away, int count, float *restrict most) {
-    float after[FILM_TILE], before[FILM_TILE], both[FILM_TILE], second[FILM_TILE];
-    for (int i = 0; i < count; i++) after[i] = before[i] = both[i] = second[i] = 0;
-    for (int c = 0; c < 3; c++) {
-        const float *here = light->channels[c] + first;
-        for (int i = 0; i < count; i++) {
-            float a = here[i + away] - here[i], b = here[i] - here[i - away], bend = a - b;
-            after[i] += a * a;
-            before[i] += b * b;
-            both[i] += a * b;
-            second[i] += bend * bend;
-        }
-    }
     for (int i = 0; i < count; i++) {
-        float larger = float_max(after[i], before[i]);
-        float step = float_max(SMOOTH, float_min(1, 1.4f - 2 * both[i] / float_max(larger, 1e-37f)));
-        most[i] = float_max(most[i], second[i] * step);
+        float after = 0, before = 0, both = 0, second = 0;
+        for (int c = 0; c < 3; c++) {
+            const float *here = light->channels[c] + first + i;
+            const float a = here[away] - here[0], b = here[0] - here[-away], bend = a - b;
+            after += a * a;
+            before += b * b;
+            both += a * b;
+            second += bend * bend;
+        }
+        const float larger = float_max(after, before);
+        const float step = float_max(SMOOTH, float_min(1, 1.4f - 2 * both / float_max(larger, 1e-37f)));
+        most[i] = float_max(most[i], second * step);
     }
 }
 

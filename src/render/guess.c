@@ -158,16 +158,18 @@ static bool try_guess(Tile *t, const Guess *guess, struct Kind *kind, int x, int
     return (double)most_of(off) <= t->sight->tolerance;
 }
 
-/* Of what the corners see, in their light; `flat`: they have one normal. */
-static void put_guess(Tile *t, const Guess *guess, bool flat, int x, int y) {
-    Middle *m = &t->middles[place(x, y)];
-    *m = *guess->corners[0];
-    take_mean(guess, m);
-    if (flat) return;
-    Vec3f normal = {0, 0, 0};
-    for (int k = 0; k < 4; k++) normal = vec3f_madd(normal, guess->corners[k]->normal, guess->weights[k]);
-    float length = vec3f_length(normal);
-    if (length > 0) m->normal = vec3f_scale(normal, 1 / length);
+/* What is interpolated of middles. */
+typedef struct Blend {
+    Vec3f color, lit, normal;
+    float alpha;
+} Blend;
+
+static Blend blend_of(const Middle *m) { return (Blend){m->seen.color, m->tint.lit, m->normal, m->seen.alpha}; }
+
+/* Where both are the same nothing is lost to rounding. */
+static Blend blend(const Blend *a, const Blend *b, float share) {
+    return (Blend){vec3f_madd(a->color, vec3f_sub(b->color, a->color), share), vec3f_madd(a->lit, vec3f_sub(b->lit, a->lit), share),
+                   vec3f_madd(a->normal, vec3f_sub(b->normal, a->normal), share), a->alpha + (b->alpha - a->alpha) * share};
 }
 
 /* The pixels beside one of a square, within it, that are known. */
@@ -217,6 +219,7 @@ typedef struct Fill {
     Guess guess;
     bool patterned; /* its light is that of a pattern's colours, which have to be looked at */
     bool flat;      /* the corners have one normal */
+    Blend ends[2];  /* of the row, between the corners */
 } Fill;
 
 /* Whether somebody has to look what is at a pixel: where a few things may be at one of four, of patterns at one of two, like squares of a
@@ -226,18 +229,36 @@ static bool is_asked(const Fill *f, int x, int y) {
     return f->view == VISTA_OPEN || (f->patterned && !((off_x + off_y) & 1)) || (f->view == VISTA_SOME && !((off_x | off_y) & 1));
 }
 
-static void look(Tile *t, const Fill *f, int x, int y) {
+static void look(Tile *t, Fill *f, int x, int y) {
+    weigh(&f->guess, &f->square, x, y);
     const bool holds = t->sight->see(t->sight->context, x, y, &f->guess, &t->middles[place(x, y)]);
     t->known[place(x, y)] = (uint8_t)(holds ? LOOKED + f->kind : FOUND);
     t->kinds[f->kind].guessed += holds;
 }
 
-static void put(Tile *t, const Fill *f, int x, int y) {
+static void begin_row(Fill *f, int y) {
+    const float share = (float)(y - f->square.y0) / (float)(f->square.y1 - f->square.y0);
+    for (int k = 0; k < 2; k++) {
+        const Blend above = blend_of(f->guess.corners[k]), below = blend_of(f->guess.corners[k + 2]);
+        f->ends[k] = blend(&above, &below, share);
+    }
+}
+
+/* Of what the corners see, in their light. */
+static void put_blend(const Fill *f, int x, Middle *m) {
+    const Blend between = blend(&f->ends[0], &f->ends[1], (float)(x - f->square.x0) / (float)(f->square.x1 - f->square.x0));
+    *m = *f->guess.corners[0];
+    m->seen = (Radiance){between.color, between.alpha};
+    m->tint.lit = between.lit;
+    if (!f->flat) m->normal = vec3f_normalize(between.normal);
+}
+
+static void put(Tile *t, Fill *f, int x, int y) {
     if (f->patterned && !(is_among(t, &f->square, x, y) && put_mean(t, &f->square, x, y))) {
         look(t, f, x, y);
         return;
     }
-    if (!f->patterned) put_guess(t, &f->guess, f->flat, x, y);
+    if (!f->patterned) put_blend(f, x, &t->middles[place(x, y)]);
     t->known[place(x, y)] = (uint8_t)(GUESSED + f->kind);
     t->kinds[f->kind].guessed++;
 }
@@ -286,18 +307,35 @@ static bool try_some(Tile *t, Fill *f) {
     return right;
 }
 
+/* Whether a pattern's colours change so evenly that light can be interpolated with them: one of five pixels is looked at, of each row and column. */
+static bool colors_agree(Tile *t, Fill *f, int mx, int my) {
+    const Square *s = &f->square;
+    Guess even = f->guess;
+    even.even = true;
+    for (int k = -1, count = (s->x1 - s->x0 + 1) * (s->y1 - s->y0 + 1); k < count; k++) {
+        const int x = k < 0 ? mx : s->x0 + k % (s->x1 - s->x0 + 1), y = k < 0 ? my : s->y0 + k / (s->x1 - s->x0 + 1);
+        if (k >= 0 && (x + 3 * y) % 5) continue;
+        if (t->known[place(x, y)] == UNKNOWN) look(t, f, x, y);
+        const Middle *m = &t->middles[place(x, y)];
+        Middle guessed = *m;
+        weigh(&even, s, x, y);
+        if (!guess_light(&even, &guessed) || (double)most_of(error_of(&guessed, m)) > t->sight->tolerance) return false;
+    }
+    return true;
+}
+
 static bool fill(Tile *t, const Square *s, VistaView view, bool even, bool patterned) {
-    Fill f = {*s, kind_of(t, s), view, guess_of(t, s), patterned, false};
+    Fill f = {.square = *s, .kind = kind_of(t, s), .view = view, .guess = guess_of(t, s), .patterned = patterned};
     f.guess.even = even;
     f.flat = have_one_normal(f.guess.corners);
     if (!try_some(t, &f)) return false;
+    if (patterned && view != VISTA_OPEN && colors_agree(t, &f, (s->x0 + s->x1) / 2, (s->y0 + s->y1) / 2)) f.patterned = false, f.guess.even = true;
     for (int asked = 1; asked >= 0; asked--)
-        for (int y = s->y0; y <= s->y1; y++)
-            for (int x = s->x0; x <= s->x1; x++) {
-                if (t->known[place(x, y)] != UNKNOWN || is_asked(&f, x, y) != asked) continue;
-                weigh(&f.guess, s, x, y);
-                (asked ? look : put)(t, &f, x, y);
-            }
+        for (int y = s->y0; y <= s->y1; y++) {
+            if (!asked && !f.patterned) begin_row(&f, y);
+            for (int x = s->x0; x <= s->x1; x++)
+                if (t->known[place(x, y)] == UNKNOWN && is_asked(&f, x, y) == asked) (asked ? look : put)(t, &f, x, y);
+        }
     return true;
 }
 
@@ -360,14 +398,20 @@ static void question(Tile *t, int known, int guessed, Misses *misses) {
     if (!holds_there(t, guessed % FILM_TILE, guessed / FILM_TILE)) misses->places[misses->count++] = (uint16_t)guessed;
 }
 
+/* Of two pixels beside each other one of which is a guess. */
+static void question_pair(Tile *t, int a, int b, Misses *misses) {
+    if ((t->known[a] < GUESSED) == (t->known[b] < GUESSED)) return;
+    if (t->known[a] < GUESSED) question(t, a, b, misses);
+    else question(t, b, a, misses);
+}
+
 /* An edge that goes from one square into another is followed there, where all corners may lie beside it. */
 static void follow_edges(Tile *t, int columns, int rows) {
     Misses misses = {.count = 0};
     for (int y = 0; y < rows; y++)
         for (int x = 0; x < columns; x++) {
-            const int here = place(x, y), right = x + 1 < columns ? here + 1 : here, below = y + 1 < rows ? here + FILM_TILE : here;
-            question(t, here, right, &misses), question(t, right, here, &misses);
-            question(t, here, below, &misses), question(t, below, here, &misses);
+            if (x + 1 < columns) question_pair(t, place(x, y), place(x + 1, y), &misses);
+            if (y + 1 < rows) question_pair(t, place(x, y), place(x, y + 1), &misses);
         }
     while (misses.count > 0) {
         const int here = misses.places[--misses.count], x0 = here % FILM_TILE, y0 = here / FILM_TILE;

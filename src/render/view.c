@@ -117,20 +117,25 @@ void view_prepare(View *view, Arena *arena) {
     view->pixel_area = vec3_length(across) / ((double)view->width * view->height);
 }
 
-static Cone flat_cone(const View *given, double s, double t, double width_px) {
+/* Into `out` number by number: whoever copies what was just written waits for it. */
+static void flat_cone(const View *given, double s, double t, double width_px, Cone *out) {
     View prepared;
     const View *view = given;
     if (!(view->pixel_area > 0)) prepared = *given, view_prepare(&prepared, NULL), view = &prepared;
     const Camera *c = &view->camera;
     const double pixel_area = view->pixel_area;
-    Vec3 offset = vec3_madd(vec3_scale(c->right, s), c->up, t);
-    if (c->kind == CAMERA_ORTHOGRAPHIC)
-        return (Cone){vec3_add(c->location, offset), vec3_normalize(c->direction), sqrt(pixel_area) * width_px, 0};
-    Vec3 d = vec3_add(c->direction, offset);
-    double length = vec3_length(d);
+    const Vec3 offset = vec3_madd(vec3_scale(c->right, s), c->up, t);
+    if (c->kind == CAMERA_ORTHOGRAPHIC) {
+        *out = (Cone){vec3_add(c->location, offset), vec3_normalize(c->direction), sqrt(pixel_area) * width_px, 0};
+        return;
+    }
+    const Vec3 d = vec3_add(c->direction, offset);
     /* The pixel's solid angle: its area on the image plane, foreshortened, over the distance squared. */
-    double cosine = fabs(vec3_dot(view->axis, d)) / length;
-    return (Cone){c->location, vec3_scale(d, 1 / length), 0, sqrt(pixel_area * cosine) / length * width_px};
+    const double shorter = 1 / vec3_length(d), cosine = fabs(vec3_dot(view->axis, d)) * shorter;
+    out->origin.x = c->location.x, out->origin.y = c->location.y, out->origin.z = c->location.z;
+    out->direction.x = d.x * shorter, out->direction.y = d.y * shorter, out->direction.z = d.z * shorter;
+    out->width = 0;
+    out->spread = sqrt(pixel_area * cosine) * shorter * width_px;
 }
 
 /* The pixel's solid angle, of lines that are not straight on the picture, from those beside it. Where origins move along one axis and
@@ -150,11 +155,17 @@ static Cone round_cone(const View *view, double s, double t, double width_px) {
     return (Cone){line.origin, d, moved / 2 / step * width_px, spread / step * width_px};
 }
 
+static void cone_at(const View *view, double x, double y, double width_px, Cone *out) {
+    const double s = x / view->width - 0.5, t = 0.5 - y / view->height;
+    if (view_is_flat(view)) flat_cone(view, s, t, width_px, out);
+    else if (view->camera.kind != CAMERA_MESH) *out = round_cone(view, s, t, width_px);
+    else if (!view_mesh_ray(view, x, y, 0, out)) *out = (Cone){.width = 0};
+}
+
 Cone view_cone(const View *view, double x, double y, double width_px) {
-    double s = x / view->width - 0.5, t = 0.5 - y / view->height;
     Cone seen;
-    if (view->camera.kind == CAMERA_MESH) return view_mesh_ray(view, x, y, 0, &seen) ? seen : (Cone){.width = 0};
-    return view_is_flat(view) ? flat_cone(view, s, t, width_px) : round_cone(view, s, t, width_px);
+    cone_at(view, x, y, width_px, &seen);
+    return seen;
 }
 
 /* The unit square onto the unit disc, evenly (Shirley & Chiu 1997). */
@@ -173,9 +184,9 @@ static double focus_of(const Camera *c, const Cone *cone) {
 /* POV-Ray's lens is a disc across the line of sight; its radius is a quarter of `aperture`. */
 bool view_ray(const View *view, double x, double y, double u, double v, double width_px, Cone *out) {
     if (view->camera.kind == CAMERA_MESH) return view_mesh_ray(view, x, y, u, out);
-    *out = view_cone(view, x, y, width_px);
+    cone_at(view, x, y, width_px, out);
+    if (!view_has_lens(view)) return view_is_flat(view) || vec3_length_squared(out->direction) > 0;
     if (vec3_length_squared(out->direction) == 0) return false;
-    if (!view_has_lens(view)) return true;
     double a, b, focus = focus_of(&view->camera, out), radius = view->camera.aperture / 4;
     disc_of_square(u, v, &a, &b);
     Vec3 s, t, in_focus = cone_point(out, focus);

@@ -102,6 +102,20 @@ static void test_details_of_patterns_are_not_guessed(void **state) {
     assert_in_range(w.found, 1, FILM_TILE * FILM_TILE / 4);
 }
 
+static Middle ramp(int x, int y) { return tinted(x, y, 0.2f + 0.01f * (float)(x + y)); }
+static Middle line(int x, int y) { return tinted(x, y, x == 13 ? 0.9f : 0.4f); }
+
+/* Colours that change evenly are interpolated where something at most a few pixels wide cannot hide between; a line one pixel wide shows. */
+static void test_even_patterns_are_guessed_from_few(void **state) {
+    (void)state;
+    Middle out[FILM_TILE * FILM_TILE];
+    Watch w = look_with(ramp, all_even, 0.01, FILM_TILE, FILM_TILE, out);
+    assert_true(worst(&w, out, FILM_TILE, FILM_TILE) < 0.01);
+    assert_in_range(w.found + w.guessed, 1, FILM_TILE * FILM_TILE / 3);
+    w = look_with(line, all_even, 0.01, FILM_TILE, FILM_TILE, out);
+    assert_true(worst(&w, out, FILM_TILE, FILM_TILE) < 0.01); /* it is 0.15 brighter or more */
+}
+
 static void test_even_light_is_guessed_from_few(void **state) {
     (void)state;
     Middle out[FILM_TILE * FILM_TILE];
@@ -242,6 +256,7 @@ static void test_tiles_of_any_size(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_even_light_is_guessed_from_few),
                                        cmocka_unit_test(test_details_of_patterns_are_not_guessed),
+                                       cmocka_unit_test(test_even_patterns_are_guessed_from_few),
                                        cmocka_unit_test(test_equal_light_stays_what_it_is),
                                        cmocka_unit_test(test_matter_of_skins),
                                        cmocka_unit_test(test_curved_light_is_as_exact_as_asked),

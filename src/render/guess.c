@@ -330,7 +330,7 @@ static bool fill(Tile *t, const Square *s, VistaView view, bool even, bool patte
     f.flat = have_one_normal(f.guess.corners);
     if (!try_some(t, &f)) return false;
     if (patterned && view != VISTA_OPEN && colors_agree(t, &f, (s->x0 + s->x1) / 2, (s->y0 + s->y1) / 2)) f.patterned = false, f.guess.even = true;
-    for (int asked = 1; asked >= 0; asked--)
+    for (int asked = f.patterned || f.view != VISTA_EVEN; asked >= 0; asked--)
         for (int y = s->y0; y <= s->y1; y++) {
             if (!asked && !f.patterned) begin_row(&f, y);
             for (int x = s->x0; x <= s->x1; x++)

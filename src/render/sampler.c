@@ -4,6 +4,7 @@
 #include "render/cell.h"
 #include "render/error_laws.h"
 #include "render/guess.h"
+#include "render/pixel_corners.h"
 #include "render/pixel_edge.h"
 #include "render/shared_light.h"
 #include "render/tile_sight.h"
@@ -19,9 +20,6 @@ enum { FIRST_NET = 4 };
 /* Of an edge so many samples are taken at most, until its error is this part of what is accepted; where that is not enough a net of so many tells more. */
 enum { EDGE_SAMPLES = 4, NET_AFTER_EDGE = 32 };
 static const double EDGE_ENOUGH = 0.25;
-/* Where a pixel is wider than this part of a texel's tile its line of sight tells little of what it sees of a skin: other copies, and the ground's own
- * shape, lie beside it. */
-static const double WIDE = 0.5;
 /* Middles are guessed where this is found to be no further off than so many times the error that is accepted, unless the guesses take
  * more than this part of it. */
 static const double ALIKE = 1, GUESSES_MAY = 0.25;
@@ -74,31 +72,6 @@ void sampler_count(const Sampler *sp, TraceCounters *counters, SamplerTally *tal
 static bool stopped(const Sampler *sp) { return sp->plan.interrupted && *sp->plan.interrupted; }
 
 /* ---- one sample ---- */
-
-/* `places`: also where on the surface, whatever it looks like. */
-static bool find_surface(const CompiledScene *compiled, const Cone *cone, bool places, SurfaceHit *hit) {
-    Ray ray = {cone->origin, cone->direction};
-    return hierarchy_meet_wide(compiled->hierarchy, RAY_SEES, &ray, cone_width(cone), 1e-9, VTS_INFINITY,
-                               places, hit);
-}
-
-/* Whether explicit surfaces look the same all over the pixel: same part, much the same direction and depth. */
-static bool alike(const SurfaceHit *a, const SurfaceHit *b) {
-    return a->object == b->object && vec3_dot(a->normal, b->normal) > 0.95 &&
-           fabs(a->t - b->t) < 0.05 * (a->t + b->t);
-}
-
-static bool surfaces_vary(const CompiledScene *compiled, double x, double y, bool found,
-                          const SurfaceHit *hit) {
-    for (int corner = 0; corner < 4; corner++) {
-        Cone probe = view_cone(&compiled->view, x + (corner & 1 ? 0.499 : -0.499),
-                               y + (corner & 2 ? 0.499 : -0.499), 1);
-        SurfaceHit other;
-        bool other_found = find_surface(compiled, &probe, false, &other);
-        if (other_found != found || (found && !alike(hit, &other))) return true;
-    }
-    return false;
-}
 
 /* The cone of a sample; false where the picture shows nothing. */
 static bool view_sample(const View *view, const Draw *draw, double x, double y, double width, Cone *cone) {
@@ -179,7 +152,7 @@ static void see(Sampler *sp, const Aim *aim, Cell *cell, const Guess *guess, Sig
     AovSum *aovs = aovs_of(sp, aim->px, aim->py);
     MatterAov matter = {.share = 0};
     tracer->matter = aovs ? &matter : NULL;
-    out->found = ray && find_surface(sp->compiled, &cone, aovs, &out->hit);
+    out->found = ray && pixel_surface(sp->compiled, &cone, aovs, &out->hit);
     out->reaching = 1;
     out->known = false;
     out->tint.texture = NULL;
@@ -192,22 +165,6 @@ static void see(Sampler *sp, const Aim *aim, Cell *cell, const Guess *guess, Sig
     aov_add(aovs, &voxels, 1);
     aov_add(aovs, &surface, 1);
     aovs->samples++;
-}
-
-/* Whether the pixel holds much that a skin's matter along its line of sight does not tell of. Of crests, over whose ground that line goes, a corner
- * tells how far they are. */
-static bool is_wide(const Sampler *sp, const Aim *aim, const Sighting *s) {
-    const View *view = &sp->compiled->view;
-    const double x = aim->px + aim->x, y = aim->py + aim->y, widest = WIDE * sp->compiled->least_tile;
-    const Cone cone = view_cone(view, x, y, 1);
-    if (!isfinite(widest)) return false;
-    if (s->found) return cone_diameter(&cone, s->hit.t) > widest;
-    for (int corner = 2; corner < 6; corner++) { /* those below come first */
-        const Cone probe = view_cone(view, x + (corner & 1 ? 0.499 : -0.499), y + (corner & 2 ? 0.499 : -0.499), 1);
-        SurfaceHit hit;
-        if (find_surface(sp->compiled, &probe, false, &hit)) return cone_diameter(&cone, hit.t) > widest;
-    }
-    return false;
 }
 
 /* The first sample, by which it is found whether the pixel's error can be that of edges. */
@@ -225,9 +182,10 @@ static bool see_first(Sampler *sp, const Aim *aim, const Guess *guess, Middle *o
         out->hidden = guess->corners[0]->hidden;
         return true;
     }
-    out->refinable = view_has_lens(&sp->compiled->view) || s.reaching >= ALL_EXPLICIT || is_wide(sp, aim, &s) ||
-                     (s.reaching >= EDGE_WORTH &&
-                      surfaces_vary(sp->compiled, aim->px + aim->x, aim->py + aim->y, s.found, &s.hit));
+    const double x = aim->px + aim->x, y = aim->py + aim->y;
+    const SurfaceHit *hit = s.found ? &s.hit : NULL;
+    out->refinable = view_has_lens(&sp->compiled->view) || s.reaching >= ALL_EXPLICIT || pixel_is_wide(sp->compiled, x, y, hit) ||
+                     (s.reaching >= EDGE_WORTH && pixel_surfaces_vary(sp->compiled, x, y, hit));
     const bool matter = s.reaching < ALL_EXPLICIT;
     out->calm = s.found ? s.hit.look->even && s.hit.look->plain && s.hit.share_count == 0 : sp->compiled->scene->sky_layer_count == 0;
     out->calm |= matter;
@@ -507,7 +465,7 @@ static bool even_in_tile(void *context, int x, int y, double width, const Middle
     Cone cone = view_cone(&compiled->view, sight->tile.x0 + x + 0.5, sight->tile.y0 + y + 0.5, width);
     SurfaceHit hit;
     SurfaceTint tint;
-    if (!find_surface(compiled, &cone, false, &hit)) return false;
+    if (!pixel_surface(compiled, &cone, false, &hit)) return false;
     surface_tint(&cone, &hit, &tint);
     const Vec3f a = tint.color, b = middle->tint.color;
     return tint.texture == middle->tint.texture && a.x == b.x && a.y == b.y && a.z == b.z;

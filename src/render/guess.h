@@ -1,7 +1,8 @@
-/* Middles of a tile's pixels where light is not found in each: between middles that agree it is interpolated. What is met there is found
- * wherever it can be anything else, so that no edge is lost; where the light may have details that a square's corners do not show, squares are as small
- * as can be; and the light of a share of those pixels, which tells how wrong the others are. Where light is a multiple of a pattern's
- * colour, what is interpolated is what makes it from the colour, which is looked at. The light of skins' matter is interpolated where all
+/* Middles of a tile's pixels where light is not found in each: between middles that agree it is interpolated, over eight pixels where only one thing
+ * can be seen. What is met there is found for one of four pixels where it can be anything else that is not narrower than three, and the edges that
+ * show are followed from pixel to pixel, so that none is lost; where the light may have details that a square's corners do not show, squares are small
+ * and more places have to agree; and the light of a share of those pixels, which tells how wrong the others are. Where light is a multiple of a
+ * pattern's colour, what is interpolated is what makes it from the colour, which is looked at, unless it changes as evenly. The light of skins' matter is interpolated where all
  * corners and the middle have some before them: between bare places there might be a blade that none of them tells of. (Adaptive
  * undersampling: Akimoto, Mase & Suenaga, Pixel-selected ray tracing, 1991; there edges are guessed, too.) */
 #ifndef VTS_RENDER_GUESS_H

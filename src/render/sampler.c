@@ -23,6 +23,8 @@ static const double EDGE_ENOUGH = 0.25;
 /* Middles are guessed where this is found to be no further off than so many times the error that is accepted, unless the guesses take
  * more than this part of it. */
 static const double ALIKE = 1, GUESSES_MAY = 0.25;
+/* However much error is accepted: of more the edges of shadows would be guessed away. */
+static const double ALIKE_AT_MOST = 8.0 / 255;
 /* The same of skins' matter, whose light takes far longer than that of surfaces. */
 static const double GUESSES_OF_MATTER_MAY = 0.5;
 /* Pixels that seem to need nothing are quiet: of a tile's, one of a square of so many each way is looked at all the same, for all of these, and of those that have had samples one of so many, if there are
@@ -481,7 +483,7 @@ static void see_shared(void *context, int tile_x, int tile_y, Middle *rows) {
     SharedSight shared = {.sampler = sp};
     if (sp->shares) shared.tile = tile_sight(sp->compiled, x0, y0, columns, row_count);
     else shared.tile = (TileSight){.x0 = x0, .y0 = y0};
-    const GuessSight sight = {.see = see_of_tile, .view = sp->shares && !sp->aovs ? view_in_tile : NULL, .even = even_in_tile, .context = &shared, .tolerance = ALIKE * error, .accepted = may * error * error};
+    const GuessSight sight = {.see = see_of_tile, .view = sp->shares && !sp->aovs ? view_in_tile : NULL, .even = even_in_tile, .context = &shared, .tolerance = fmin(ALIKE * error, ALIKE_AT_MOST), .accepted = may * error * error};
     guess_tile(&sight, columns, row_count, rows);
 }
 

@@ -36,6 +36,19 @@ static inline bool view_is_flat(const View *view) {
     if (view->camera.normal) return false;
     return view->camera.kind == CAMERA_PERSPECTIVE || view->camera.kind == CAMERA_ORTHOGRAPHIC;
 }
+/* Whether all lines of sight begin in one point and turn evenly from one to the next, but are on no plane. */
+static inline bool view_is_round(const View *view) {
+    switch (view->camera.kind) {
+    case CAMERA_FISHEYE:
+    case CAMERA_OMNIMAX:
+    case CAMERA_ULTRA_WIDE:
+    case CAMERA_PANORAMIC:
+    case CAMERA_SPHERICAL:
+    case CAMERA_CYLINDER_1:
+    case CAMERA_CYLINDER_2: return !view->camera.normal;
+    default: return false;
+    }
+}
 /* Whether the box certainly is out of a perspective picture. */
 bool view_misses(const View *view, Box3 box);
 

@@ -26,7 +26,7 @@
  * do not keep the old ones. Version 1 had another law of opacity, from 0 to 1 in steps of 1/21: it is read, and its gammas become those that
  * hide as much. Versions before 3 have no factors of coarse levels: they are 1; those before 5 factors of four levels only. Those before 7
  * have no pairs, or of another kind, which are passed over. */
-enum { TEXEL_FILE_VERSION = 7, TEXEL_FILE_OLDEST = 1, TEXEL_BUILDER_VERSION = 12, TEXEL_FILE_MOST_LAYERS = 256 };
+enum { TEXEL_FILE_VERSION = 7, TEXEL_FILE_OLDEST = 1, TEXEL_BUILDER_VERSION = 13, TEXEL_FILE_MOST_LAYERS = 256 };
 
 typedef struct TexelFileLayer {
     VoxelLayer *voxels;

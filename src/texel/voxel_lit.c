@@ -201,14 +201,15 @@ static void find_places(const PowerWork *work, int from_top, int eye, LitPlaces 
     }
 }
 
-static float weighted_sides(const float value[2]) { return SIDE_WEIGHT[0] * value[0] + SIDE_WEIGHT[1] * value[1]; }
+/* Of the other side so much as is of `sheets`: the rest is dark whatever the power is. */
+static float weighted_sides(const float value[2], float sheets) { return SIDE_WEIGHT[0] * value[0] + SIDE_WEIGHT[1] * sheets * value[1]; }
 
 /* How much comes of the light on what is seen, as that faces it, with shares taken to a power. */
-static float mean_share(const LitPlaces *p, int light, float power) {
+static float mean_share(const LitPlaces *p, int light, float sheets, float power) {
     float sum = 0, most = 0;
     for (int i = 0; i < p->count; i++) {
         const float sides[2] = {p->facing[0][light][i], p->facing[1][light][i]};
-        float weight = p->weight[i] * weighted_sides(sides);
+        float weight = p->weight[i] * weighted_sides(sides, sheets);
         sum += weight * powf(p->share[light][i], power), most += weight;
     }
     return most > 0 ? sum / most : -1;
@@ -217,12 +218,13 @@ static float mean_share(const LitPlaces *p, int light, float power) {
 /* The power that brings it to what the triangles say: the mean falls with it, about as its own power does. */
 static uint8_t find_power(const LitPlaces *p, int light, const PairShade *truth) {
     enum { TRIES = 3 };
-    const float came[2] = {truth->facing[0] * truth->lit[0], truth->facing[1] * truth->lit[1]};
-    float facing = weighted_sides(truth->facing), code = POWER_ONE;
+    /* Of the other side all that comes there is on sheets. */
+    float came = SIDE_WEIGHT[0] * truth->facing[0] * truth->lit[0] + SIDE_WEIGHT[1] * truth->facing[1] * truth->lit[1];
+    float facing = weighted_sides(truth->facing, truth->sheets), code = POWER_ONE;
     for (int i = 0; i < TRIES && facing > 0; i++) {
-        float mean = mean_share(p, light, exp2f((code - POWER_ONE) / POWER_STEPS));
+        float mean = mean_share(p, light, truth->sheets, exp2f((code - POWER_ONE) / POWER_STEPS));
         if (mean < 0) break;
-        code = float_clamp(code + (float)(power_code(weighted_sides(came) / facing, mean) - POWER_ONE), 0, 255);
+        code = float_clamp(code + (float)(power_code(came / facing, mean) - POWER_ONE), 0, 255);
     }
     return (uint8_t)lrintf(code);
 }
@@ -231,11 +233,12 @@ static float factor_of(int code) { return exp2f((float)(code - POWER_ONE) / POWE
 
 static uint8_t factor_code(float factor) { return (uint8_t)int_clamp((int)lrintf(POWER_ONE + POWER_STEPS * log2f(factor)), 0, 255); }
 
-/* What then is missing of the light on a side. */
-static uint8_t find_factor(const LitPlaces *p, int light, const PairShade *truth, int side, float power) {
-    float sum = 0;
+/* What then is missing of the light on a side; of the other one sheets have it all, which is certain. */
+static uint8_t find_factor(const LitPlaces *p, int light, const PairShade *truth, int side, float power, float certain) {
+    float sum = 0, sheets = side ? truth->sheets : 1;
     for (int i = 0; i < p->count; i++) sum += p->weight[i] * p->facing[side][light][i] * powf(p->share[light][i], power);
-    return factor_code((truth->facing[side] * truth->lit[side] + LEAST_FACING) / (sum / p->all + LEAST_FACING));
+    uint8_t code = less_certain(factor_code((truth->facing[side] * truth->lit[side] + LEAST_FACING) / (sheets * sum / p->all + LEAST_FACING)), certain);
+    return factor_code(factor_of(code) * float_max(sheets, LEAST_SHARE));
 }
 
 static float mean_beside(const LitPlaces *p) {
@@ -254,7 +257,7 @@ static void find_matter_powers(PowerWork *work, int from_top, int eye) {
         const PairShade *truth = &work->truth->shades[entry];
         pairs->matter[from_top][entry] = less_certain(find_power(&places, light, truth), certainty(work->truth->triangles, FEW_TRIANGLES));
         float power = factor_of(pairs->matter[from_top][entry]);
-        for (int side = 0; side < 2; side++) pairs->facing[side][from_top][entry] = less_certain(find_factor(&places, light, truth, side, power), certainty(work->truth->triangles, SOME_TRIANGLES));
+        for (int side = 0; side < 2; side++) pairs->facing[side][from_top][entry] = find_factor(&places, light, truth, side, power, certainty(work->truth->triangles, SOME_TRIANGLES));
     }
 }
 

@@ -51,17 +51,20 @@ static int wrapped(float place, int places) {
 /* What is seen, and what of it is lit; by sides as PairShade. */
 typedef struct LitSums {
     int seen, lit;
-    float facing[2], lit_facing[2];
+    float facing[2], lit_facing[2], walls; /* walls: of facing[1] */
 } LitSums;
 
 /* A direction as (slope, 1, slope), times a normal. */
 static float along(const PairView *v, const ViewNormal *n) { return (float)n->x * v->slope_x + (float)n->y + (float)n->z * v->slope_z; }
 
-static void add_place(LitSums *sums, float to_eye, float to_light, bool is_lit) {
+/* The other side of a wall is in the dark of its solid, however thin that is. */
+static void add_place(LitSums *sums, float to_eye, float to_light, bool wall, bool is_open) {
     int side = (to_eye < 0) != (to_light < 0);
+    bool is_lit = is_open && !(wall && side);
     sums->seen++;
-    sums->lit += is_lit;
+    sums->lit += is_open;
     sums->facing[side] += fabsf(to_light);
+    sums->walls += wall && side ? fabsf(to_light) : 0;
     sums->lit_facing[side] += is_lit ? fabsf(to_light) : 0;
 }
 
@@ -84,7 +87,7 @@ static LitSums lit_sums(const PairView *eye, const PairView *light, int grid, co
             float x = (float)column + height * x_per, z = (float)row + height * z_per;
             const ViewNormal *n = &eye->normal[at];
             float to_light = along(light, n), own = own_height(n, to_light, (floorf(x + beside + 0.5f) - x) * cell_x, (floorf(z + 0.5f) - z) * cell_z, cell);
-            add_place(&sums, along(eye, n), to_light, light->top[wrapped(z, grid) * grid + wrapped(x + beside, grid)] <= height + own + LEAST_OWN * cell);
+            add_place(&sums, along(eye, n), to_light, n->solid, light->top[wrapped(z, grid) * grid + wrapped(x + beside, grid)] <= height + own + LEAST_OWN * cell);
         }
     return sums;
 }
@@ -115,7 +118,7 @@ static float share_of(float part, float whole) { return whole > 0 ? part / whole
 static PairShade pair_shade(const PairView *eye, const PairView *light, int grid, const float size[2]) {
     LitSums sums = lit_sums(eye, light, grid, size, 0);
     float unit = 127 * sqrtf(1 + light->slope_x * light->slope_x + light->slope_z * light->slope_z) * (float)int_max(sums.seen, 1);
-    PairShade out = {.all = share_of((float)sums.lit, (float)sums.seen)};
+    PairShade out = {.all = share_of((float)sums.lit, (float)sums.seen), .sheets = share_of(sums.facing[1] - sums.walls, sums.facing[1])};
     for (int side = 0; side < 2; side++) {
         out.facing[side] = sums.facing[side] / unit;
         out.lit[side] = share_of(sums.lit_facing[side], sums.facing[side]);

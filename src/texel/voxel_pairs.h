@@ -26,7 +26,8 @@ typedef struct PairView {
 typedef struct PairShade {
     float facing[2]; /* |n · light| where the light falls on this side, else 0: its mean over all that is seen, were nothing in the light's way */
     float lit[2];    /* which share of that comes there */
-    float all;       /* the share that is lit of all that is seen, however it is turned */
+    float sheets;    /* the share of facing[1] that is of sheets: walls of solids have no light on the other side */
+    float all;       /* the share that lies open to the light of all that is seen, however it is turned */
 } PairShade;
 /* Sets layer->pairs.lit, and `shades` by direction to the eye, then to the light, from views along the directions of the nodes, with normals. `grid`: a power of two;
  * `size`: of the period along x and z; the middle of the first place is the same in all views. False if the pool was cancelled. */

@@ -139,15 +139,15 @@ static void set_up(ViewBatch *b) {
 
 static int8_t of_unit(float x) { return (int8_t)lrintf(127 * float_clamp(x, -1, 1)); }
 
-/* On the grid a triangle is height = a + b·column + c·row, and columns and rows are what the view's slopes leave of x and z. */
-static void find_normals(const LayerView *v, ViewBatch *b) {
+/* Of triangles of which solid[] tells which are walls, or NULL. On the grid a triangle is height = a + b·column + c·row, and columns and rows are what the view's slopes leave of x and z. */
+static void find_normals(const LayerView *v, const bool *solid, ViewBatch *b) {
     float columns = VIEW_GRID / v->size[0], rows = VIEW_GRID / v->size[1];
     for (int i = 0; i < b->count; i++) {
         float x = b->per_column[i] * columns, z = b->per_row[i] * rows;
         Vec3f n = {-x, 1 + x * v->slope_x + z * v->slope_z, -z};
         float length = vec3f_length(n);
         n = length > 0 && length < INFINITY ? vec3f_scale(n, 1 / length) : vec3f(0, 1, 0); /* seen from the edge */
-        b->normal[i] = (ViewNormal){of_unit(n.x), of_unit(n.y), of_unit(n.z)};
+        b->normal[i] = (ViewNormal){of_unit(n.x), of_unit(n.y), of_unit(n.z), solid && solid[i]};
     }
 }
 
@@ -255,7 +255,7 @@ double layer_view_hidden(const LayerView *view, const TexelMesh *mesh, float *to
     for (size_t t = 0; known && t < mesh->triangle_count && work < MOST_WORK; t += BATCH) {
         fill_batch(&batch, mesh, corners, t);
         set_up(&batch);
-        if (normal) find_normals(view, &batch);
+        if (normal) find_normals(view, mesh->solid ? mesh->solid + t : NULL, &batch);
         work += mark_batch(view, &batch, &seen);
     }
     for (size_t i = 0; i < VIEW_PLACES; i++) hidden += top[i] >= 0;

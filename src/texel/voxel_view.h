@@ -21,6 +21,7 @@ typedef struct LayerView {
 /* Of unit length are 127; to which side is all the same. */
 typedef struct ViewNormal {
     int8_t x, y, z;
+    bool solid; /* a wall of a closed solid */
 } ViewNormal;
 
 /* The share of the view that the triangles hide; < 0 where that is not known: no memory, or triangles that are so large that no texel has them.

@@ -68,9 +68,14 @@ static void add_height(void *target, size_t entry, double share) {
     h->sum += share * height_of(h->normal, value);
 }
 
+/* Whether heights are the pattern's values, which are means over the footprint themselves. */
+static bool heights_are_means(const Normal *normal) {
+    return normal->pattern->kind == PATTERN_PIGMENT && !normal->slope_count && pigment_wave(normal->pattern) == WAVE_RAMP;
+}
+
 /* The mean height over a spot of pattern space. */
 static double height_at(const Normal *normal, const Spot *spot) {
-    if (spot_is_point(spot)) return height_of(normal, pattern_number(normal->pattern, spot));
+    if (spot_is_point(spot) || heights_are_means(normal)) return height_of(normal, pattern_number(normal->pattern, spot));
     HeightSum sum = {normal, 0};
     pattern_blend(normal->pattern, spot, add_height, &sum);
     return sum.sum;

@@ -113,20 +113,51 @@ static size_t material_number(const Pigment *pattern, const Spot *spot) {
     return number > count ? number % count : number == count && count ? count - 1 : number;
 }
 
-void pattern_blend(const Pigment *pattern, const Spot *spot, BlendVisit *visit, void *target) {
-    PatternTraits traits = pattern_traits(pattern->kind);
-    if (traits.blocks)
-        blend_blocks(pattern, spot, visit, target);
-    else if (pattern->kind == PATTERN_CELLS)
+/* Shares of the first entries, added up: an entry may be a pigment or a texture that takes long to look at, and the ranges and places of a
+ * footprint mostly fall on the same few entries. */
+enum { MERGED_ENTRIES = 32 };
+typedef struct MergedShares {
+    double shares[MERGED_ENTRIES];
+    BlendVisit *visit;
+    void *target;
+} MergedShares;
+
+static void merge_share(void *target, size_t entry, double share) {
+    MergedShares *m = target;
+    if (entry < MERGED_ENTRIES)
+        m->shares[entry] += share;
+    else
+        m->visit(m->target, entry, share);
+}
+
+static void blend_values(const Pigment *pattern, const Spot *spot, BlendVisit *visit, void *target) {
+    if (pattern->kind == PATTERN_CELLS)
         blend_cells(pattern, spot, visit, target);
+    else if (pattern_traits(pattern->kind).sampled && !spot_is_point(spot))
+        blend_sampled(pattern, spot, visit, target);
+    else
+        blend_spread(pattern, pattern_value(pattern, spot), 1, visit, target);
+}
+
+static void blend_merged(const Pigment *pattern, const Spot *spot, BlendVisit *visit, void *target) {
+    MergedShares merged;
+    const size_t count = size_min(colormap_of(pattern).count, MERGED_ENTRIES);
+    merged.visit = visit, merged.target = target;
+    for (size_t k = 0; k < count; k++) merged.shares[k] = 0;
+    blend_values(pattern, spot, merge_share, &merged);
+    for (size_t k = 0; k < count; k++)
+        if (merged.shares[k] > 0) visit(target, k, merged.shares[k]);
+}
+
+void pattern_blend(const Pigment *pattern, const Spot *spot, BlendVisit *visit, void *target) {
+    if (pattern_traits(pattern->kind).blocks)
+        blend_blocks(pattern, spot, visit, target);
     else if (pattern->kind == PATTERN_AVERAGE)
         blend_average(pattern, visit, target);
     else if (pattern->kind == PATTERN_MATERIAL)
         visit(target, material_number(pattern, spot), 1);
-    else if (traits.sampled && !spot_is_point(spot))
-        blend_sampled(pattern, spot, visit, target);
     else
-        blend_spread(pattern, pattern_value(pattern, spot), 1, visit, target);
+        blend_merged(pattern, spot, visit, target);
 }
 
 /* ---- colours ---- */

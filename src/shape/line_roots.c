@@ -61,7 +61,8 @@ AffineForm line_bounds(LineSearch *s, double a, double b) {
         for (int k = 0; k < 3; k++) spans[k] = affine_range(in[k]);
         tape_eval_interval(line->tape, spans, &range, s->intervals);
         if (range.low > line->level) return (AffineForm){HUGE_VAL, 0, 0, false};
-        if (line->method == LINE_INTERVAL) out = affine_of_interval(range);
+        if (line->method == LINE_INTERVAL || range.high <= line->level) out = affine_of_interval(range);
+        out.nan = range.nan;
     }
     return affine_SUB(out, affine_point(line->level));
 }

@@ -57,11 +57,15 @@ static inline bool interval_has_infinity(Interval a) { return a.low == -HUGE_VAL
 
 /* ---- arithmetic ---- */
 
+/* A sum so small that 2⁻⁵² of it is no number is exact: sums of what is not negative are not, which square roots ask for. */
+static inline double sum_down(double x) { return x == HUGE_VAL ? DBL_MAX : x - fabs(x) * 0x1p-52; }
+static inline double sum_up(double x) { return x == -HUGE_VAL ? -DBL_MAX : x + fabs(x) * 0x1p-52; }
+
 static inline Interval interval_ADD(Interval a, Interval b) {
     if (interval_is_never(a) || interval_is_never(b)) return interval_never();
     bool nan = a.nan || b.nan || (a.low == -HUGE_VAL && b.high == HUGE_VAL) || (a.high == HUGE_VAL && b.low == -HUGE_VAL);
     double low = a.low + b.low, high = a.high + b.high; /* ∞ − ∞: nothing is known */
-    return (Interval){low == low ? round_down(low) : -HUGE_VAL, high == high ? round_up(high) : HUGE_VAL, nan};
+    return (Interval){low == low ? sum_down(low) : -HUGE_VAL, high == high ? sum_up(high) : HUGE_VAL, nan};
 }
 
 static inline Interval interval_NEG(Interval a) { return (Interval){-a.high, -a.low, a.nan}; }

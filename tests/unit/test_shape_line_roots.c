@@ -170,6 +170,43 @@ static void hard_places_with(int lanes) {
     arena_destroy(&arena);
 }
 
+/* √(Σ max(0, |xₖ| − 0.45)²) − 0.05: inside, the root is of nothing but zeros, whose roundings must not make it doubtful. */
+static const Tape *rounded_box(Arena *arena) {
+    TapeBuilder *b = tape_builder_create(arena, 3);
+    TapeRef zero = tape_constant(b, 0), square = zero;
+    for (int k = 0; k < 3; k++) {
+        TapeRef beyond = sum(b, tape_unary(b, TAPE_ABS, tape_input(b, k), (Span){0}), tape_constant(b, -0.45));
+        TapeRef outside = tape_binary(b, TAPE_MAX, zero, beyond, (Span){0});
+        square = sum(b, square, tape_unary(b, TAPE_SQR, outside, (Span){0}));
+    }
+    TapeRef f = sum(b, tape_unary(b, TAPE_SQRT, square, (Span){0}), tape_constant(b, -0.05));
+    return tape_finish(b, &f, 1);
+}
+
+/* Two places each, found with few bounds, and every piece settled. */
+static void insides_of_roots_of_zeros(void **state) {
+    (void)state;
+    Arena arena;
+    arena_init(&arena, NULL, 0);
+    const Tape *tape = rounded_box(&arena);
+    for (uint64_t i = 0; i < 200; i++)
+        for (int lanes = ONE; lanes <= MANY; lanes++) {
+            Vec3 target = vec3(0.8 * unit(i, 0) - 0.4, 0.8 * unit(i, 1) - 0.4, 0.8 * unit(i, 2) - 0.4), origin = vec3(1, 1.2, -2);
+            Line line = line_of(&arena, tape, 0, origin, vec3_sub(target, origin), LINE_AFFINE_OPTIMISED, lanes, 4);
+            LineWork work = {0, 0, 0};
+            double t = 0;
+            bool falling = false;
+            assert_true(line_first_root(&line, 0, 2, &t, &falling, &work));
+            assert_true(falling);
+            assert_true(line_first_root(&line, line_behind(&line, t), 2, &t, &falling, &work));
+            assert_false(falling);
+            assert_false(line_first_root(&line, line_behind(&line, t), 2, &t, &falling, &work));
+            assert_int_equal(work.unsettled, 0);
+            assert_true(work.bounds < 1000);
+        }
+    arena_destroy(&arena);
+}
+
 static void hard_places(void **state) {
     (void)state;
     hard_places_with(ONE);
@@ -182,6 +219,7 @@ int main(void) {
         cmocka_unit_test(scale_does_not_matter),
         cmocka_unit_test(all_of_a_polynomial_in_turn),
         cmocka_unit_test(hard_places),
+        cmocka_unit_test(insides_of_roots_of_zeros),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -108,12 +108,46 @@ static double interior(const FractalSettings *f, Complex z, double nearest) {
     }
 }
 
+/* Whether the iteration from z never ends otherwise than by its count, as it comes back to where it was to the last bit (Brent 1980): then only
+ * the place in the cycle counts. */
+typedef struct Cycle {
+    Complex mark;
+    int marked, next; /* iterations */
+} Cycle;
+
+/* The iteration to go on with: `i`, or one that as many whole cycles lie before the last. */
+static int behind_cycles(Cycle *cycle, Complex z, int i, int iterations) {
+    if (z.re == cycle->mark.re && z.im == cycle->mark.im) {
+        const int length = i - cycle->marked;
+        cycle->next = iterations;
+        return i + (iterations - 1 - i) / length * length;
+    }
+    if (i == cycle->next) cycle->mark = z, cycle->marked = i, cycle->next = i < iterations / 2 ? 2 * i : iterations;
+    return i;
+}
+
+/* What most pictures ask for: z² + c. */
+static double square_number(const FractalSettings *f, Complex z, Complex c) {
+    double nearest = norm(z);
+    Cycle cycle = {{NAN, NAN}, 0, 8};
+    for (int i = 0; i < f->iterations; i++) {
+        const double re = z.re * z.re - z.im * z.im + c.re, im = 2 * z.re * z.im + c.im;
+        const double reach = re * re + im * im;
+        z.re = re, z.im = im;
+        nearest = nearest < reach ? nearest : reach;
+        if (reach > 4) return exterior(f, i, z);
+        if (cycle.next < f->iterations) i = behind_cycles(&cycle, z, i, f->iterations);
+    }
+    return interior(f, z, nearest);
+}
+
 double fractal_number(const Pigment *pigment, Vec3 p) {
     const FractalSettings *f = &pigment->fractal;
     bool julia = pigment->kind == PATTERN_JULIA || pigment->kind == PATTERN_MAGNET_JULIA;
     bool from_zero = pigment->kind == PATTERN_MAGNET_MANDEL;
     Complex place = {p.x, p.y}, c = julia ? (Complex){f->re, f->im} : place;
     Complex z = from_zero ? (Complex){0, 0} : place;
+    if (!f->magnet && f->exponent == 2) return square_number(f, z, c);
     double nearest = from_zero ? 10000 : norm(z);
     for (int i = 0; i < f->iterations; i++) {
         z = step(f, z, c);

@@ -85,10 +85,37 @@ static void water_comes_from_the_noise(void **state) {
     }
 }
 
+/* z² + c counted out, one iteration after the other. */
+static double counted_out(const FractalSettings *f, double x, double y) {
+    double re = x, im = y, nearest = x * x + y * y;
+    for (int i = 0; i < f->iterations; i++) {
+        const double next = re * re - im * im + x;
+        im = 2 * re * im + y, re = next;
+        nearest = fmin(nearest, re * re + im * im);
+        if (re * re + im * im > 4) return (double)i / f->iterations;
+    }
+    const double values[] = {1, sqrt(nearest), re, im, re * re, im * im, re * re + im * im};
+    return values[f->interior];
+}
+
+/* Cycles that are left out change nothing, not even which place of them is the last. */
+static void fractals_skip_whole_cycles(void **state) {
+    (void)state;
+    Pigment pigment = make_pigment(PATTERN_MANDEL);
+    FractalSettings *f = &pigment.fractal;
+    f->exponent = 2, f->exterior = 1, f->exterior_factor = f->interior_factor = 1;
+    for (int k = 0; k < 4000; k++) {
+        const double x = -2 + 2.6 * (k % 63) / 62, y = -1.2 + 2.4 * (k / 63) / 63;
+        f->interior = k % 7, f->iterations = 1 + k * 37 % 3001;
+        assert_true(fractal_number(&pigment, vec3(x, y, 0)) == counted_out(f, x, y));
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gives_povrays_values),
         cmocka_unit_test(water_comes_from_the_noise),
+        cmocka_unit_test(fractals_skip_whole_cycles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -215,12 +215,21 @@ static double point_weight(ColorMap map, size_t k, double value) {
     return next >= value ? (next - value) / (next - x) : 0;
 }
 
-double colormap_weight(ColorMap map, size_t k, const MapPieces *pieces) {
-    double weight = 0;
-    for (int i = 0; i < pieces->count; i++) {
-        double lo = pieces->items[i].lo, hi = pieces->items[i].hi;
-        double part = hi > lo ? interval_weight(map, k, lo, hi) : point_weight(map, k, lo);
-        weight += pieces->items[i].weight * part;
+/* Of the entries before the last the first that is not before x. */
+static size_t entry_from(ColorMap map, double x) {
+    size_t k = 0;
+    while (k + 1 < map.count && map.entries[k].position < x) k++;
+    return k;
+}
+
+/* Only entries between which a piece lies have a part in it: one before it, one behind it, and all within. */
+void colormap_blend(ColorMap map, const MapPieces *pieces, double share, BlendVisit *visit, void *target) {
+    for (int i = 0; i < pieces->count && map.count > 0; i++) {
+        const double lo = pieces->items[i].lo, hi = pieces->items[i].hi, whole = share * pieces->items[i].weight;
+        const size_t from = entry_from(map, lo), to = entry_from(map, hi);
+        for (size_t k = from > 0 ? from - 1 : 0; k <= to; k++) {
+            const double weight = hi > lo ? interval_weight(map, k, lo, hi) : point_weight(map, k, lo);
+            if (weight > 0) visit(target, k, whole * weight);
+        }
     }
-    return weight;
 }

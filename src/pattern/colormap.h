@@ -34,7 +34,10 @@ typedef struct MapPieces {
 
 /* The values, after the pattern's restart, the pigment's frequency and phase and the wave, that `spread` stands for. */
 MapPieces colormap_pieces(const Pigment *pigment, Spread spread);
-/* The weight of entry k in the mean over the pieces. Weights of all entries add up to 1. */
-double colormap_weight(ColorMap map, size_t k, const MapPieces *pieces);
+/* Called with the number of an entry of the pattern and its share; shares add up to 1. Numbers of block patterns may go past
+ * the entries that the pattern has. */
+typedef void BlendVisit(void *target, size_t entry, double share);
+/* The entries that have a part in the mean over the pieces, for each piece in their order; shares add up to `share`. */
+void colormap_blend(ColorMap map, const MapPieces *pieces, double share, BlendVisit *visit, void *target);
 
 #endif

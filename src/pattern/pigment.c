@@ -8,13 +8,6 @@
 
 /* ---- what patterns make of their entries ---- */
 
-static void blend_pieces(ColorMap map, const MapPieces *pieces, double share, BlendVisit *visit, void *target) {
-    for (size_t k = 0; k < map.count; k++) {
-        double weight = colormap_weight(map, k, pieces);
-        if (weight > 0) visit(target, k, share * weight);
-    }
-}
-
 /* Where the map is straight all over the values that are `width` about the mean; false where it is not. */
 static bool blend_straight(const Pigment *pattern, double value, double width, double mean, double share, BlendVisit *visit, void *target) {
     MapPlace place;
@@ -27,7 +20,7 @@ static bool blend_straight(const Pigment *pattern, double value, double width, d
 
 static void blend_range(const Pigment *pattern, Spread spread, double share, BlendVisit *visit, void *target) {
     MapPieces pieces = colormap_pieces(pattern, spread);
-    blend_pieces(colormap_of(pattern), &pieces, share, visit, target);
+    colormap_blend(colormap_of(pattern), &pieces, share, visit, target);
 }
 
 /* A bell is two ranges, one within the other, that have its moments up to the eighth: their half widths are σ times the roots of Hermite's

@@ -2,6 +2,7 @@
 #ifndef VTS_PATTERN_PIGMENT_H
 #define VTS_PATTERN_PIGMENT_H
 
+#include "pattern/colormap.h"
 #include "pattern/spot.h"
 #include "scene/scene.h"
 
@@ -11,9 +12,6 @@ Color pigment_color_at(const Pigment *pigment, const Spot *spot);
 /* pigment_value() at a spot of pattern space. */
 double pattern_number(const Pigment *pattern, const Spot *spot);
 
-/* Called with the number of an entry of the pattern and its share; shares add up to 1. Numbers of block patterns may go past
- * the entries that the pattern has. */
-typedef void BlendVisit(void *target, size_t entry, double share);
 /* What the pattern makes of its entries. The spot is in pattern space, as spot_in_pattern() has it. */
 void pattern_blend(const Pigment *pattern, const Spot *spot, BlendVisit *visit, void *target);
 

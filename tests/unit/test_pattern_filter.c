@@ -155,6 +155,37 @@ static void maps_are_averaged_not_their_values(void **state) {
     assert_true(e.rms < 0.1);
 }
 
+static void add_weight(void *target, size_t entry, double share) { ((double *)target)[entry] += share; }
+
+/* The mean of x, held within [first, last], over [lo, hi]. */
+static double mean_held(double lo, double hi, double first, double last) {
+    double sum = 0;
+    if (!(hi > lo)) return fmin(fmax(lo, first), last);
+    for (int i = 0; i < 4000; i++) sum += fmin(fmax(lo + (hi - lo) * (i + 0.5) / 4000, first), last);
+    return sum / 4000;
+}
+
+/* Entries that have their own position for a colour make a map that is the value itself. */
+static void maps_of_their_own_positions_are_the_value(void **state) {
+    (void)state;
+    RandomStream random = {23};
+    for (int n = 0; n < 2000; n++) {
+        ColorMapEntry entries[12] = {{0}};
+        const size_t count = 1 + (size_t)(random_next_unit(&random) * 11.99);
+        double position = 0.3 * random_next_unit(&random), mean = 0, whole = 0, weights[12] = {0};
+        for (size_t k = 0; k < count; k++) {
+            entries[k].position = position;
+            if (random_next_unit(&random) < 0.7) position += 0.12 * random_next_unit(&random); /* else two at one position */
+        }
+        const double lo = 1.6 * random_next_unit(&random) - 0.3, hi = n % 4 ? lo + random_next_unit(&random) : lo;
+        const MapPieces pieces = {.items = {{lo, hi, 1}}, .count = 1};
+        colormap_blend((ColorMap){entries, count}, &pieces, 1, add_weight, weights);
+        for (size_t k = 0; k < count; k++) mean += weights[k] * entries[k].position, whole += weights[k];
+        assert_float_equal(whole, 1, 1e-9);
+        assert_float_equal(mean, mean_held(lo, hi, entries[0].position, entries[count - 1].position), 1e-4);
+    }
+}
+
 /* Where a map is said to be straight over a range its pieces say the same. */
 static void straight_ranges_are_as_their_pieces(void **state) {
     (void)state;
@@ -175,9 +206,11 @@ static void straight_ranges_are_as_their_pieces(void **state) {
         if (bounded || !colormap_is_straight(&p, map, middle - half, middle + half, middle, &place)) continue;
         straight++;
         const MapPieces pieces = colormap_pieces(&p, (Spread){middle, 2 * half, false});
+        double weights[4] = {0};
+        colormap_blend(map, &pieces, 1, add_weight, weights);
         for (size_t k = 0; k < 4; k++) {
             const double weight = (k == place.below ? 1 - place.share : 0) + (k == place.above ? place.share : 0);
-            assert_float_equal(colormap_weight(map, k, &pieces), weight, 1e-6);
+            assert_float_equal(weights[k], weight, 1e-6);
         }
     }
     assert_in_range(straight, 2000, 17000);
@@ -191,6 +224,7 @@ int main(void) {
         cmocka_unit_test(widening_is_continuous),
         cmocka_unit_test(filtering_beats_a_point_sample),
         cmocka_unit_test(maps_are_averaged_not_their_values),
+        cmocka_unit_test(maps_of_their_own_positions_are_the_value),
         cmocka_unit_test(straight_ranges_are_as_their_pieces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -24,6 +24,7 @@ typedef enum Known {
 typedef struct Tile {
     const GuessSight *sight;
     Middle *middles;
+    int columns, rows;
     uint8_t known[FILM_TILE * FILM_TILE];
     struct Kind {
         double wrong; /* sum of squared errors of the guesses tried, */
@@ -222,10 +223,13 @@ typedef struct Fill {
     Blend ends[2];  /* of the row, between the corners */
 } Fill;
 
+static bool is_at_border(const Tile *t, int x, int y) { return x == 0 || y == 0 || x == t->columns - 1 || y == t->rows - 1; }
+
 /* Whether somebody has to look what is at a pixel: where a few things may be at one of four, of patterns at one of two, like squares of a
- * checkerboard. */
-static bool is_asked(const Fill *f, int x, int y) {
+ * checkerboard. What is wide shows at a corner somewhere, but maybe in another tile, from which no edge is followed: it comes in through the border. */
+static bool is_asked(const Tile *t, const Fill *f, int x, int y) {
     const int off_x = x - f->square.x0, off_y = y - f->square.y0;
+    if (f->view == VISTA_WIDE && is_at_border(t, x, y)) return true;
     return f->view == VISTA_OPEN || (f->patterned && !((off_x + off_y) & 1)) || (f->view == VISTA_SOME && !((off_x | off_y) & 1));
 }
 
@@ -334,7 +338,7 @@ static bool fill(Tile *t, const Square *s, VistaView view, bool even, bool patte
         for (int y = s->y0; y <= s->y1; y++) {
             if (!asked && !f.patterned) begin_row(&f, y);
             for (int x = s->x0; x <= s->x1; x++)
-                if (t->known[place(x, y)] == UNKNOWN && is_asked(&f, x, y) == asked) (asked ? look : put)(t, &f, x, y);
+                if (t->known[place(x, y)] == UNKNOWN && is_asked(t, &f, x, y) == asked) (asked ? look : put)(t, &f, x, y);
         }
     return true;
 }
@@ -353,7 +357,7 @@ static bool fill_square(Tile *t, const Square *s, int mx, int my) {
     const bool fine = side > NARROW && !calm && !tinted;
     if (side > WIDE && fine) return false;
     const VistaView view = sight->view ? sight->view(sight->context, s->x0, s->y0, s->x1, s->y1, t->middles[place(s->x0, s->y0)].object) : VISTA_OPEN;
-    if ((side > WIDE && view != VISTA_EVEN) || !agree(t, s, mx, my, fine)) return false;
+    if ((side > WIDE && view < VISTA_WIDE) || !agree(t, s, mx, my, fine)) return false;
     const bool even = calm || (tinted && has_even_color(t, s, mx, my));
     return fill(t, s, view, even, tinted && !even);
 }
@@ -461,7 +465,7 @@ static void settle(Tile *t, int columns, int rows) {
 }
 
 void guess_tile(const GuessSight *sight, int columns, int rows, Middle *out) {
-    Tile t = {.sight = sight, .middles = out};
+    Tile t = {.sight = sight, .middles = out, .columns = columns, .rows = rows};
     if (!(sight->tolerance > 0) || columns == 1 || rows == 1) {
         find_all(&t, &(Square){0, 0, columns - 1, rows - 1});
         return;

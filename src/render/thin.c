@@ -33,7 +33,10 @@ double thin_item(const Item *item) {
     return item->cluster ? own : fmin(own, fmax(least_of(vec3_sub(box.max, box.min)), 0));
 }
 
-bool thin_is_known(const Item *item) { return !item->cluster && !item->body && solid_width(item->object) >= 0; }
+/* Along their axes open cylinders and cones show the edges of their walls alone. */
+static bool is_sheet(const Object *object) { return (object->kind == OBJECT_CYLINDER || object->kind == OBJECT_CONE) && object->as.cone.open; }
+
+bool thin_is_known(const Item *item) { return !item->cluster && !item->body && solid_width(item->object) >= 0 && !is_sheet(item->object); }
 
 /* Those that a cluster holds come before it. */
 void thin_clusters(const ClusterSet *set) {

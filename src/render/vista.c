@@ -82,10 +82,10 @@ VistaView vista_view(const Vista *vista, const Ray corners[4], uint32_t object, 
     const Vec3 eye = corners[0].origin;
     VistaView view = VISTA_EVEN;
     if (vista->count > VISTA_MOST || !shaft_of(corners, &shaft)) return VISTA_OPEN;
-    for (int i = 0; i < vista->count && view == VISTA_EVEN; i++) {
+    for (int i = 0; i < vista->count && view != VISTA_SOME; i++) {
         const VistaPiece *piece = vista->near[i];
         const bool hides = piece->object && piece->object == object && !holds(&piece->box, eye);
-        if (!hides && may_touch(&shaft, &piece->box) && (!piece->whole || is_thin(piece, eye, wide))) view = VISTA_SOME;
+        if (!hides && may_touch(&shaft, &piece->box)) view = piece->whole && !is_thin(piece, eye, wide) ? VISTA_WIDE : VISTA_SOME;
     }
     return view;
 }

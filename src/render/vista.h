@@ -34,7 +34,8 @@ Vista vista_of(const VistaPieces *pieces, const Ray corners[4]);
 typedef enum VistaView {
     VISTA_OPEN, /* anything may be seen */
     VISTA_SOME, /* a few things may be seen besides planes, and holes in them */
-    VISTA_EVEN, /* all see what the corners see, unless the edge of something goes through that is too wide to lie between them */
+    VISTA_WIDE, /* all see what the corners see, unless the edge of something goes through that is too wide to lie between them */
+    VISTA_EVEN, /* all see what the corners see */
 } VistaView;
 
 /* How wide something is to count as wide: `spread` times its distance from where the lines begin, and `width` more. */

@@ -70,6 +70,11 @@ static VistaView all_some(void *context, int x0, int y0, int x1, int y1, uint32_
     (void)context, (void)x0, (void)y0, (void)x1, (void)y1, (void)object;
 }
 
+static VistaView all_wide(void *context, int x0, int y0, int x1, int y1, uint32_t object) {
+    return VISTA_WIDE;
+    (void)context, (void)x0, (void)y0, (void)x1, (void)y1, (void)object;
+}
+
 static Middle even(int x, int y) { return grey(0.2f + 0.01f * (float)x + 0.005f * (float)y, 1); }
 static Middle curved(int x, int y) {
     return grey(0.5f + 0.3f * sinf(0.1f * (float)x) * cosf(0.13f * (float)y), 1);
@@ -184,6 +189,21 @@ static void test_curved_light_is_as_exact_as_asked(void **state) {
     }
 }
 
+/* The corner of something wide, most of which is in the tile below, or above. */
+static Middle corner_from_below(int x, int y) { return y >= 29 + abs(x - 12) ? grey(0.8f, 2) : grey(0.3f, 1); }
+static Middle corner_from_above(int x, int y) { return y <= 2 - abs(x - 12) ? grey(0.8f, 2) : grey(0.3f, 1); }
+
+static void test_corners_from_other_tiles_are_followed(void **state) {
+    (void)state;
+    Middle out[FILM_TILE * FILM_TILE];
+    World *const worlds[] = {corner_from_below, corner_from_above};
+    for (int k = 0; k < 2; k++) {
+        Watch w = look_with(worlds[k], all_wide, 0.01, FILM_TILE, FILM_TILE, out);
+        assert_true(worst(&w, out, FILM_TILE, FILM_TILE) < 1e-5);
+        assert_in_range(w.found + w.guessed, 1, FILM_TILE * FILM_TILE / 3);
+    }
+}
+
 /* Returns how many were guessed. */
 static int guessed_rightly(World *world) {
     Middle out[FILM_TILE * FILM_TILE];
@@ -265,6 +285,7 @@ int main(void) {
                                        cmocka_unit_test(test_edges_are_followed_into_even_squares),
                                        cmocka_unit_test(test_guesses_that_are_wrong_are_given_up),
                                        cmocka_unit_test(test_nothing_is_guessed_unless_asked),
+                                       cmocka_unit_test(test_corners_from_other_tiles_are_followed),
                                        cmocka_unit_test(test_tiles_of_any_size)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -285,6 +285,24 @@ static void far_cameras_still_hit(void **state) {
     world_end(&w);
 }
 
+/* An open cylinder shows nothing but the edge of its wall to an eye on its axis. */
+static void sheets_are_not_known_to_be_wide(void **state) {
+    (void)state;
+    for (int open = 0; open < 2; open++) {
+        World w;
+        world_begin(&w);
+        Object *object = world_add(&w, OBJECT_CYLINDER);
+        object->as.cone.cap = vec3(0, 0, 4);
+        object->as.cone.base_radius = object->as.cone.cap_radius = 2;
+        object->as.cone.open = open;
+        world_build(&w);
+        const VistaPieces *pieces = hierarchy_pieces(w.hierarchy);
+        assert_int_equal(pieces->count, 1);
+        assert_int_equal(pieces->items[0].whole, !open);
+        world_end(&w);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(solids_are_hit_exactly),
@@ -292,6 +310,7 @@ int main(void) {
         cmocka_unit_test(smooth_normals_are_interpolated),
         cmocka_unit_test(unions_are_flattened),
         cmocka_unit_test(far_cameras_still_hit),
+        cmocka_unit_test(sheets_are_not_known_to_be_wide),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -77,9 +77,9 @@ static void test_what_is_wide_is_no_surprise(void **state) {
     VistaPiece piece = {.box = box_at(1.5, 0.5, 10, 2), .width = 4, .whole = true, .object = 8};
     const VistaPieces pieces = {&piece, 1, false};
     const Vista vista = vista_of(&pieces, corners);
-    assert_int_equal(vista_view(&vista, corners, 7, (VistaWidth){0.3, 0}), VISTA_EVEN);
+    assert_int_equal(vista_view(&vista, corners, 7, (VistaWidth){0.3, 0}), VISTA_WIDE);
     assert_int_equal(vista_view(&vista, corners, 7, (VistaWidth){0.6, 0}), VISTA_SOME);
-    assert_int_equal(vista_view(&vista, corners, 7, (VistaWidth){0, 3.9}), VISTA_EVEN);
+    assert_int_equal(vista_view(&vista, corners, 7, (VistaWidth){0, 3.9}), VISTA_WIDE);
     assert_int_equal(vista_view(&vista, corners, 7, (VistaWidth){0, 4.1}), VISTA_SOME);
     piece.whole = false;
     assert_int_equal(vista_view(&vista, corners, 7, (VistaWidth){0.3, 0}), VISTA_SOME);

@@ -149,7 +149,7 @@ static void see_sky(BeamTracer *tr, Radiance *out) {
     SurfaceTracer surfaces = air_tracer(tr);
     if (!even) aim_cones(tr);
     Air air = air_clear();
-    const Radiance all = sky_along(scene, &(Cone){.width = 0}, &air);
+    const Radiance all = even ? sky_along(scene, &(Cone){.width = 0}, &air) : (Radiance){.alpha = 0};
     for (int i = 0; i < pixels; i++) {
         if (!even) air = air_from_eye(&surfaces, &tr->cones[i], VTS_INFINITY);
         out[i] = even ? all : sky_along(scene, &tr->cones[i], &air);

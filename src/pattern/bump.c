@@ -70,7 +70,9 @@ static void add_height(void *target, size_t entry, double share) {
 
 /* Whether heights are the pattern's values, which are means over the footprint themselves. */
 static bool heights_are_means(const Normal *normal) {
-    return normal->pattern->kind == PATTERN_PIGMENT && !normal->slope_count && pigment_wave(normal->pattern) == WAVE_RAMP;
+    const Pigment *pattern = normal->pattern;
+    const bool plain = pigment_wave(pattern) == WAVE_RAMP && pattern->frequency == 1 && pattern->phase == 0;
+    return pattern->kind == PATTERN_PIGMENT && !normal->slope_count && plain;
 }
 
 /* The mean height over a spot of pattern space. */

@@ -57,7 +57,8 @@ static inline bool interval_has_infinity(Interval a) { return a.low == -HUGE_VAL
 
 /* ---- arithmetic ---- */
 
-/* A sum so small that 2⁻⁵² of it is no number is exact: sums of what is not negative are not, which square roots ask for. */
+/* The same for sums, which are exact where 2⁻⁵² of them is below the least double: nothing need be added there, and sums of numbers that are not
+ * negative stay so, as square roots of them need. */
 static inline double sum_down(double x) { return x == HUGE_VAL ? DBL_MAX : x - fabs(x) * 0x1p-52; }
 static inline double sum_up(double x) { return x == -HUGE_VAL ? -DBL_MAX : x + fabs(x) * 0x1p-52; }
 

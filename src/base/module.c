@@ -1,3 +1,4 @@
+#define _GNU_SOURCE /* dladdr */
 #include "base/module.h"
 
 #include <dlfcn.h>
@@ -5,16 +6,30 @@
 #include <string.h>
 #include <unistd.h>
 
+static bool add_folder_of(const char *path, StrBuf *out) {
+    const char *slash = strrchr(path, '/');
+    if (slash) strbuf_add(out, path, (size_t)(slash - path));
+    return slash != NULL;
+}
+
 /* The folder of the running program; false where the system does not tell. */
 static bool program_folder(StrBuf *out) {
     char path[MODULE_PATH_SIZE];
     ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
     if (length <= 0) return false;
     path[length] = '\0';
-    char *slash = strrchr(path, '/');
-    if (!slash) return false;
-    strbuf_add(out, path, (size_t)(slash - path));
-    return true;
+    return add_folder_of(path, out);
+}
+
+/* The folder of the library or program that holds this code: of libvts.so, also where somebody else's program has loaded it, and also
+ * where that is the one for newer processors, two folders deeper. */
+static bool library_folder(StrBuf *out) {
+    static const char here = 0;
+    Dl_info info;
+    if (!dladdr(&here, &info) || !info.dli_fname) return false;
+    const char *deeper = strstr(info.dli_fname, "/glibc-hwcaps/");
+    if (deeper) strbuf_add(out, info.dli_fname, (size_t)(deeper - info.dli_fname));
+    return deeper || add_folder_of(info.dli_fname, out);
 }
 
 static bool folder_of_place(int place, StrBuf *out) {
@@ -28,7 +43,12 @@ static bool folder_of_place(int place, StrBuf *out) {
         if (!program_folder(out)) return false;
         strbuf_adds(out, "/../" VTS_MODULE_SUBDIR);
         return true;
-    case 3: strbuf_adds(out, VTS_MODULE_BUILD_DIR); return true;
+    case 3: return library_folder(out);
+    case 4:
+        if (!library_folder(out)) return false;
+        strbuf_adds(out, "/vts");
+        return true;
+    case 5: strbuf_adds(out, VTS_MODULE_BUILD_DIR); return true;
     default: strbuf_adds(out, VTS_MODULE_INSTALL_DIR); return true;
     }
 }

@@ -4,10 +4,10 @@
 
 #include "base/strbuf.h"
 
-enum { MODULE_PLACES = 5, MODULE_PATH_SIZE = 4096 };
+enum { MODULE_PLACES = 7, MODULE_PATH_SIZE = 4096 };
 
 /* The path of the file `name` in the place-th of MODULE_PLACES folders: the one that $VTS_MODULE_DIR names, the running program's,
- * ../lib…/vts from there, where it was built, where it is installed. False where that folder is not known or has no such file. */
+ * ../lib…/vts from there, that of libvts.so, vts in it, where it was built, where it is installed. False where that folder is not known or has no such file. */
 bool module_place(int place, const char *name, char path[MODULE_PATH_SIZE]);
 
 /* What the function `entry` (of no arguments) of the shared library `name` gives: a table of functions that begins with an int, its

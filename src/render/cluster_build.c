@@ -171,7 +171,8 @@ static void add_copy(Builder *b, Cluster *cluster, const Object *object, const C
 }
 
 static const char *why_nothing(const Object *object) {
-    if (object->kind == OBJECT_SOLID && object->as.solid->kind == SOLID_TEXT) return "its font cannot be read";
+    if (object->kind == OBJECT_SOLID && object->as.solid->kind == SOLID_TEXT)
+        return "its font cannot be read, or vts does not find its module libvts_freetype.so";
     if (object->kind == OBJECT_SOLID && object->as.solid->kind == SOLID_HEIGHT_FIELD) return "its picture cannot be read";
     return "it has no extent";
 }

@@ -63,6 +63,20 @@ bool module_place(int place, const char *name, char path[MODULE_PATH_SIZE]) {
     return known && access(path, R_OK) == 0;
 }
 
+void module_load_apart(const char *libraries) {
+    char name[MODULE_PATH_SIZE];
+    while (libraries && *libraries) {
+        size_t length = strcspn(libraries, ":");
+        if (length > 0 && length < sizeof name) {
+            memcpy(name, libraries, length);
+            name[length] = '\0';
+            void *library = dlopen(name, RTLD_LAZY | RTLD_LOCAL | RTLD_NODELETE);
+            if (library) dlclose(library);
+        }
+        libraries += length + (libraries[length] == ':');
+    }
+}
+
 static int version_of(const void *table) {
     int version;
     memcpy(&version, table, sizeof version);

@@ -6,6 +6,7 @@
 
 const OiioShim *oiio_module_load(StrBuf *error) {
     StrBuf why = {0};
+    module_load_apart(VTS_OIIO_HEAVY_LIBRARIES);
     const OiioShim *shim = module_load(MODULE_NAME, "vts_oiio_shim", OIIO_SHIM_VERSION, &why);
     if (!shim && error)
         strbuf_addf(error,

@@ -1,4 +1,4 @@
-/* OpenImageIO on demand: linking it costs every start of the program a third of a second (Debian's build pulls in some
+/* OpenImageIO on demand: linking it costs every start of the program a fifth of a second (Debian's build pulls in some
  * 260 libraries), so its shim is a module that is loaded when the first picture is opened. */
 #ifndef VTS_IMAGE_OIIO_MODULE_H
 #define VTS_IMAGE_OIIO_MODULE_H

@@ -76,6 +76,8 @@ bool allot_next(Allotment *a, const AllotPlan *plan, const float *apart, int mos
     return true;
 }
 
+double allot_error_of(const Allotment *a, int i) { return a->taken[i] ? noise_around(a, i) * pow(a->taken[i], -FALL) : 0; }
+
 double allot_error(const Allotment *a) {
     int pixels = a->columns * a->rows;
     double sum = 0;

@@ -32,7 +32,9 @@ void allot_begin(Allotment *allotment, const AllotPlan *plan, int columns, int r
  * most_in_pass samples a pixel at most, on the average; false when there is none. `price` is what a pass takes however few its samples are, in samples: where that is
  * much, fewer passes are made of more samples each. */
 bool allot_next(Allotment *allotment, const AllotPlan *plan, const float *apart, int most_in_pass, double price);
-/* The mean square of the error that is to be expected of a pixel on the average, with the samples that it has. */
+/* The mean square of the error that is to be expected of pixel i of the tile, by its samples and its neighbours'; 0 where it has none. */
+double allot_error_of(const Allotment *allotment, int i);
+/* That of a pixel on the average, with the samples that it has. */
 double allot_error(const Allotment *allotment);
 /* The noise of one sample of pixels whose mean square is `error` with n of them. */
 double allot_noise(double error, double n);

@@ -3,6 +3,7 @@
 #include "base/random.h"
 #include "render/beam_afford.h"
 #include "render/beam_rigid.h"
+#include "render/beam_settle.h"
 #include "render/volume_set.h"
 
 #include <string.h>
@@ -331,7 +332,8 @@ void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out, Ao
         BeamWork after = beam_tracer_work(tr);
         fixed = beam_price_in_samples(after.triangles - before.triangles, after.nodes - before.nodes);
     } while (allot_next(&tr->allotment, &tr->plan.samples, apart, most_in_pass, fixed) && !beam_is_interrupted(&tr->draft));
-    tr->tile_noise = allot_error(&tr->allotment);
+    /* samples that somebody counts are left as they are */
+    tr->tile_noise = tr->plan.samples.worth > 0 ? beam_settle(&tr->allotment, out) : allot_error(&tr->allotment);
     tr->squared_noise += tr->tile_noise * pixels;
 }
 

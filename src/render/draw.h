@@ -48,6 +48,19 @@ static inline void draw_pair(const Draw *draw, uint32_t use, double *u, double *
     *v = draw_scramble(second, (uint32_t)(bits >> 32)) * 0x1p-32;
 }
 
+/* Number `index` of the sequence in three dimensions, each in [0, 1): any 64 from a multiple of 64 on lie one in each of 4 x 4 x 4 boxes, and, by any two of the three, of 8 x 8. */
+static inline void draw_three(uint32_t index, uint64_t seed, double out[3]) {
+    uint32_t second = 0, third = 0, pascal = 1u << 31, before = 1u << 31, column = 1u << 31 | 1u << 30; /* of the third: of x^2 + x + 1, from 1 and 3 on */
+    for (uint32_t rest = index, now = before; rest; rest >>= 1, pascal ^= pascal >> 1) {
+        if (rest & 1) second ^= pascal, third ^= now;
+        now = column, column = column ^ before ^ before >> 2, before = now;
+    }
+    const uint64_t bits = random_mix(seed);
+    out[0] = draw_scramble(draw_reverse(index), (uint32_t)bits) * 0x1p-32;
+    out[1] = draw_scramble(second, (uint32_t)(bits >> 32)) * 0x1p-32;
+    out[2] = draw_scramble(third, (uint32_t)random_mix(bits)) * 0x1p-32;
+}
+
 /* How wide one of so many samples of a pixel is, in pixels: narrower than the mesh of their net. Wider ones, which blur what is at a pixel's border, are
  * wrong by more than narrower ones are noisy. */
 static inline double sample_width(double samples) { return samples > 1 ? 0.7 / sqrt(samples) : 1; }

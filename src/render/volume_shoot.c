@@ -104,17 +104,19 @@ static void tabulate(Shooting *s) {
     s->lamp_total = sum;
 }
 
-static size_t draw_entry(const Shooting *s, double u) {
-    size_t lo = 0, hi = s->entries - 1;
-    double target = u * s->lamp_total;
+/* Of the `parts` parts of the entries [begin, end), each of `size`, the one in which a share `*u` of what they scatter is reached; `*u` becomes that of it alone. So what is drawn moves as
+ * steadily as lamps do. */
+static size_t draw_part(const Shooting *s, size_t begin, size_t size, size_t parts, double *u) {
+    const double before = begin ? s->chances[begin - 1] : 0, whole = s->chances[begin + parts * size - 1] - before, target = before + *u * whole;
+    size_t lo = 0, hi = parts - 1;
     while (lo < hi) {
         size_t middle = (lo + hi) / 2;
-        if (s->chances[middle] > target)
-            hi = middle;
-        else
-            lo = middle + 1;
+        if (s->chances[begin + (middle + 1) * size - 1] > target) hi = middle;
+        else lo = middle + 1;
     }
-    return lo;
+    const double low = lo ? s->chances[begin + lo * size - 1] : before, share = s->chances[begin + (lo + 1) * size - 1] - low;
+    *u = share > 0 ? double_clamp((target - low) / share, 0, 1) : 0.5;
+    return begin + lo * size;
 }
 
 /* ---- paths ---- */
@@ -177,21 +179,21 @@ static bool set_power(Shot *shot, const double power[3]) {
     return shot->whole > 0 && isfinite(shot->whole);
 }
 
-static void shoot_lamp(Shot *shot, double u) {
+static void shoot_lamp(Shot *shot, double u[4]) {
     const Shooting *s = shot->shooting;
-    size_t entry = draw_entry(s, u), i = 0;
-    while (entry >= s->first_entry[i + 1]) i++;
+    size_t i = 0;
+    double which = u[0] * s->lamp_total;
+    while (i + 1 < s->set->count && s->chances[s->first_entry[i + 1] - 1] <= which) i++;
     const CompiledVolume *v = &s->set->items[i];
     const VolumeLight *light = v->light;
     const int *n = light->cells;
-    size_t cell = (entry - s->first_entry[i]) % cells_of(light),
-           l = (entry - s->first_entry[i]) / cells_of(light);
+    const size_t row = (size_t)n[0], slice = row * (size_t)n[1], cells = cells_of(light), lamps = s->compiled->scene->light_count;
+    const double before = s->first_entry[i] ? s->chances[s->first_entry[i] - 1] : 0, whole = s->chances[s->first_entry[i + 1] - 1] - before;
+    u[0] = whole > 0 ? (which - before) / whole : 0;
+    const size_t of_lamp = draw_part(s, s->first_entry[i], cells, lamps, &u[0]), of_slice = draw_part(s, of_lamp, slice, (size_t)n[2], &u[3]);
+    const size_t of_row = draw_part(s, of_slice, row, (size_t)n[1], &u[2]), entry = draw_part(s, of_row, 1, row, &u[1]), l = (of_lamp - s->first_entry[i]) / cells;
     double chance = (s->chances[entry] - (entry ? s->chances[entry - 1] : 0)) / s->lamp_total, power[3];
-    double a = random_next_unit(&shot->random), b = random_next_unit(&shot->random),
-           c = random_next_unit(&shot->random);
-    Vec3 unit = vec3(((double)(cell % (size_t)n[0]) + a) / n[0],
-                     ((double)(cell / (size_t)n[0] % (size_t)n[1]) + b) / n[1],
-                     ((double)(cell / (size_t)n[0] / (size_t)n[1]) + c) / n[2]);
+    Vec3 unit = vec3(((double)(entry - of_row) + u[1]) / n[0], ((double)((of_row - of_slice) / row) + u[2]) / n[1], ((double)((of_slice - of_lamp) / slice) + u[3]) / n[2]);
     Vec3 point = volume_point(v, unit);
     double density = volume_density(v, unit);
     if (!(density > 0) || !(chance > 0)) return;
@@ -223,10 +225,7 @@ static void shoot_sky(Shot *shot, const double u[4]) {
     follow(shot, (Ray){start, vec3_negate(from)}, 0);
 }
 
-/* Number i of a sequence that spreads evenly over [0, 1) however far it goes: multiples of the golden ratio. More rays go on where fewer ended. */
-static double spread(uint64_t i) { return random_unit(i * 0x9E3779B97F4A7C15u); }
-
-/* The same in four dimensions: multiples of powers of 1/x, x^5 = x + 1. */
+/* Number i of a sequence that spreads evenly over [0, 1)^4 however far it goes: multiples of powers of 1/x, x^5 = x + 1. More rays go on where fewer ended. */
 static void spread_in_four(uint64_t i, double out[4]) {
     static const uint64_t steps[4] = {0xDB4F0B9175AE2165u, 0xBBE0563303A4615Fu, 0xA0F2EC75A1FE1575u, 0x89E182857D9ED689u};
     for (int k = 0; k < 4; k++) out[k] = random_unit(i * steps[k]);
@@ -241,10 +240,14 @@ static void shoot_batch(void *context, size_t batch, int worker) {
     for (uint64_t i = s->begin; i < s->end && !(interrupted && *interrupted); i++) {
         uint64_t number = i * BATCHES + batch;
         shot.random.state = random_hash(number, 0x6c616d70, 0, 0);
-        if (s->lamp_total > 0 && volume_most_turns(s->set) > 0) shoot_lamp(&shot, spread(number));
+        double places[4];
+        if (s->lamp_total > 0 && volume_most_turns(s->set) > 0) {
+            places[0] = random_unit(number * 0x9E3779B97F4A7C15u); /* of the golden ratio */
+            draw_three((uint32_t)number, 0x6c616d70, places + 1);
+            shoot_lamp(&shot, places);
+        }
         shot.random.state = random_hash(number, 0x736b79, 0, 0);
         if (!s->set->sky) continue;
-        double places[4];
         spread_in_four(number, places);
         shoot_sky(&shot, places);
     }
@@ -257,7 +260,7 @@ static void shoot_batch(void *context, size_t batch, int worker) {
 enum { FIRST_ROUND = 1 << 7, LEAST_RAYS = 1 << 12 };
 /* Rays are doubled until the error of the bins' light is below this multiple of max_error: a bin sees many, and a pixel several. What is left of it in pictures is so much less than in
  * bins (7.5 to 8.5 in a fractal cloud and a thick slab). Or until so many free paths. */
-static const double BIN_ERROR = 16, SEEN_ERROR = 8, MOST_FREE_PATHS = 1.2e7, RAYS_AT_MOST = 1 << 22;
+static const double BIN_ERROR = 12, SEEN_ERROR = 8, MOST_FREE_PATHS = 1.2e7, RAYS_AT_MOST = 1 << 22;
 
 /* Of the light of all bins that hold something, on the mean, as brightness of matter that hides what is behind; found by what batches differ. */
 static double error_of_bins(const Shooting *s, double rays) {
@@ -311,12 +314,15 @@ static bool bins_see_each_other(const Shooting *s) {
     return true;
 }
 
-/* How often to look around when rays bring this multiple of the error that may remain after one look; 0 if more rays are cheaper. */
-static int enough_looks(const Shooting *s, double excess, double paths) {
-    if (!(excess > 1)) return 1;
-    double more = ceil(-log(excess) / log(LOOK_LEAVES));
-    if (!s->looks_help || more > MOST_LOOKS - 1) return 0;
-    return more * look_cost(s) < paths * (excess * excess - 1) ? 1 + (int)more : 0;
+/* How often to look around, and of how many rays, as a multiple of those that left `excess` of the error that may remain after one look: so that all that is still to be done takes the
+ * least time. No jump where the clouds or lamps change a little. */
+static double enough_rays(const Shooting *s, double excess, double paths, int *looks) {
+    double best = 0, least = VTS_INFINITY;
+    for (int k = 1; k <= (s->looks_help ? MOST_LOOKS : 1); k++) {
+        double left = excess * pow(LOOK_LEAVES, k - 1), more = double_max(1, left * left), cost = (k - 1) * look_cost(s) + paths * (more - 1);
+        if (cost < least) least = cost, best = more, *looks = k;
+    }
+    return best;
 }
 
 static double free_paths(const Shooting *s) {
@@ -332,20 +338,19 @@ static double shoot_rounds(Shooting *s) {
     for (size_t i = 0; i < s->set->count; i++) asked = double_max(asked, s->set->items[i].volume->rays);
     asked = double_min(asked, MOST_RAYS);
     double next = asked > 0 ? asked : FIRST_ROUND;
+    s->looks = 1;
     s->looks_help = !s->set->orders && bins_see_each_other(s);
-    for (;;) {
+    for (bool enough = false;;) {
         s->begin = s->end, s->end = (uint64_t)ceil(next / BATCHES);
         if (!pool_run(s->compiled->options->pool, BATCHES, shoot_batch, s)) return 0;
         rays = (double)s->end * BATCHES;
-        next = 2 * rays;
-        double paths = free_paths(s);
-        s->looks = 1;
-        if (asked > 0) break;
-        if (rays <= LEAST_RAYS && 2 * paths <= most_paths) continue;
-        s->looks = enough_looks(s, error_of_bins(s, rays) / (BIN_ERROR * finer * s->compiled->max_error), paths);
-        if (s->looks > 0) break;
-        s->looks = s->looks_help ? MOST_LOOKS : 1;
-        if (next > RAYS_AT_MOST || 2 * paths > most_paths) break;
+        if (enough || asked > 0) break;
+        double paths = free_paths(s), most = double_min(RAYS_AT_MOST / rays, most_paths / double_max(paths, 1));
+        double wanted = rays < LEAST_RAYS ? VTS_INFINITY : enough_rays(s, error_of_bins(s, rays) / (BIN_ERROR * finer * s->compiled->max_error), paths, &s->looks);
+        if (most < wanted && most < 2) s->looks = s->looks_help ? MOST_LOOKS : 1;
+        next = rays * double_min(double_min(wanted, 2), most);
+        enough = wanted < 2 || most < 2;
+        if (next <= rays) break;
     }
     s->compiled->volume_rays = rays;
     s->compiled->volume_error = error_of_bins(s, rays) / (SEEN_ERROR * finer) * pow(LOOK_LEAVES, s->looks - 1);

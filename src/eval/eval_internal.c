@@ -3,12 +3,17 @@
 #include "eval/eval_function.h"
 
 #include "eval/build_pattern.h"
-#include "tape/internal_tape.h"
+#include "tape/internal.h"
+#include "tape/noise.h"
 
 #include <string.h>
 
 static void eval_internal(const void *data, const double *in, double *out) {
     out[0] = ((const InternalFunction *)data)->eval(in);
+}
+
+static bool expand_internal(const void *data, TapeBuilder *tape, const TapeRef *in, TapeRef *out, Span span) {
+    return internal_append(tape, data, in, span, out);
 }
 
 static Value as_function(Eval *ev, const Node *node, int inputs, TapeBuilder *tape, TapeRef *out,
@@ -36,21 +41,13 @@ Value external_function(Eval *ev, const Node *node, const TapeExternal *external
     return as_function(ev, node, external->input_count, tape, out, external->output_count);
 }
 
-/* The usual noise is an operation of tapes, which know more of it than that it is a function. */
-static Value noise_function(Eval *ev, const Node *node) {
-    TapeBuilder *tape = tape_builder_create(ev->build.arena, 3);
-    TapeRef in[3];
-    for (int i = 0; i < 3; i++) in[i] = tape_input(tape, i);
-    TapeRef out = tape_ternary(tape, TAPE_POV_NOISE, in[0], in[1], in[2], node->span);
-    return as_function(ev, node, 3, tape, &out, 1);
-}
-
 static TapeExternal *internal_external(Eval *ev, const InternalFunction *f) {
     TapeExternal *e = arena_new(ev->build.arena, TapeExternal);
     *e = (TapeExternal){.name = f->name,
                         .input_count = f->inputs,
                         .output_count = 1,
                         .eval = eval_internal,
+                        .expand = expand_internal,
                         .data = f,
                         .hash = hash_begin(0x696E7465)};
     hash_add_u64(&e->hash, (uint64_t)f->number);
@@ -69,28 +66,21 @@ static Value other_noise_function(Eval *ev, const Node *node, int generator) {
     return as_function(ev, node, 3, tape, &out, 1);
 }
 
-/* As operations, where that can be: they are faster, and other arithmetics know them. */
-static bool operations_function(Eval *ev, const Node *node, const InternalFunction *f, Value *value) {
-    TapeBuilder *tape = tape_builder_create(ev->build.arena, f->inputs);
-    TapeRef in[INTERNAL_INPUTS], out;
-    for (int i = 0; i < f->inputs; i++) in[i] = tape_input(tape, i);
-    if (!internal_tape(tape, f, in, &out, node->span)) return false;
-    *value = as_function(ev, node, f->inputs, tape, &out, 1);
-    return true;
-}
-
 Value internal_function(Eval *ev, const Node *node, int id) {
+    enum { NOISE_3D = 76 };
     const InternalFunction *f = internal_find(id);
     if (!f) {
         diag_error(ev->diags, node->span, "there is no internal function %d", id);
         return value_error();
     }
     int generator = build_noise_generator(&ev->build);
-    if (f->eval == internal_noise3d && generator == NOISE_CORRECTED) return noise_function(ev, node);
-    if (f->eval == internal_noise3d) return other_noise_function(ev, node, generator);
-    Value value;
-    if (operations_function(ev, node, f, &value)) return value;
-    return external_function(ev, node, internal_external(ev, f));
+    if (id == NOISE_3D && generator != NOISE_CORRECTED) return other_noise_function(ev, node, generator);
+    if (!f->formula) return external_function(ev, node, internal_external(ev, f));
+    TapeBuilder *tape = tape_builder_create(ev->build.arena, f->inputs);
+    TapeRef in[INTERNAL_INPUTS], out;
+    for (int i = 0; i < f->inputs; i++) in[i] = tape_input(tape, i);
+    internal_append(tape, f, in, node->span, &out);
+    return as_function(ev, node, f->inputs, tape, &out, 1);
 }
 
 /* ---- objects as functions: inside or not ---- */

@@ -7,8 +7,9 @@
 AffineForm affine_of_interval(Interval a) {
     if (interval_is_never(a)) return (AffineForm){0, 0, 0, true};
     if (!isfinite(a.low) || !isfinite(a.high)) return affine_unknown(a.nan);
-    double centre = a.low / 2 + a.high / 2;
-    return (AffineForm){centre, 0, round_up(bound_max(a.high - centre, centre - a.low)), a.nan};
+    double centre = a.low / 2 + a.high / 2, reach = bound_max(a.high - centre, centre - a.low);
+    /* Numbers stay numbers: the least error would leave a truth's sign open. */
+    return (AffineForm){centre, 0, reach > 0 ? round_up(reach) : 0, a.nan};
 }
 
 AffineForm affine_within(AffineForm form, Interval range) {
@@ -147,6 +148,18 @@ AffineForm affine_MOD(AffineForm a, AffineForm b) {
     between &= x.low >= shift - (shift <= 0 ? period : 0) && x.high <= shift + (shift >= 0 ? period : 0);
     if (!between || (shift > 0 && x.low < shift) || (shift < 0 && x.high > shift)) return affine_of_interval(range);
     return affine_within(affine_rounded(a.centre - shift, a.slope, a.error, affine_size(a), a.nan), range);
+}
+
+/* Round one of its folds it is the absolute value of the way to there. */
+AffineForm affine_FOLD(AffineForm a, AffineForm b) {
+    Interval y = affine_range(b), range = interval_FOLD(affine_range(a), y);
+    double radius = affine_radius(a), period = fabs(b.centre), half = period / 2;
+    if (!interval_is_point(y) || !(radius <= half) || range.nan) return affine_of_interval(range);
+    double rest = fmod(a.centre, period), at = rest < 0 ? rest + period : rest, size = affine_size(a) + 4 * period;
+    if (fabs(at - half) + radius <= half) return affine_within(affine_ABS(affine_rounded(at - half, a.slope, a.error, size, false)), range);
+    double over = at < half ? at : at - period;
+    if (fabs(over) + radius > half) return affine_of_interval(range);
+    return affine_within(affine_SUB(affine_point(half), affine_ABS(affine_rounded(over, a.slope, a.error, size, false))), range);
 }
 
 /* ---- noises: the linear part about the centre, the curvature's bound for the rest (Taylor's theorem along the line from the

@@ -76,6 +76,7 @@ AffineForm affine_MIN(AffineForm a, AffineForm b);
 AffineForm affine_MAX(AffineForm a, AffineForm b);
 AffineForm affine_SELECT(AffineForm a, AffineForm b, AffineForm c);
 AffineForm affine_MOD(AffineForm a, AffineForm b);
+AffineForm affine_FOLD(AffineForm a, AffineForm b);
 AffineForm affine_SQRT(AffineForm a);
 AffineForm affine_EXP(AffineForm a);
 AffineForm affine_LN(AffineForm a);

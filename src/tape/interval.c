@@ -123,6 +123,21 @@ Interval interval_MOD(Interval a, Interval b) {
     return (Interval){a.low < 0 ? -most : 0, a.high > 0 ? most : 0, nan};
 }
 
+/* fmod() is exact, and a difference's rounding keeps its order: between folds the ends are the ends. */
+Interval interval_FOLD(Interval a, Interval b) {
+    if (interval_is_never(a) || interval_is_never(b)) return interval_never();
+    bool nan = a.nan || b.nan || interval_has_infinity(a) || interval_has_zero(b) || interval_has_infinity(b);
+    double period = interval_ABS(b).high, half = period / 2, length = round_up(a.high - a.low);
+    Interval all = {0, half, nan};
+    if (nan || !interval_is_point(b) || !(length < period)) return all;
+    double rest = fmod(a.low, period), start = rest < 0 ? rest + period : rest, end = start + length, slack = 1e-9 * period;
+    bool lowest = (start <= half + slack && end >= half - slack) || end >= half + period - slack, highest = start <= slack || end >= period - slack;
+    double low = scalar_FOLD(a.low, period), high = scalar_FOLD(a.high, period);
+    if (!lowest) all.low = bound_min(low, high);
+    if (!highest) all.high = bound_max(low, high);
+    return all;
+}
+
 /* ---- bits ---- */
 
 static bool fits(Interval a) { return a.low > -0x1p63 && a.high < 0x1p63; }

@@ -168,6 +168,7 @@ static inline Interval interval_IDIV(Interval a, Interval b) { return interval_I
 
 /* Of the larger operations: tape_interval.c. */
 Interval interval_MOD(Interval a, Interval b);
+Interval interval_FOLD(Interval a, Interval b);
 Interval interval_BITWISE_AND(Interval a, Interval b);
 Interval interval_BITWISE_OR(Interval a, Interval b);
 Interval interval_BITWISE_XOR(Interval a, Interval b);

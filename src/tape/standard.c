@@ -186,6 +186,11 @@ static StandardForm standard_POW(StandardForm a, StandardForm b) {
     return finished(of_interval(range, NULL), 0, 0, next_of(&a, &b));
 }
 
+static StandardForm standard_FOLD(StandardForm a, StandardForm b) {
+    if (is_constant(&b) && !b.nan) return lifted(a, affine_FOLD, affine_point(b.centre));
+    return finished(of_interval(interval_FOLD(standard_range(a), standard_range(b)), NULL), 0, 0, next_of(&a, &b));
+}
+
 static StandardForm standard_MOD(StandardForm a, StandardForm b) {
     if (is_constant(&b) && !b.nan) return lifted(a, affine_MOD, affine_point(b.centre));
     return finished(of_interval(interval_MOD(standard_range(a), standard_range(b)), NULL), 0, 0, next_of(&a, &b));

@@ -42,6 +42,9 @@ typedef struct TapeExternal {
     /* Forms of the outputs on `count` pieces of a line at once, at most 8: output k of piece i is out[k·count + i], and so of the inputs.
      * NULL: those of the intervals. */
     void (*forms)(const void *data, int count, const struct AffineForm *in, struct AffineForm *out, struct NodeCache *cells);
+    /* Appends operations that give out[0 .. output_count), whose values may round otherwise than `eval`; asked for whenever the call is built
+     * or inlined, since constants among the inputs may tell what they are. False, or NULL: it stays a call. */
+    bool (*expand)(const void *data, TapeBuilder *builder, const TapeRef *in, TapeRef *out, Span span);
     /* slopes[k·input_count + j], 0 before: the derivative of output k by input j. NULL: neighbouring places are compared. */
     void (*gradient)(const void *data, const double *in, double *slopes);
 } TapeExternal;

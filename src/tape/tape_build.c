@@ -177,6 +177,7 @@ static bool fold_call(TapeBuilder *builder, const TapeExternal *external, const 
 void tape_call(TapeBuilder *builder, const TapeExternal *external, const TapeRef *inputs, TapeRef *outputs,
                Span span) {
     if (fold_call(builder, external, inputs, outputs)) return;
+    if (external->expand && external->expand(external->data, builder, inputs, outputs, span)) return;
     TapeCall *call = list_push(builder->arena, &builder->calls);
     *call = (TapeCall){.external = external};
     memcpy(call->args, inputs, (size_t)external->input_count * sizeof *inputs);

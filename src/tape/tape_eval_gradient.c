@@ -28,6 +28,10 @@ static Dual dual_MIN(Dual a, Dual b) { return a.value < b.value ? a : b; }
 static Dual dual_MAX(Dual a, Dual b) { return a.value > b.value ? a : b; }
 static Dual dual_SELECT(Dual a, Dual b, Dual c) { return a.value < 0 ? b : c; }
 static Dual dual_MOD(Dual a, Dual b) { return chain2(fmod(a.value, b.value), 1, a, -trunc(a.value / b.value), b); }
+static Dual dual_FOLD(Dual a, Dual b) {
+    double period = fabs(b.value), rest = a.value - period * (floor(a.value / period) + 0.5), side = rest < 0 ? -1 : 1;
+    return chain2(scalar_FOLD(a.value, b.value), side, a, b.value < 0 ? (a.value - rest) / period * side : -((a.value - rest) / period) * side, b);
+}
 static Dual dual_DEGREES(Dual a) { return chain(scalar_DEGREES(a.value), 180.0 / VTS_PI, a); }
 static Dual dual_RADIANS(Dual a) { return chain(scalar_RADIANS(a.value), VTS_RADIANS, a); }
 

@@ -33,6 +33,7 @@ static inline double scalar_CEIL(double a) { return ceil(a); }
 static inline double scalar_INT(double a) { return trunc(a); }
 static inline double scalar_IDIV(double a, double b) { return trunc(a / b); }
 static inline double scalar_MOD(double a, double b) { return fmod(a, b); }
+static inline double scalar_FOLD(double a, double b) { return fabs(fmod(fabs(a), b) - fabs(b) / 2); }
 
 static inline bool scalar_fits_integer(double a) { return fabs(a) < 0x1p63; }
 static inline double scalar_BITWISE_AND(double a, double b) {

@@ -61,6 +61,7 @@ static double reference(TapeOp op, double a, double b, double c) {
     case TAPE_INT: return signbit(a) ? -floor(-a) : floor(a);
     case TAPE_IDIV: return trunc(a / b);
     case TAPE_MOD: return fmod(a, b);
+    case TAPE_FOLD: return fabs(fmod(fabs(a), b) - fabs(b) / 2);
     case TAPE_BITWISE_AND: return bits(a, b, 0);
     case TAPE_BITWISE_OR: return bits(a, b, 1);
     case TAPE_BITWISE_XOR: return bits(a, b, 2);
@@ -252,7 +253,7 @@ static void sum_and_product(const void *data, const double *in, double *out) {
     out[1] = in[0] * in[1];
 }
 
-static const TapeExternal external = {"sum_and_product", 2, 2, sum_and_product, NULL, {7, 7}, 0, 0, NULL, NULL, NULL};
+static const TapeExternal external = {"sum_and_product", 2, 2, sum_and_product, NULL, {7, 7}, 0, 0, NULL, NULL, NULL, NULL};
 
 /* x, y → Σ_{i=x..y} i·x·y, through an external */
 static const Tape *tape_with_everything(Arena *arena) {

@@ -1,7 +1,7 @@
 #include "tape/internal.h"
 
 #include "tape/formula.h"
-#include "tape/internal_formulas.h"
+#include "tape/internal_formulas.inc"
 #include "tape/internal_parts.h"
 
 #define FORMULA(number, name, inputs, text) \

@@ -2,6 +2,7 @@
  * others go lane by lane through affine.h. */
 #include "tape/tape_lanes.h"
 
+#include "tape/affine_lanes_curves.h"
 #include "tape/affine_noise.h"
 #include "tape/tape_affine.h"
 #include "tape/tape_program.h"
@@ -132,6 +133,23 @@ static void noise(const Tape *tape, const TapeStep *step, AffineLanes *slots, No
     affine_noise_lanes(&slots[step->dst], p, kind);
 }
 
+static void wave(const Tape *tape, const TapeStep *step, AffineLanes *slots) {
+    if (affine_small_angles(&slots[step->a]))
+        affine_wave_lanes(&slots[step->dst], &slots[step->a], step->op == TAPE_COS);
+    else
+        general(tape, step, slots);
+}
+
+static void lesser(const Tape *tape, const TapeStep *step, AffineLanes *slots) {
+    AffineLanes filled[2];
+    affine_lesser_lanes(&slots[step->dst], operand(tape, slots, step->a, &filled[0]), operand(tape, slots, step->b, &filled[1]), step->op == TAPE_MAX);
+}
+
+static void select_lanes(const Tape *tape, const TapeStep *step, AffineLanes *slots) {
+    AffineLanes filled[2];
+    affine_select_lanes(&slots[step->dst], &slots[step->a], operand(tape, slots, step->b, &filled[0]), operand(tape, slots, step->c, &filled[1]));
+}
+
 static void walk(const Tape *tape, AffineLanes *slots, struct NodeCache *cells) {
     for (const TapeStep *step = tape->steps, *end = step + tape->step_count; step < end; step++) {
         switch ((TapeOp)step->op) {
@@ -142,6 +160,13 @@ static void walk(const Tape *tape, AffineLanes *slots, struct NodeCache *cells) 
         case TAPE_NEG: affine_neg_lanes(&slots[step->dst], &slots[step->a]); break;
         case TAPE_SQR: affine_sqr_lanes(&slots[step->dst], &slots[step->a]); break;
         case TAPE_SQRT: affine_sqrt_lanes(&slots[step->dst], &slots[step->a]); break;
+        case TAPE_SIN:
+        case TAPE_COS: wave(tape, step, slots); break;
+        case TAPE_EXP: affine_exp_lanes(&slots[step->dst], &slots[step->a]); break;
+        case TAPE_ABS: affine_abs_lanes(&slots[step->dst], &slots[step->a]); break;
+        case TAPE_MIN:
+        case TAPE_MAX: lesser(tape, step, slots); break;
+        case TAPE_SELECT: select_lanes(tape, step, slots); break;
         case TAPE_PERLIN: noise(tape, step, slots, NOISE_IS_PERLIN); break;
         case TAPE_POV_NOISE: noise(tape, step, slots, NOISE_IS_POV); break;
         case TAPE_CALL: call(tape, &tape->calls[step->c], slots, cells); break;

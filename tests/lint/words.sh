@@ -43,7 +43,7 @@ example_words doc/reference/directives.md > "$folder/directive_examples"
 block_words() { sed -n 's/^    {"\([a-z0-9_]*\)", [a-zA-Z_]*},$/\1/p' src/eval/build_table.c; }
 tape_operations() {
   sed -nE 's/^TAPE_OP(_ROW)?\([A-Z0-9_]+, [1-9], "([a-z0-9_]+)".*/\2/p' src/tape/tape_ops.def |
-    grep -vxE 'add|sub|mul|div|idiv|neg|lt|le|gt|ge|eq|ne|and|or'
+    grep -vxE 'add|sub|mul|div|fold|idiv|neg|lt|le|gt|ge|eq|ne|and|or'
 }
 
 { keywords 'CONSTANT|COLOR|WORD'; context_words; block_words; } | require "table or heading" "$folder/all" "doc/scene.md, doc/reference"

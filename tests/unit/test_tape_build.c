@@ -159,7 +159,7 @@ static void swap_and_scale(const void *data, const double *in, double *out) {
 }
 
 static const double five = 5;
-static const TapeExternal swapper = {"swapper", 2, 2, swap_and_scale, &five, {1, 2}, 0, 0, NULL, NULL, NULL};
+static const TapeExternal swapper = {"swapper", 2, 2, swap_and_scale, &five, {1, 2}, 0, 0, NULL, NULL, NULL, NULL};
 
 static void calls_externals(void **state) {
     (void)state;

@@ -108,6 +108,7 @@ Value eval_compound(Eval *ev, const Node *node) {
     case NODE_DICTIONARY: return eval_dictionary(ev, node);
     case NODE_FUNCTION: return eval_function(ev, node);
     case NODE_BLOCK: return eval_block(ev, node, NULL);
+    case NODE_EMPTY: return eval_fail(ev, node->span, "expected a value, found ','");
     default: return value_error();
     }
 }

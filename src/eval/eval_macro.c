@@ -185,14 +185,21 @@ Binding macro_binding(Eval *ev, const Macro *macro) {
 
 /* ---- calls ---- */
 
-/* Names and elements of arrays go by reference, everything else by value, evaluated once and before the scope is entered. */
+/* Names and elements of arrays go by reference, everything else by value, evaluated once and before the scope is entered; what is left
+ * out is neither. */
 typedef struct Passed {
     Slot *reference;
     Value value;
 } Passed;
 
-static bool pass(Eval *ev, const Node *argument, Passed *out) {
-    out->reference = NULL;
+static bool pass(Eval *ev, const Macro *m, size_t index, const Node *argument, Passed *out) {
+    *out = (Passed){0};
+    if (argument->kind == NODE_EMPTY) {
+        if (index >= m->required) return true;
+        Diagnostic *d = diag_error(ev->diags, argument->span, "expected a value for '%s', found ','", m->parameters[index]->text);
+        diag_note(ev->diags, d, m->name_span, "'%s' is defined here", m->name->text);
+        return false;
+    }
     if (argument->kind == NODE_NAME || argument->kind == NODE_INDEX) {
         bool failed = false;
         Array *array = NULL;
@@ -244,10 +251,10 @@ bool macro_enter(Eval *ev, const Macro *m, const NodeList *arguments, Span span,
     Passed *passed =
         arguments->count <= FEW_ARGUMENTS ? few : arena_new_array(&ev->temp, Passed, arguments->count);
     for (size_t i = 0; i < arguments->count; i++)
-        if (!pass(ev, arguments->items[i], &passed[i])) return false;
+        if (!pass(ev, m, i, arguments->items[i], &passed[i])) return false;
     scope_enter(ev, scope);
     for (size_t i = 0; i < arguments->count; i++)
-        scope_bind(ev, m->parameters[i], passed[i].reference, &passed[i].value);
+        scope_bind(ev, m->parameters[i], passed[i].reference, arguments->items[i]->kind == NODE_EMPTY ? NULL : &passed[i].value);
     for (size_t i = arguments->count; i < m->parameter_count; i++) scope_bind(ev, m->parameters[i], NULL, NULL);
     ((Macro *)(uintptr_t)m)->last_call = span;
     *record = (CallRecord){.outer = ev->calls, .macro = m->name, .span = span};

@@ -66,7 +66,8 @@ static bool is_relation(int kind) {
 
 static bool is_comparison(int kind) { return is_relation(kind) || kind == '&' || kind == '|' || kind == '?'; }
 
-/* "(" [argument { [","] argument } [","]] ")", plain names going by reference */
+/* "(" [[argument] { [","] [argument] } [","]] ")", plain names going by reference. An argument before whose comma there is nothing is
+ * left out: an empty node. */
 static bool references(Parser *p, NodeList *out, Node *(*argument)(Parser *)) {
     if (!parser_expect(p, '(', "'('")) return false;
     p->brackets++;
@@ -75,6 +76,8 @@ static bool references(Parser *p, NodeList *out, Node *(*argument)(Parser *)) {
             Node *target = parser_target(p);
             if (!target) return false;
             *list_push(p->arena, out) = target;
+        } else if (parser_peek(p)->kind == ',') {
+            *list_push(p->arena, out) = parser_node(p, NODE_EMPTY, parser_peek(p)->span);
         } else if (parser_peek(p)->kind == ')' && out->count == 0) {
             break;
         } else {
@@ -97,7 +100,7 @@ static bool references(Parser *p, NodeList *out, Node *(*argument)(Parser *)) {
     return true;
 }
 
-/* macro_arguments = "(" [layers { [","] layers } [","]] ")"
+/* macro_arguments = "(" [[layers] { [","] [layers] } [","]] ")"
  * A comparison needs parentheses of its own: in `M(a <1, 2>)` a vector follows. */
 bool parser_arguments(Parser *p, NodeList *out) { return references(p, out, parser_layers); }
 

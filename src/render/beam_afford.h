@@ -31,8 +31,8 @@ typedef struct BeamOffer {
 double beam_afford(CompiledScene *compiled, const BeamOffer *offer);
 /* Seconds, by counts, that the picture takes as it is planned with so many samples a pixel, or from voxels alone; < 0 of a picture that is too small to be probed. */
 double beam_seconds(CompiledScene *compiled, bool voxels, double samples);
-/* What mapping and drawing so many triangles takes, and the boxes around some of them, in as many samples as take so long. */
-double beam_price_in_samples(uint64_t triangles, uint64_t nodes);
+/* What mapping and drawing triangles took, and boxes around some of them, between the two counts: as so many of the samples in between, with what these see and ask. */
+double beam_price_in_samples(const BeamWork *before, const BeamWork *after);
 /* The RMSE that voxels make in the picture as it is planned, noise not counted: 0 where no pilot has told. */
 double beam_voxels_error(const CompiledScene *compiled);
 

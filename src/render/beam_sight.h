@@ -6,7 +6,7 @@
 #include "render/beam_sky.h"
 #include "render/beam_tile.h"
 
-enum { BEAM_NOTHING = -1, BEAM_EDGE = BEAM_TILE + 2, BEAM_MOST_IN_PASS = 32 };
+enum { BEAM_NOTHING = -1, BEAM_EDGE = BEAM_TILE + 2, BEAM_MOST_IN_PASS = 64 };
 /* 1/√2: where the first of the samples goes over; the last does twice as far away. */
 #define BEAM_LEAST_FADE 0.70710678118654752
 
@@ -52,7 +52,7 @@ struct BeamTracer {
     BeamPlan plan;
     double tile_noise; /* squared, of a pixel of the last tile */
     double squared_error, squared_noise; /* summed over the pixels of all tiles: what voxels are wrong by, and noise */
-    uint64_t pixel_count, sample_count;
+    uint64_t pixel_count, sample_count, shaded_count;
     uint64_t seed;
     Tracer volumes;        /* empty where no voxels are seen */
     Beam beam;

@@ -73,7 +73,7 @@ BeamTracer *beam_tracer_create(const CompiledScene *compiled, const BeamPlan *pl
 
 BeamWork beam_tracer_work(const BeamTracer *tr) {
     return (BeamWork){.triangles = tr->draft.triangles + tr->shadow.draft.triangles, .nodes = tr->draft.nodes + tr->shadow.draft.nodes,
-                      .rays = tr->counters.camera_rays + tr->counters.shadow_rays + tr->shadow.rays, .samples = tr->sample_count,
+                      .rays = tr->counters.camera_rays + tr->counters.shadow_rays + tr->shadow.rays, .samples = tr->sample_count, .sights = tr->shaded_count,
                       .steps = tr->volumes.counters.steps};
 }
 
@@ -301,6 +301,7 @@ static void see_pass(BeamTracer *tr, Radiance *out, float *apart) {
     beam_see_surfaces(tr);
     draw_skins(tr, cells);
     beam_gather_sights(tr);
+    tr->shaded_count += tr->sight_count;
     beam_add_ambient(tr);
     for (size_t l = 0; l < scene->light_count; l++) beam_add_light(tr, &scene->lights[l]);
     beam_add_beyond(tr);
@@ -325,12 +326,12 @@ void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out, Ao
     tr->first_pass = true;
     double fixed;
     do {
-        BeamWork before = beam_tracer_work(tr);
+        const BeamWork before = beam_tracer_work(tr);
         if (!tr->first_pass) beam_aim(tr); /* drawing has narrowed the beam */
         see_pass(tr, out, apart);
         tr->first_pass = false;
-        BeamWork after = beam_tracer_work(tr);
-        fixed = beam_price_in_samples(after.triangles - before.triangles, after.nodes - before.nodes);
+        const BeamWork after = beam_tracer_work(tr);
+        fixed = beam_price_in_samples(&before, &after);
     } while (allot_next(&tr->allotment, &tr->plan.samples, apart, most_in_pass, fixed) && !beam_is_interrupted(&tr->draft));
     /* samples that somebody counts are left as they are */
     tr->tile_noise = tr->plan.samples.worth > 0 ? beam_settle(&tr->allotment, out) : allot_error(&tr->allotment);

@@ -35,6 +35,7 @@ double beam_tile_noise(const BeamTracer *tracer);
 typedef struct BeamWork {
     uint64_t triangles, nodes; /* mapped and drawn, and boxes around some */
     uint64_t rays, samples, steps;
+    uint64_t sights; /* samples of a pixel that see the same, shaded once */
 } BeamWork;
 BeamWork beam_tracer_work(const BeamTracer *tracer);
 void beam_tracer_count(const BeamTracer *tracer, TraceCounters *sum);

@@ -11,8 +11,8 @@ static const double NEIGHBOURS = 12;
 /* No pass takes a pixel farther than this, against what it has: few samples do not tell enough for more. But where the pass itself takes longer than its samples, another would be
  * dearer than some that are too many. */
 enum { GROWTH = 4, DEAR_GROWTH = 12 };
-/* Nor is one made for less than these parts of what a pixel has, or of what all have taken. */
-static const double LEAST_PART = 0.25, LEAST_PASS = 0.04;
+/* Nor is one made for less than these parts of what a pixel has, of what all have taken, or of what passes have taken besides: an error that was asked for is kept, dear as they are. */
+static const double LEAST_PART = 0.25, LEAST_PASS = 0.04, LEAST_PAID = 0.006;
 enum { HALVINGS = 60 };
 
 double allot_noise(double error, double n) { return error * pow(n, FALL); }
@@ -68,7 +68,7 @@ bool allot_next(Allotment *a, const AllotPlan *plan, const float *apart, int mos
     }
     double asked = ask_all(a, plan, GROWTH);
     if (asked < price) asked = ask_all(a, plan, DEAR_GROWTH);
-    if (!(asked >= LEAST_PASS * (taken + a->paid)) || !(asked > 0)) return false;
+    if (!(asked >= LEAST_PASS * taken + LEAST_PAID * a->paid) || !(asked > 0)) return false;
     for (int i = 0; i < pixels && asked > room; i++) {
         a->asked[i] = (int)(a->asked[i] * (room / asked));
         if (a->asked[i] < 2) a->asked[i] = 0;

@@ -6,7 +6,11 @@
 #include "render/beam_sky.h"
 #include "render/beam_tile.h"
 
+#include <stddef.h>
+
 enum { BEAM_NOTHING = -1, BEAM_EDGE = BEAM_TILE + 2, BEAM_MOST_IN_PASS = 64 };
+/* Of a scene whose hits may have several looks, which take four times the room. */
+enum { BEAM_MOST_BLENDING = 32 };
 /* 1/√2: where the first of the samples goes over; the last does twice as far away. */
 #define BEAM_LEAST_FADE 0.70710678118654752
 
@@ -16,11 +20,15 @@ typedef struct SeenSurface {
     double key_x, key_y, key_0; /* of its tangent plane in the beam */
 } SeenSurface;
 
-/* Hits side by side, each with no more looks than it has: most have one of eight that there may be. */
+/* Hits side by side, each with no more looks than it has: most have one of eight that there may be, and where none may have more there is no room for them. */
 typedef struct HitPool {
     unsigned char *bytes;
     size_t used;
 } HitPool;
+static inline size_t beam_hit_room(int shares) {
+    enum { ALIGNMENT = 16 };
+    return (offsetof(SurfaceHit, shares) + (size_t)shares * sizeof(LookShare) + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+}
 
 /* Samples of one pixel that see the same thing. */
 typedef struct Sight {
@@ -48,6 +56,7 @@ typedef struct Sight {
 struct BeamTracer {
     const CompiledScene *compiled;
     Allotment allotment;   /* samples of the pixels, before this pass and in it */
+    int most_in_pass;      /* samples of a pixel */
     bool first_pass;
     BeamPlan plan;
     double tile_noise; /* squared, of a pixel of the last tile */

@@ -1,15 +1,11 @@
 #include "render/beam_sight.h"
 #include "render/tile_sight.h"
 
-#include <stddef.h>
 #include <string.h>
 
 static const SurfaceHit *keep_hit(HitPool *pool, const SurfaceHit *hit) {
-    enum { ALIGNMENT = 16 };
-    _Static_assert(sizeof(SurfaceHit) % ALIGNMENT == 0, "rounded up, hits with all their looks would not fit into the pool");
-    size_t size = offsetof(SurfaceHit, shares) + (size_t)hit->share_count * sizeof *hit->shares;
-    void *kept = memcpy(pool->bytes + pool->used, hit, size);
-    pool->used += (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+    void *kept = memcpy(pool->bytes + pool->used, hit, offsetof(SurfaceHit, shares) + (size_t)hit->share_count * sizeof *hit->shares);
+    pool->used += beam_hit_room(hit->share_count);
     return kept;
 }
 

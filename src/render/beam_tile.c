@@ -45,7 +45,10 @@ static void sky_init(BeamTracer *tr, size_t all, Arena *arena) {
 
 BeamTracer *beam_tracer_create(const CompiledScene *compiled, const BeamPlan *plan, uint64_t seed, Arena *arena) {
     BeamTracer *tr = arena_new(arena, BeamTracer);
-    size_t all = (size_t)int_min(plan->samples.most, BEAM_MOST_IN_PASS) * BEAM_TILE * BEAM_TILE;
+    const bool blends = hierarchy_blends(compiled->hierarchy);
+    const size_t hit_size = beam_hit_room(blends ? LOOK_SHARES : 0);
+    tr->most_in_pass = int_min(plan->samples.most, blends ? BEAM_MOST_BLENDING : BEAM_MOST_IN_PASS);
+    const size_t all = (size_t)tr->most_in_pass * BEAM_TILE * BEAM_TILE;
     tr->compiled = compiled;
     tr->plan = *plan;
     tr->seed = seed;
@@ -58,8 +61,8 @@ BeamTracer *beam_tracer_create(const CompiledScene *compiled, const BeamPlan *pl
     tr->shadow.draft = tr->draft; /* which cuts triangles alike, */
     tr->shadow.draft.facets = NULL; /* and keeps nothing */
     tr->surfaces = arena_new_room(arena, SeenSurface, all);
-    tr->sample_hits.bytes = arena_push_room_(arena, all, sizeof(SurfaceHit));
-    tr->pixel_hits.bytes = arena_push_room_(arena, VTS_ARRAY_COUNT(tr->pixels), sizeof(SurfaceHit));
+    tr->sample_hits.bytes = arena_push_room_(arena, all, hit_size);
+    tr->pixel_hits.bytes = arena_push_room_(arena, VTS_ARRAY_COUNT(tr->pixels), hit_size);
     tr->fade = arena_new_room(arena, float, all);
     tr->surface = arena_new_room(arena, int32_t, all);
     tr->next = arena_new_room(arena, int32_t, all);
@@ -309,7 +312,7 @@ static void see_pass(BeamTracer *tr, Radiance *out, float *apart) {
 }
 
 void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out, AovSum *aovs) {
-    int pixels = (x1 - x0) * (y1 - y0), most_in_pass = int_min(tr->plan.samples.most, BEAM_MOST_IN_PASS);
+    const int pixels = (x1 - x0) * (y1 - y0);
     float apart[BEAM_TILE * BEAM_TILE];
     tr->x0 = x0, tr->y0 = y0, tr->columns = x1 - x0, tr->rows = y1 - y0;
     tr->aovs = aovs;
@@ -322,7 +325,7 @@ void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out, Ao
     }
     aim_cones(tr);
     memset(out, 0, (size_t)pixels * sizeof *out);
-    allot_begin(&tr->allotment, &tr->plan.samples, tr->columns, tr->rows, most_in_pass);
+    allot_begin(&tr->allotment, &tr->plan.samples, tr->columns, tr->rows, tr->most_in_pass);
     tr->first_pass = true;
     double fixed;
     do {
@@ -332,7 +335,7 @@ void beam_tile(BeamTracer *tr, int x0, int y0, int x1, int y1, Radiance *out, Ao
         tr->first_pass = false;
         const BeamWork after = beam_tracer_work(tr);
         fixed = beam_price_in_samples(&before, &after);
-    } while (allot_next(&tr->allotment, &tr->plan.samples, apart, most_in_pass, fixed) && !beam_is_interrupted(&tr->draft));
+    } while (allot_next(&tr->allotment, &tr->plan.samples, apart, tr->most_in_pass, fixed) && !beam_is_interrupted(&tr->draft));
     /* samples that somebody counts are left as they are */
     tr->tile_noise = tr->plan.samples.worth > 0 ? beam_settle(&tr->allotment, out) : allot_error(&tr->allotment);
     tr->squared_noise += tr->tile_noise * pixels;

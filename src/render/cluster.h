@@ -82,6 +82,7 @@ typedef struct ClusterSet {
     LookTable looks;
     const Look *default_look;
     size_t part_count;
+    bool blends; /* some surface may have several looks at one place */
     const ShapeTracer *shapes; /* that has prepared what rays meet */
 } ClusterSet;
 

@@ -109,6 +109,7 @@ static void learn_looks(Builder *b, const Object *object) {
         for (size_t i = 0; i < object->as.mesh->texture_count; i++) look_of(b, object->as.mesh->textures[i]);
     size_t count;
     const BlobPart *parts = object_textured_parts(object, &count);
+    b->set->blends |= parts || object->cutaway || (object->kind == OBJECT_TRIANGLES && object->as.mesh->corner_textures);
     for (size_t i = 0; i < count; i++)
         if (parts[i].texture) look_of(b, parts[i].texture);
     if (!object_has_group(object)) return;

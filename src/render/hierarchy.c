@@ -356,6 +356,7 @@ double hierarchy_coarseness(const Hierarchy *h, Vec3 point) {
     return h->reach > 0 ? 1e-6 * double_min(vec3_length(vec3_sub(point, h->all->origin)), h->reach) : 0;
 }
 bool hierarchy_is_plain(const Hierarchy *h) { return h->plain; }
+bool hierarchy_blends(const Hierarchy *h) { return h->set.blends; }
 void hierarchy_work(const Hierarchy *h, SolidWork *sum) { shape_tracer_work(h->set.shapes, sum); }
 bool hierarchy_is_clear(const Hierarchy *h) { return h->clear; }
 const Embree *hierarchy_embree(const Hierarchy *h) { return &h->embree; }

@@ -61,6 +61,8 @@ size_t hierarchy_object_count(const Hierarchy *hierarchy);
 double hierarchy_coarseness(const Hierarchy *hierarchy, Vec3 point);
 /* Whether something lets light through, so that shadows have colours. */
 bool hierarchy_is_clear(const Hierarchy *hierarchy);
+/* Whether a hit may have `shares`. */
+bool hierarchy_blends(const Hierarchy *hierarchy);
 /* Whether nothing mirrors or lets light through. */
 bool hierarchy_is_plain(const Hierarchy *hierarchy);
 /* Adds what functions have cost rays so far. */

@@ -9,7 +9,7 @@
 
 #include "render/beam_allot.h"
 
-/* Replaces the pixels of a tile, as its last pass has left them, by such estimates; neighbours are those of the tile, up to two pixels away.
+/* Replaces the pixels of a tile, as its last pass has left them, by such estimates; neighbours are those of the tile, up to three pixels away.
  * Returns the mean square of the error that is to be expected of them. */
 double beam_settle(const Allotment *allotment, Radiance *pixels);
 

@@ -47,7 +47,7 @@ static void test_noise_goes_where_nothing_differs(void **state) {
     draw(even, 1e-3, &a, pixels);
     double before = wrong(even, pixels), told = beam_settle(&a, pixels), after = wrong(even, pixels);
     assert_true(after < 0.2 * before);
-    assert_true(told > 0.5 * after && told < 2 * after);
+    assert_true(told > 0.6 * after && told < 2.5 * after); /* noise counts as if it were random, which is 1.4 times this one */
     draw(slope, 1e-3, &a, pixels);
     before = wrong(slope, pixels);
     beam_settle(&a, pixels);

@@ -141,6 +141,135 @@ static double square_number(const FractalSettings *f, Complex z, Complex c) {
     return interior(f, z, nearest);
 }
 
+/* ---- side by side ---- */
+
+/* Two doubles are a register of every x86-64; of wider vectors some compilers compare the numbers one by one where there is no AVX. */
+enum { PAIRS = FRACTAL_LANES / 2 };
+typedef double Pair __attribute__((vector_size(16)));
+typedef int64_t PairBits __attribute__((vector_size(16)));
+
+typedef struct Orbits {
+    Pair re[PAIRS], im[PAIRS], nearest[PAIRS]; /* nearest: the least of the squares of their sizes so far */
+} Orbits;
+
+/* Iterations of square_number() in lanes: each waits for the one before it, so that several take hardly longer than one. Whoever has
+ * ended stays at 0 for good, where it neither escapes nor meets its mark. */
+typedef struct Squares {
+    const FractalSettings *settings;
+    Orbits now;
+    Pair c_re[PAIRS], c_im[PAIRS], mark_re[PAIRS], mark_im[PAIRS];
+    int marked, next; /* as a Cycle's, in iterations that are done */
+    bool done[FRACTAL_LANES];
+    int left;
+    PairBits escaping[PAIRS], returned[PAIRS]; /* in how many of the iterations that were made last; returned: by what of it is real, at least */
+} Squares;
+
+static inline void iterate_pair(Squares *s, int h, int count) {
+    Pair re = s->now.re[h], im = s->now.im[h], nearest = s->now.nearest[h];
+    PairBits escaping = {0}, returned = {0};
+    for (int i = 0; i < count; i++) {
+        const Pair next_re = re * re - im * im + s->c_re[h], next_im = 2 * re * im + s->c_im[h];
+        const Pair reach = next_re * next_re + next_im * next_im;
+        const PairBits nearer = nearest < reach;
+        nearest = (Pair)((nearer & (PairBits)nearest) | (~nearer & (PairBits)reach));
+        re = next_re, im = next_im;
+        escaping -= reach > 4;
+        returned -= re == s->mark_re[h];
+    }
+    s->now.re[h] = re, s->now.im[h] = im, s->now.nearest[h] = nearest;
+    s->escaping[h] = escaping, s->returned[h] = returned;
+}
+
+static inline void iterate(Squares *s, int count) {
+    for (int h = 0; h < PAIRS; h++) iterate_pair(s, h, count);
+}
+
+static double lane(const Pair pairs[PAIRS], int k) { return pairs[k / 2][k % 2]; }
+
+static Complex place_of(const Squares *s, int k) { return (Complex){lane(s->now.re, k), lane(s->now.im, k)}; }
+
+static void end_lane(Squares *s, int k, double value, double values[FRACTAL_LANES]) {
+    values[k] = value;
+    s->now.re[k / 2][k % 2] = s->now.im[k / 2][k % 2] = s->c_re[k / 2][k % 2] = s->c_im[k / 2][k % 2] = 0;
+    s->mark_re[k / 2][k % 2] = NAN;
+    s->done[k] = true;
+    s->left--;
+}
+
+static void mark_lanes(Squares *s, int made) {
+    for (int h = 0; h < PAIRS; h++) s->mark_re[h] = s->now.re[h], s->mark_im[h] = s->now.im[h];
+    for (int k = 0; k < FRACTAL_LANES; k++)
+        if (s->done[k]) s->mark_re[k / 2][k % 2] = NAN;
+    s->marked = made, s->next = made < s->settings->iterations / 2 ? 2 * made : s->settings->iterations;
+}
+
+/* The last place of a lane that is back at its mark: what whole cycles leave. */
+static Complex behind_mark(const Squares *s, int k, int made) {
+    Complex z = place_of(s, k);
+    for (int rest = (s->settings->iterations - made) % (made - s->marked); rest > 0; rest--)
+        z = (Complex){z.re * z.re - z.im * z.im + lane(s->c_re, k), 2 * z.re * z.im + lane(s->c_im, k)};
+    return z;
+}
+
+/* Those that end with the last of the iterations made. */
+static void end_lanes(Squares *s, int made, double values[FRACTAL_LANES]) {
+    for (int k = 0; k < FRACTAL_LANES; k++)
+        if (s->escaping[k / 2][k % 2])
+            end_lane(s, k, exterior(s->settings, made - 1, place_of(s, k)), values);
+        else if (s->returned[k / 2][k % 2] && lane(s->now.im, k) == lane(s->mark_im, k))
+            end_lane(s, k, interior(s->settings, behind_mark(s, k, made), lane(s->now.nearest, k)), values);
+}
+
+static bool something_ends(const Squares *s) {
+    PairBits any = {0};
+    for (int h = 0; h < PAIRS; h++) any |= s->escaping[h] | s->returned[h];
+    return (any[0] | any[1]) != 0;
+}
+
+/* A few at once, and one by one where one of them was too far. */
+static void square_numbers(Squares *s, double values[FRACTAL_LANES]) {
+    enum { AT_ONCE = 4 };
+    const int iterations = s->settings->iterations;
+    for (int h = 0; h < PAIRS; h++) {
+        s->now.nearest[h] = s->now.re[h] * s->now.re[h] + s->now.im[h] * s->now.im[h];
+        s->mark_re[h] = s->mark_im[h] = (Pair){NAN, NAN};
+    }
+    s->next = 8, s->left = FRACTAL_LANES;
+    for (int made = 0; made < iterations && s->left > 0;) {
+        const Orbits before = s->now;
+        const int ahead = iterations - made < AT_ONCE ? iterations - made : AT_ONCE;
+        if (ahead == AT_ONCE) iterate(s, AT_ONCE);
+        if (ahead < AT_ONCE || something_ends(s)) {
+            s->now = before;
+            for (int i = 1; i <= ahead; i++) {
+                iterate(s, 1);
+                end_lanes(s, made + i, values);
+            }
+        }
+        made += ahead;
+        if (made >= s->next) mark_lanes(s, made);
+    }
+    for (int k = 0; k < FRACTAL_LANES; k++)
+        if (!s->done[k]) values[k] = interior(s->settings, place_of(s, k), lane(s->now.nearest, k));
+}
+
+void fractal_numbers(const Pigment *pigment, const Vec3 p[FRACTAL_LANES], double values[FRACTAL_LANES]) {
+    const FractalSettings *f = &pigment->fractal;
+    const bool julia = pigment->kind == PATTERN_JULIA;
+    if (f->magnet || f->exponent != 2) {
+        for (int k = 0; k < FRACTAL_LANES; k++) values[k] = fractal_number(pigment, p[k]);
+        return;
+    }
+    Squares squares = {.settings = f};
+    for (int k = 0; k < FRACTAL_LANES; k++) {
+        squares.now.re[k / 2][k % 2] = p[k].x, squares.now.im[k / 2][k % 2] = p[k].y;
+        squares.c_re[k / 2][k % 2] = julia ? f->re : p[k].x, squares.c_im[k / 2][k % 2] = julia ? f->im : p[k].y;
+    }
+    square_numbers(&squares, values);
+}
+
+/* ---- one place ---- */
+
 double fractal_number(const Pigment *pigment, Vec3 p) {
     const FractalSettings *f = &pigment->fractal;
     bool julia = pigment->kind == PATTERN_JULIA || pigment->kind == PATTERN_MAGNET_JULIA;

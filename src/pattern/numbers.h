@@ -7,6 +7,9 @@
 
 /* fractal.c: mandel, julia, magnet. */
 double fractal_number(const Pigment *pigment, Vec3 p);
+/* The same at several places, to the last bit, in little more time than at one. */
+enum { FRACTAL_LANES = 4 };
+void fractal_numbers(const Pigment *pigment, const Vec3 p[FRACTAL_LANES], double values[FRACTAL_LANES]);
 /* crackle.c */
 double crackle_number(const Pigment *pigment, Vec3 p);
 /* The nearest of its points. */

@@ -79,18 +79,21 @@ static void blend_cells(const Pigment *pattern, const Spot *spot, BlendVisit *vi
 
 /* Of patterns of which only values are known: the mean of four places, each with the range of all of them. */
 static void blend_sampled(const Pigment *pattern, const Spot *spot, BlendVisit *visit, void *target) {
-    static const double places[4][2] = {{-0.125, -0.375}, {0.375, -0.125}, {0.125, 0.375}, {-0.375, 0.125}};
+    static const double within[PATTERN_PLACES][2] = {{-0.125, -0.375}, {0.375, -0.125}, {0.125, 0.375}, {-0.375, 0.125}};
     Vec3 u = spot->axes[0], v = spot->axes[1];
     if (spot->blur > 0) u = vec3(spot_size(spot), 0, 0), v = vec3(0, 0, spot_size(spot));
-    double values[4], lo = (double)INFINITY, hi = -(double)INFINITY, sum = 0;
-    for (int k = 0; k < 4; k++) {
-        Spot place = *spot;
-        place.p = vec3_madd(vec3_madd(spot->p, u, places[k][0]), v, places[k][1]);
-        values[k] = pattern_value(pattern, &place).value;
+    Spot places[PATTERN_PLACES];
+    double values[PATTERN_PLACES], lo = (double)INFINITY, hi = -(double)INFINITY, sum = 0;
+    for (int k = 0; k < PATTERN_PLACES; k++) {
+        places[k] = *spot;
+        places[k].p = vec3_madd(vec3_madd(spot->p, u, within[k][0]), v, within[k][1]);
+    }
+    pattern_values(pattern, places, values);
+    for (int k = 0; k < PATTERN_PLACES; k++) {
         lo = fmin(lo, values[k]), hi = fmax(hi, values[k]), sum += values[k];
     }
-    if (blend_straight(pattern, (lo + hi) / 2, 1.5 * (hi - lo), sum / 4, 1, visit, target)) return;
-    for (int k = 0; k < 4; k++) blend_spread(pattern, (Spread){values[k], (hi - lo) / 2, false}, 0.25, visit, target);
+    if (blend_straight(pattern, (lo + hi) / 2, 1.5 * (hi - lo), sum / PATTERN_PLACES, 1, visit, target)) return;
+    for (int k = 0; k < PATTERN_PLACES; k++) blend_spread(pattern, (Spread){values[k], (hi - lo) / 2, false}, 1.0 / PATTERN_PLACES, visit, target);
 }
 
 static void blend_average(const Pigment *pattern, BlendVisit *visit, void *target) {

@@ -301,3 +301,14 @@ Spread pattern_value(const Pigment *pigment, const Spot *spot) {
     default: return exactly(0);
     }
 }
+
+void pattern_values(const Pigment *pigment, const Spot places[PATTERN_PLACES], double values[PATTERN_PLACES]) {
+    if (pigment->kind == PATTERN_MANDEL || pigment->kind == PATTERN_JULIA) {
+        _Static_assert((int)PATTERN_PLACES == (int)FRACTAL_LANES, "as many places as lanes");
+        Vec3 points[FRACTAL_LANES];
+        for (int k = 0; k < FRACTAL_LANES; k++) points[k] = places[k].p;
+        fractal_numbers(pigment, points, values);
+        return;
+    }
+    for (int k = 0; k < PATTERN_PLACES; k++) values[k] = pattern_value(pigment, &places[k]).value;
+}

@@ -20,5 +20,8 @@ PatternTraits pattern_traits(PatternKind kind);
 WaveKind pigment_wave(const Pigment *pigment);
 /* The pattern's value at a spot of pattern space (already warped), before its restart, frequency, phase and wave. */
 Spread pattern_value(const Pigment *pigment, const Spot *spot);
+/* Only the value, at places of one footprint: what iterates does so side by side. */
+enum { PATTERN_PLACES = 4 };
+void pattern_values(const Pigment *pigment, const Spot places[PATTERN_PLACES], double values[PATTERN_PLACES]);
 
 #endif

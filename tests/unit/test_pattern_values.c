@@ -98,7 +98,7 @@ static double counted_out(const FractalSettings *f, double x, double y) {
     return values[f->interior];
 }
 
-/* Cycles that are left out change nothing, not even which place of them is the last. */
+/* Cycles that are left out change nothing, not even which place of them is the last; nor do places side by side. */
 static void fractals_skip_whole_cycles(void **state) {
     (void)state;
     Pigment pigment = make_pigment(PATTERN_MANDEL);
@@ -107,7 +107,14 @@ static void fractals_skip_whole_cycles(void **state) {
     for (int k = 0; k < 4000; k++) {
         const double x = -2 + 2.6 * (k % 63) / 62, y = -1.2 + 2.4 * (k / 63) / 63;
         f->interior = k % 7, f->iterations = 1 + k * 37 % 3001;
-        assert_true(fractal_number(&pigment, vec3(x, y, 0)) == counted_out(f, x, y));
+        const Vec3 places[FRACTAL_LANES] = {vec3(x, y, 0), vec3(x / 3, 0, 0), vec3(-x, y / 2, 0), vec3(y, 1e200 * (k % 2), 0)};
+        double values[FRACTAL_LANES];
+        fractal_numbers(&pigment, places, values);
+        for (int i = 0; i < FRACTAL_LANES; i++) {
+            const double counted = counted_out(f, places[i].x, places[i].y);
+            assert_true(fractal_number(&pigment, places[i]) == counted);
+            assert_true(values[i] == counted);
+        }
     }
 }
 

@@ -140,6 +140,32 @@ static void wave(const Tape *tape, const TapeStep *step, AffineLanes *slots) {
         general(tape, step, slots);
 }
 
+static void angle(const Tape *tape, const TapeStep *step, AffineLanes *slots) {
+    AffineLanes filled[2];
+    const AffineLanes *y = operand(tape, slots, step->a, &filled[0]), *x = operand(tape, slots, step->b, &filled[1]);
+    if (affine_plain_angles(y, x))
+        affine_angle_lanes(&slots[step->dst], y, x);
+    else
+        general(tape, step, slots);
+}
+
+static void fold(const Tape *tape, const TapeStep *step, AffineLanes *slots) {
+    double period = is_constant(tape, step->b) ? fabs(constant_at(tape, step->b)) : 0;
+    if (period > 0x1p-500 && period < 0x1p500)
+        affine_fold_lanes(&slots[step->dst], &slots[step->a], period);
+    else
+        general(tape, step, slots);
+}
+
+/* Whole powers of negative numbers have values. */
+static void power(const Tape *tape, const TapeStep *step, AffineLanes *slots) {
+    double by = is_constant(tape, step->b) ? constant_at(tape, step->b) : 0;
+    if (by != floor(by) && !is_constant(tape, step->a))
+        affine_pow_lanes(&slots[step->dst], &slots[step->a], by);
+    else
+        general(tape, step, slots);
+}
+
 static void lesser(const Tape *tape, const TapeStep *step, AffineLanes *slots) {
     AffineLanes filled[2];
     affine_lesser_lanes(&slots[step->dst], operand(tape, slots, step->a, &filled[0]), operand(tape, slots, step->b, &filled[1]), step->op == TAPE_MAX);
@@ -163,6 +189,9 @@ static void walk(const Tape *tape, AffineLanes *slots, struct NodeCache *cells) 
         case TAPE_SIN:
         case TAPE_COS: wave(tape, step, slots); break;
         case TAPE_EXP: affine_exp_lanes(&slots[step->dst], &slots[step->a]); break;
+        case TAPE_ATAN2: angle(tape, step, slots); break;
+        case TAPE_POW: power(tape, step, slots); break;
+        case TAPE_FOLD: fold(tape, step, slots); break;
         case TAPE_ABS: affine_abs_lanes(&slots[step->dst], &slots[step->a]); break;
         case TAPE_MIN:
         case TAPE_MAX: lesser(tape, step, slots); break;

@@ -65,6 +65,28 @@ static int misses(const Tape *tape, const char *name, uint64_t seed, int batches
     return failures;
 }
 
+/* Powers and periods usually are numbers, which has bounds of its own. */
+static void hold_with_constants(void **state) {
+    (void)state;
+    static const double powers[] = {0.5, 1.5, 2.5, 0.2, -0.7, -3.3, 7.7, 40.5, 1e-9}, periods[] = {0.1, 1, -3, 2 * VTS_PI, 1e-3, 1e6};
+    int known = 0, failures = 0;
+    Arena arena;
+    arena_init(&arena, NULL, 0);
+    for (size_t k = 0; k < VTS_ARRAY_COUNT(powers) + VTS_ARRAY_COUNT(periods); k++) {
+        bool is_power = k < VTS_ARRAY_COUNT(powers);
+        double constant = is_power ? powers[k] : periods[k - VTS_ARRAY_COUNT(powers)];
+        TapeOp op = is_power ? TAPE_POW : TAPE_FOLD;
+        TapeBuilder *b = tape_builder_create(&arena, 3);
+        TapeRef out = tape_binary(b, op, tape_input(b, 0), tape_constant(b, constant), (Span){0});
+        const Tape *tape = tape_finish(b, &out, 1);
+        failures += misses(tape, tape_op_text(op), 100 + k, (int)span_count(4000) / 8, true, &known);
+        failures += misses(tape, tape_op_text(op), 200 + k, (int)span_count(4000) / 8, false, &known);
+    }
+    assert_int_equal(failures, 0);
+    assert_true(known > 20000);
+    arena_destroy(&arena);
+}
+
 static void every_operation_holds_its_values(void **state) {
     (void)state;
     Arena arena;
@@ -372,7 +394,7 @@ static void caches_change_nothing(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_operation_holds_its_values), cmocka_unit_test(noises_hold_their_values), cmocka_unit_test(constants_hold_their_values),
+        cmocka_unit_test(every_operation_holds_its_values), cmocka_unit_test(hold_with_constants), cmocka_unit_test(noises_hold_their_values), cmocka_unit_test(constants_hold_their_values),
         cmocka_unit_test(sums_hold_their_values), cmocka_unit_test(settled_terms_hold_their_values),           cmocka_unit_test(nodes_hold_their_values),
         cmocka_unit_test(nodes_along_lines_hold_their_values), cmocka_unit_test(caches_change_nothing),
         cmocka_unit_test(noises_along_lines_hold_their_values), cmocka_unit_test(floats_are_near_doubles),

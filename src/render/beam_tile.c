@@ -8,8 +8,14 @@
 
 #include <string.h>
 
-/* How far triangles may leave what the mapping makes of them, in pixels, with so many samples: as they are fewer, their noise hides more. */
-static double tolerance_for(int samples) { return double_clamp(2 / sqrt(samples), 0.125, 2); }
+/* How far triangles may leave what the mapping makes of them, in pixels: as samples are fewer, their noise hides more; and so much for an error that is asked for. Of a near
+ * lawn at max_error 0.001, facets of up to a quarter of a pixel made three fifths of the error's square. */
+static const double LEAST_TOLERANCE = 0.125, MOST_TOLERANCE = 2, TOLERANCE_AN_ERROR = 90;
+static double tolerance_for(const AllotPlan *plan, double max_error) {
+    const bool asked = plan->first < plan->most;
+    const double noise_hides = 2 / sqrt(asked ? 4 * plan->first : plan->first);
+    return double_clamp(asked ? fmin(noise_hides, TOLERANCE_AN_ERROR * max_error) : noise_hides, LEAST_TOLERANCE, MOST_TOLERANCE);
+}
 
 static void samples_init(BeamSamples *s, size_t all, Arena *arena) {
     s->first = arena_new_room(arena, uint32_t, BEAM_TILE * BEAM_TILE + 1);
@@ -31,7 +37,7 @@ static void draft_init(BeamTracer *tr, size_t all, Arena *arena) {
     draft->eye = view->camera.location;
     draft->width = middle.width;
     draft->spread = middle.spread;
-    draft->tolerance = tolerance_for(tr->plan.samples.first < tr->plan.samples.most ? 4 * tr->plan.samples.first : tr->plan.samples.first);
+    draft->tolerance = tolerance_for(&tr->plan.samples, tr->compiled->max_error);
     draft->beam = &tr->beam;
     draft->interrupted = tr->plan.interrupted;
 }

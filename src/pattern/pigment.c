@@ -77,6 +77,28 @@ static void blend_cells(const Pigment *pattern, const Spot *spot, BlendVisit *vi
     if (far > 0) blend_spread(pattern, (Spread){0.5, 1, false}, far, visit, target); /* all values alike */
 }
 
+static bool is_unit_color(Color c) { return fmin(fmin(c.red, c.green), c.blue) >= 0 && fmax(fmax(c.red, c.green), c.blue) <= 1; }
+
+/* Whether all colours are from 0 to 1, as their grey then is. */
+static bool has_unit_colors(const Pigment *pigment) {
+    if (pigment->kind == PATTERN_IMAGE_MAP) return false;
+    if (pigment->kind == PATTERN_SOLID) return is_unit_color(pigment->color);
+    const ColorMap map = colormap_of(pigment);
+    for (size_t k = 0; k < map.count; k++) {
+        const ColorMapEntry *e = &map.entries[k];
+        if (e->pigment ? !has_unit_colors(e->pigment) : !is_unit_color(e->color)) return false;
+    }
+    return true;
+}
+
+/* Where the map is straight over all greys, colours are that of the mean, and a pigment's colour is one already. */
+static bool blend_gray(const Pigment *pattern, const Spot *spot, BlendVisit *visit, void *target) {
+    MapPlace place;
+    if (pattern->kind != PATTERN_PIGMENT || !pattern->source || !has_unit_colors(pattern->source)) return false;
+    if (!colormap_is_straight(pattern, colormap_of(pattern), 0, 1, 0.5, &place)) return false;
+    return blend_straight(pattern, 0.5, 1, pattern_value(pattern, spot).value, 1, visit, target);
+}
+
 /* Of patterns of which only values are known: the mean of four places, each with the range of all of them. */
 static void blend_sampled(const Pigment *pattern, const Spot *spot, BlendVisit *visit, void *target) {
     static const double within[PATTERN_PLACES][2] = {{-0.125, -0.375}, {0.375, -0.125}, {0.125, 0.375}, {-0.375, 0.125}};
@@ -129,10 +151,10 @@ static void merge_share(void *target, size_t entry, double share) {
 static void blend_values(const Pigment *pattern, const Spot *spot, BlendVisit *visit, void *target) {
     if (pattern->kind == PATTERN_CELLS)
         blend_cells(pattern, spot, visit, target);
-    else if (pattern_traits(pattern->kind).sampled && !spot_is_point(spot))
-        blend_sampled(pattern, spot, visit, target);
-    else
+    else if (spot_is_point(spot) || !pattern_traits(pattern->kind).sampled)
         blend_spread(pattern, pattern_value(pattern, spot), 1, visit, target);
+    else if (!blend_gray(pattern, spot, visit, target))
+        blend_sampled(pattern, spot, visit, target);
 }
 
 static void blend_merged(const Pigment *pattern, const Spot *spot, BlendVisit *visit, void *target) {

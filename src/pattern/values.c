@@ -176,9 +176,9 @@ static Spread leopard(const Spot *spot) {
     double sines[3], squares = 0, sum = 0, peak = 0;
     for (int k = 0; k < 3; k++) {
         Vec3 axis = vec3(k == 0, k == 1, k == 2);
-        double width = spot_width(spot, axis), x = vec3_get(spot->p, k), once = sine_kept(width);
-        sines[k] = once * sin(x);
-        squares += (1 - sine_kept(2 * width) * cos(2 * x)) / 2 - sines[k] * sines[k];
+        double width = spot_width(spot, axis), sine = sin(vec3_get(spot->p, k)), once = sine_kept(width);
+        sines[k] = once * sine;
+        squares += (1 - sine_kept(2 * width) * (1 - 2 * sine * sine)) / 2 - sines[k] * sines[k];
         sum += sines[k];
         peak += (1 - once * once) / 2;
     }

@@ -155,6 +155,21 @@ static void maps_are_averaged_not_their_values(void **state) {
     assert_true(e.rms < 0.1);
 }
 
+/* A straight map over all greys has the colour of the source's mean, which is exact for checkers. */
+static void straight_maps_of_pigments_are_averaged_exactly(void **state) {
+    (void)state;
+    static const ColorMapEntry dark_and_light[] = {{0, {0.2, 0.2, 0.2, 0, 0}, NULL}, {1, {0.9, 0.9, 0.9, 0, 0}, NULL}},
+                               straight[] = {{0, {0.8, 0.4, 0, 0, 0}, NULL}, {1, {0, 0.1, 1.5, 0, 0}, NULL}};
+    Pigment source = make_pigment(PATTERN_CHECKER), pattern = make_pigment(PATTERN_PIGMENT);
+    source.entries = dark_and_light, source.entry_count = 2;
+    pattern.source = &source;
+    pattern.entries = straight, pattern.entry_count = 2;
+    for (int k = 1; k < 5; k++) {
+        Errors e = compare(&pattern, 0.4 * k, 100);
+        assert_true(e.rms < 0.002 && fabs(e.mean) < 0.0005);
+    }
+}
+
 static void add_weight(void *target, size_t entry, double share) { ((double *)target)[entry] += share; }
 
 /* The mean of x, held within [first, last], over [lo, hi]. */
@@ -224,6 +239,7 @@ int main(void) {
         cmocka_unit_test(widening_is_continuous),
         cmocka_unit_test(filtering_beats_a_point_sample),
         cmocka_unit_test(maps_are_averaged_not_their_values),
+        cmocka_unit_test(straight_maps_of_pigments_are_averaged_exactly),
         cmocka_unit_test(maps_of_their_own_positions_are_the_value),
         cmocka_unit_test(straight_ranges_are_as_their_pieces),
     };

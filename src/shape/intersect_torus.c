@@ -23,11 +23,10 @@ static Value distance_at(const void *context, double t) {
     return (Value){length - line->minor, length > 0 ? (out * ring_slope + p.y * d.y) / length : 0};
 }
 
-/* A zero between a and b, where f has different signs: Newton's steps as long as they stay between and shrink, halving
- * otherwise, until one is no longer than `close`. */
-static double zero_between(LineFunction f, const void *context, double a, double b, double close) {
-    bool negative = f(context, a).value < 0;
-    double t = a + (b - a) / 2, last = b - a;
+/* A zero between a and b, where f has different signs, `negative` at a: Newton's steps from t as long as they stay between and shrink,
+ * halving otherwise, until one is no longer than `close`. */
+static double zero_between(LineFunction f, const void *context, double a, double b, bool negative, double t, double close) {
+    double last = b - a;
     for (int i = 0; i < 200; i++) {
         Value at = f(context, t);
         if (at.value == 0) return t;
@@ -68,15 +67,38 @@ static int quadratic_zeros(double a, double b, double c, double lo, double hi, d
     return count;
 }
 
-/* Zeros of a cubic within (lo, hi) where it changes sign, ascending, one between each two of its derivative's. */
-static int cubic_zeros(const double c[4], double lo, double hi, double *out) {
-    double stations[4] = {lo};
-    int count = 0, station_count = 1 + quadratic_zeros(3 * c[3], c[2], c[1], lo, hi, stations + 1);
-    stations[station_count++] = hi;
-    for (int i = 0; i + 1 < station_count; i++) {
-        double a = stations[i], b = stations[i + 1];
-        if ((cubic_at(c, a).value < 0) != (cubic_at(c, b).value < 0))
-            out[count++] = zero_between(cubic_at, c, a, b, CLOSE_STATION);
+/* Whether the stationary point between a and b, where the cubic changes its sign, is inside as t is. A least distance is where any place
+ * about it is, and a largest is outside where any is; besides, a distance changes by no more than the way. */
+static bool settles(const double c[4], double a, double b, double t, double distance) {
+    const bool least = cubic_at(c, a).value < 0;
+    if ((distance < 0) == least) return true;
+    const double way = fabs(distance);
+    return (t - way <= a || (cubic_at(c, t - way).value < 0) == least) && (t + way >= b || (cubic_at(c, t + way).value < 0) != least);
+}
+
+/* A place between a and b, at all of which the cubic has the sign it has at a and then that at b, where the line is inside just if it is at the
+ * stationary point: mostly a few of Newton's steps away from the middle. */
+static double station_between(const TorusLine *line, const double c[4], double a, double b) {
+    double t = a + (b - a) / 2;
+    for (int i = 0; i < 3; i++) {
+        if (settles(c, a, b, t, distance_at(line, t).value)) return t;
+        const Value at = cubic_at(c, t);
+        const double next = t - at.value / at.slope;
+        if (!(next > a && next < b)) break;
+        t = next;
+    }
+    return zero_between(cubic_at, c, a, b, cubic_at(c, a).value < 0, a + (b - a) / 2, CLOSE_STATION);
+}
+
+/* For the derivative c of the quartic: places within (lo, hi) for its stationary points, ascending, one between each two zeros of its own
+ * derivative. */
+static int find_stations(const TorusLine *line, const double c[4], double lo, double hi, double *out) {
+    double bends[4] = {lo};
+    int count = 0, bend_count = 1 + quadratic_zeros(3 * c[3], c[2], c[1], lo, hi, bends + 1);
+    bends[bend_count++] = hi;
+    for (int i = 0; i + 1 < bend_count; i++) {
+        double a = bends[i], b = bends[i + 1];
+        if ((cubic_at(c, a).value < 0) != (cubic_at(c, b).value < 0)) out[count++] = station_between(line, c, a, b);
     }
     return count;
 }
@@ -111,21 +133,28 @@ static bool clip_line(const TorusLine *line, double *lo, double *hi) {
     return *lo < *hi;
 }
 
+/* Where the line crosses the surface between two places, one of which is outside: looked for from where a parabola about the place inside, which
+ * is near a least distance, crosses it. */
+static double crossing_between(const TorusLine *line, const double place[2], const double distance[2]) {
+    const int in = distance[1] < 0;
+    const double inner = distance[in], outer = distance[!in];
+    const double way = outer > 0 && inner < 0 ? sqrt(inner / (inner - outer)) : 0.5;
+    return zero_between(distance_at, line, place[0], place[1], in == 0, place[in] + (place[!in] - place[in]) * way, CLOSE);
+}
+
 int intersect_torus(Vec3 origin, Vec3 direction, double major, double minor, double t[4]) {
     const TorusLine line = {origin, direction, major, minor};
-    double derivative[4], lo, hi, stations[5];
-    int count = 0, station_count = 1;
+    double derivative[4], lo, hi, places[5], distances[5];
+    int count = 0, place_count = 1;
     if (!clip_line(&line, &lo, &hi)) return 0;
     quartic_derivative(&line, derivative);
-    stations[0] = lo;
-    station_count += cubic_zeros(derivative, lo, hi, stations + 1);
-    stations[station_count++] = hi;
+    places[0] = lo;
+    place_count += find_stations(&line, derivative, lo, hi, places + 1);
+    places[place_count++] = hi;
+    for (int i = 0; i < place_count; i++) distances[i] = distance_at(&line, places[i]).value;
     /* Both ends are outside, whatever rounding says. */
-    bool inside = false;
-    for (int i = 1; i < station_count; i++) {
-        bool next = i + 1 < station_count && distance_at(&line, stations[i]).value < 0;
-        if (next != inside) t[count++] = zero_between(distance_at, &line, stations[i - 1], stations[i], CLOSE);
-        inside = next;
-    }
+    distances[0] = fmax(distances[0], 0), distances[place_count - 1] = fmax(distances[place_count - 1], 0);
+    for (int i = 1; i < place_count; i++)
+        if ((distances[i - 1] < 0) != (distances[i] < 0)) t[count++] = crossing_between(&line, places + i - 1, distances + i - 1);
     return count;
 }

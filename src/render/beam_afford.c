@@ -90,7 +90,7 @@ static BeamWork probe(CompiledScene *compiled, double factor, const Probe *probe
 
 /* Of as many samples: triangles and voxels are met once in each pass. */
 static double seconds_of(const CompiledScene *compiled, const BeamWork *w, double samples) {
-    double times = fmax(samples / compiled->samples, 1), passes = 1 + ceil(fmax(samples - compiled->samples, 0) / BEAM_MOST_IN_PASS);
+    double times = fmax(samples / compiled->samples, 1), passes = 1 + ceil(fmax(samples - compiled->samples, 0) / beam_most_in_pass(compiled));
     return passes * (TRIANGLE * (double)w->triangles + NODE * (double)w->nodes + STEP * (double)w->steps) +
            times * (RAY * (double)w->rays + SAMPLE * (double)w->samples) + pow(times, SIGHTS_POWER) * SIGHT * (double)w->sights;
 }

@@ -8,9 +8,7 @@
 
 #include <stddef.h>
 
-enum { BEAM_NOTHING = -1, BEAM_EDGE = BEAM_TILE + 2, BEAM_MOST_IN_PASS = 64 };
-/* Of a scene whose hits may have several looks, which take four times the room. */
-enum { BEAM_MOST_BLENDING = 32 };
+enum { BEAM_NOTHING = -1, BEAM_EDGE = BEAM_TILE + 2 };
 /* 1/√2: where the first of the samples goes over; the last does twice as far away. */
 #define BEAM_LEAST_FADE 0.70710678118654752
 

@@ -49,11 +49,17 @@ static void sky_init(BeamTracer *tr, size_t all, Arena *arena) {
     tr->sky_turn = arena_new_room(arena, uint8_t, all);
 }
 
+/* More where an error is asked for that takes many, for their room is memory; but hits that may have several looks take four times the room. */
+static const double IN_PASS_AN_ERROR = 0.08;
+int beam_most_in_pass(const CompiledScene *compiled) {
+    enum { FEW = 32, MANY = 64 };
+    return hierarchy_blends(compiled->hierarchy) ? FEW : (int)double_clamp(IN_PASS_AN_ERROR / compiled->max_error, FEW, MANY);
+}
+
 BeamTracer *beam_tracer_create(const CompiledScene *compiled, const BeamPlan *plan, uint64_t seed, Arena *arena) {
     BeamTracer *tr = arena_new(arena, BeamTracer);
-    const bool blends = hierarchy_blends(compiled->hierarchy);
-    const size_t hit_size = beam_hit_room(blends ? LOOK_SHARES : 0);
-    tr->most_in_pass = int_min(plan->samples.most, blends ? BEAM_MOST_BLENDING : BEAM_MOST_IN_PASS);
+    const size_t hit_size = beam_hit_room(hierarchy_blends(compiled->hierarchy) ? LOOK_SHARES : 0);
+    tr->most_in_pass = int_min(plan->samples.most, beam_most_in_pass(compiled));
     const size_t all = (size_t)tr->most_in_pass * BEAM_TILE * BEAM_TILE;
     tr->compiled = compiled;
     tr->plan = *plan;

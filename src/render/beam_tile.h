@@ -20,6 +20,8 @@ typedef struct BeamPlan {
     const atomic_bool *interrupted; /* may be NULL; tiles may be anything once it is true */
 } BeamPlan;
 
+/* Samples of a pixel that are drawn together, at most. */
+int beam_most_in_pass(const CompiledScene *compiled);
 /* Of one worker. All memory comes from the arena, now. */
 BeamTracer *beam_tracer_create(const CompiledScene *compiled, const BeamPlan *plan, uint64_t seed, Arena *arena);
 /* What the pixels of [x0, x1) × [y0, y1), at most BEAM_TILE each way, see; rows of `out` are x1 − x0 long; and so those of `aovs`, unless NULL, to

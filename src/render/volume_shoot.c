@@ -243,7 +243,7 @@ static void shoot_batch(void *context, size_t batch, int worker) {
         double places[4];
         if (s->lamp_total > 0 && volume_most_turns(s->set) > 0) {
             places[0] = random_unit(number * 0x9E3779B97F4A7C15u); /* of the golden ratio */
-            draw_three((uint32_t)number, 0x6c616d70, places + 1);
+            draw_three((uint32_t)i, 0x6c616d70 + batch, places + 1); /* parts of one net would lie in parts of space each, and differ by that */
             shoot_lamp(&shot, places);
         }
         shot.random.state = random_hash(number, 0x736b79, 0, 0);

@@ -16,7 +16,6 @@ void cell_begin(Cell *cell, const Middle *m) {
     cell->doubt = m->doubt;
     cell->object = m->object;
     cell->normal = m->normal;
-    cell->hidden = m->hidden;
     cell->tint = m->tint;
     cell->middle = m->seen;
     cell->first = cell->mean = light_shown(m->seen.color);

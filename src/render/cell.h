@@ -25,7 +25,6 @@ typedef struct Cell {
     Vec3f shown, late;    /* and sums of clamped light: of all of these, of the last half */
     uint32_t object;      /* that the middle sees, from 1; 0: none */
     Vec3f normal;         /* of it */
-    float hidden;         /* the share of the middle that skins' matter hides */
     SurfaceTint tint;     /* as Middle has it */
     Radiance middle;      /* the first sample, */
     Vec3f first;          /* clamped */

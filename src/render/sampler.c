@@ -16,9 +16,6 @@ enum { EDGE = CONTRAST_EDGE, CELLS = CONTRAST_CELLS };
 static const int AROUND[] = {-EDGE - 1, -EDGE, -EDGE + 1, -1, 1, EDGE - 1, EDGE, EDGE + 1};
 /* Where so much of the light comes from explicit surfaces, their edges are worth samples; where less, skins hide them. */
 static const float EDGE_WORTH = 1.0f / 64, ALL_EXPLICIT = 0.999f;
-/* Where so much more is hidden by a skin's matter than in the next pixel, its layer may end between them: in a pixel that is as wide as the layer is high a
- * cone goes through more or less of it than the pixel does. */
-static const float RIM = 0.5f;
 enum { FIRST_NET = 4 };
 /* Of an edge so many samples are taken at most, until its error is this part of what is accepted; where that is not enough a net of so many tells more. */
 enum { EDGE_SAMPLES = 4, NET_AFTER_EDGE = 32 };
@@ -505,13 +502,11 @@ static const Middle *shared_middle(const Sampler *sp, const Middle *const shared
     return rows ? &rows[py % FILM_TILE * FILM_TILE + px % FILM_TILE] : NULL;
 }
 
-/* Whether the explicit surface of a pixel ends between its middle and those around, or the layer of a skin that bends away. */
+/* Whether the explicit surface of a pixel ends between its middle and those around. */
 static bool ends_near(const Sampler *sp, int index) {
     const Cell *cell = &sp->cells[index];
-    for (int k = 0; k < 8; k++) {
-        const Cell *other = &sp->cells[index + AROUND[k]];
-        if (other->object != cell->object || fabsf(other->hidden - cell->hidden) > RIM) return true;
-    }
+    for (int k = 0; k < 8; k++)
+        if (sp->cells[index + AROUND[k]].object != cell->object) return true;
     return false;
 }
 

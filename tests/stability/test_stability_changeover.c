@@ -88,42 +88,7 @@ static void far_shadows(void **state) {
     bench_end(&b);
 }
 
-/* A ball whose fur is as high as a pixel is wide, or nearly: where the layer ends within a pixel a single cone finds all of it, or nothing. */
-static void rims(void **state) {
-    (void)state;
-    static const char fur[] =
-        "camera { location (1.15 + D)*vnormalize(<0.2, 0.5, -1>) look_at 0 angle 40 right x*image_width/image_height }\n"
-        "light_source { 1e7*<-20, 30, -25> rgb 1 parallel point_at 0 }\nbackground { rgb <0.5, 0.7, 1> }\n"
-        "#declare S = seed(5);\n"
-        "#declare Hair = texel { cyclic x + z layer { particles { count 60 { position <rand(S), 0, rand(S)>"
-        " velocity <0.5*rand(S) - 0.25, 1, 0.5*rand(S) - 0.25> life 0.9 width 0.06, 0.02 } } texture { pigment { rgb <0.6, 0.4, 0.2> } } } }\n"
-        "#declare Ball = surface { sphere { 0, 1 } uv spherical texture { pigment { rgb <0.4, 0.25, 0.15> } } };\n"
-        "object { Ball } skin { surface { Ball } texel { Hair } mapping { repeat <64, 32> height 0.12 } }\n";
-    static const struct {
-        const char *distance;
-        double rms;
-    } all[] = {{"3.9", 0.022}, {"5.8", 0.014}};
-    const VtsPair voxels = {"detail", "voxels"};
-    Bench b;
-    bench_begin(&b);
-    for (size_t i = 0; i < VTS_ARRAY_COUNT(all); i++) {
-        const VtsPair distance = {"D", all[i].distance};
-        VtsOptions options = options_of_size(64, 48);
-        options.declares = &distance, options.declare_count = 1;
-        options.reference_samples = 64;
-        Picture truth = reference_of(&b, &options, fur);
-        options.settings = &voxels, options.setting_count = 1;
-        Picture drawn = bench_render(&b, &options, fur);
-        Difference d = picture_difference(&drawn, &truth);
-        printf("rim at %s: rms %.4f (%.3f), mean %+.4f\n", all[i].distance, d.rms, all[i].rms, d.mean);
-        assert_true(d.rms <= all[i].rms && fabs(d.mean) <= 0.003 && deviation(&truth) > 0.1);
-        picture_free(&drawn);
-        picture_free(&truth);
-    }
-    bench_end(&b);
-}
-
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(flights), cmocka_unit_test(far_shadows), cmocka_unit_test(rims)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(flights), cmocka_unit_test(far_shadows)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -46,12 +46,12 @@ static Around sum_around(const TileSums *t, int i, int reach) {
     return sum_along(t->row + i % t->columns, i / t->columns, t->rows, t->columns, reach);
 }
 
-/* How much pixels differ beside their noise: the mean square of each channel. */
+/* How much pixels differ beside their noise: the mean square of each channel; without end where one of them is no number, so that it stays alone. */
 static double difference_of(const Around *around) {
     double n = around->count, squared = 0;
     for (int k = 0; k < 3; k++) squared += around->color[k] * around->color[k] / n;
     double all = n > 1 ? (around->square - squared) / (3 * (n - 1)) : 0;
-    return fmax(all - around->error / n, 0);
+    return isfinite(all) ? fmax(all - around->error / n, 0) : HUGE_VAL;
 }
 
 static float toward(double mean, float own, double share) { return (float)(mean + ((double)own - mean) * share); }

@@ -6,6 +6,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -87,8 +88,26 @@ static void test_what_has_no_noise_stays(void **state) {
     assert_true(wrong(wall, pixels) == 0);
 }
 
+/* What is no number stays alone, and so do those beside it. */
+static void test_no_number_does_not_spread(void **state) {
+    (void)state;
+    static Radiance pixels[PIXELS], before[PIXELS];
+    const float none[] = {NAN, INFINITY};
+    for (int k = 0; k < 2; k++) {
+        Allotment a;
+        const int bad = SIDE * SIDE / 2 + SIDE / 2;
+        draw(even, 1e-3, &a, pixels);
+        pixels[bad].color.y = none[k];
+        memcpy(before, pixels, sizeof before);
+        assert_true(isfinite(beam_settle(&a, pixels)));
+        for (int i = 0; i < PIXELS; i++) assert_int_equal(isfinite(pixels[i].color.x + pixels[i].color.y + pixels[i].color.z), i != bad);
+        assert_memory_equal(&pixels[bad + 1], &before[bad + 1], sizeof *pixels);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_noise_goes_where_nothing_differs), cmocka_unit_test(test_edges_stay),
-                                       cmocka_unit_test(test_opacity_goes_with_colour), cmocka_unit_test(test_what_has_no_noise_stays)};
+                                       cmocka_unit_test(test_opacity_goes_with_colour), cmocka_unit_test(test_what_has_no_noise_stays),
+                                       cmocka_unit_test(test_no_number_does_not_spread)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

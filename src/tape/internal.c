@@ -89,7 +89,6 @@ static const InternalFunction functions[] = {
     UNROLLED(78, noise_generator, 4),
 };
 
-
 const InternalFunction *internal_find(int number) {
     for (size_t i = 0; i < VTS_ARRAY_COUNT(functions); i++)
         if (functions[i].number == number) return &functions[i];

@@ -1,5 +1,6 @@
 #include "lexer/lexer.h"
 
+#include "base/decimal.h"
 #include "base/utf8.h"
 #include "lexer/match.h"
 
@@ -120,46 +121,12 @@ static inline void skip_blanks(Lexer *lx) {
 
 static bool is_word_start(char c) { return isalpha((unsigned char)c) || c == '_'; }
 static bool is_word_part(char c) { return isalnum((unsigned char)c) || c == '_'; }
-static bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-/* Digits as they are read, without the point. */
-typedef struct Decimal {
-    uint64_t digits; /* as a whole number; of more than 19 it is none */
-    size_t count;    /* of digits after leading zeros */
-    size_t after_point;
-} Decimal;
-
-static inline const char *take_digits(const char *at, Decimal *d) {
-    if (d->count == 0)
-        while (*at == '0') at++;
-    const char *begin = at;
-    for (; is_digit(*at); at++) d->digits = d->digits * 10 + (uint64_t)(*at - '0');
-    d->count += (size_t)(at - begin);
-    return at;
-}
-
-/* Clinger 1990: whole numbers below 2^53 and powers of ten to 10^22 are exact doubles, and so one division of them rounds as it
- * should. Other numbers are left to strtod(). */
-static bool short_decimal(const Decimal *d, double *out) {
-    static const double powers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                    1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-    if (d->count > 15 || d->after_point > 22) return false;
-    *out = (double)d->digits / powers[d->after_point];
-    return true;
-}
-
-/* number = (digits ["." [digits]] | "." digits) [("e" | "E") ["+" | "-"] [digits]] */
+/* number = (digits ["." [digits]] | "." digits) [("e" | "E") ["+" | "-"] [digits]]; those that are not short are left to strtod(). */
 static double read_number(Lexer *lx) {
-    const char *begin = lx->text + lx->at, *at;
-    Decimal d = {0};
+    Decimal d;
     double value;
-    at = take_digits(begin, &d);
-    if (*at == '.') {
-        const char *point = ++at;
-        at = take_digits(at, &d);
-        d.after_point = (size_t)(at - point);
-    }
-    bool simple = short_decimal(&d, &value);
+    const char *begin = lx->text + lx->at, *at = decimal_read(begin, &d);
+    bool simple = decimal_value(&d, &value);
     if (*at == 'e' || *at == 'E') {
         const char *exponent = at + 1;
         simple = false;

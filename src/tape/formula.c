@@ -1,7 +1,8 @@
 #include "tape/formula.h"
 
+#include "base/decimal.h"
+
 #include <ctype.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_NAMES = 64, MOST_NESTED = 64 };
@@ -84,10 +85,10 @@ static TapeRef operand(Reader *r) {
         TapeRef inner = sum(r);
         return take(r, ')') ? inner : fail(r);
     }
-    char *end;
-    double number = strtod(text, &end);
-    if (!isdigit((unsigned char)*text) || end == text) return fail(r);
-    r->at = end;
+    Decimal digits;
+    double number;
+    r->at = decimal_read(text, &digits);
+    if (!is_digit(*text) || !decimal_value(&digits, &number)) return fail(r);
     return tape_constant(r->builder, number);
 }
 

@@ -17,6 +17,7 @@ typedef struct Decimal {
 
 static inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
+/* Reads digits onto those that are there, leading zeros not counted; where they end. `at` ends with a zero byte, as all texts here. */
 static inline const char *decimal_digits(const char *at, Decimal *d) {
     if (d->count == 0)
         while (*at == '0') at++;
@@ -26,7 +27,7 @@ static inline const char *decimal_digits(const char *at, Decimal *d) {
     return at;
 }
 
-/* Reads [digits] ["." [digits]]; where it ends. */
+/* Reads [digits] ["." [digits]], no sign and no exponent; where it ends, `at` itself if nothing of it stands there. */
 static inline const char *decimal_read(const char *at, Decimal *out) {
     *out = (Decimal){0};
     at = decimal_digits(at, out);

@@ -223,28 +223,38 @@ case_warned_once() {
 # Waits grow by an eighth and more: also where a busy machine hardly lets a run begin, one gets its time in the end.
 sleep_hundredths() { sleep "$(($1 / 100)).$(printf %02d $(($1 % 100)))"; }
 
+# kill_and_resume PICTURE LEFT LEAST OPTION…: draws PICTURE, killed again and again at random moments; it comes out as whole.EXTENSION. Some kill
+# must have left more than LEAST bytes in LEFT. All begins again where chance let the picture end before anything was left.
+kill_and_resume() {
+  local picture=$1 left=$2 least=$3 kept=0 rounds=0 tries wait pid
+  shift 3
+  until [ $kept = 1 ] || [ $((++rounds)) -gt 10 ]; do
+    rm -f "$picture"; tries=0 wait=2
+    until [ -s "$picture" ] || [ $((++tries)) -gt 40 ]; do
+      "$vts" "$@" -o "$picture" --resume --report r.json >out 2>err </dev/null &
+      pid=$!
+      sleep_hundredths $((RANDOM % 10 + wait))
+      wait=$((wait + 3 + wait / 8))
+      kill -s KILL $pid 2>/dev/null
+      wait $pid 2>/dev/null
+      [ -s "$left" ] && [ "$(stat -c %s "$left")" -gt "$least" ] && kept=1
+    done
+    [ -s "$picture" ] || fail "no picture after $tries kills"
+    cmp -s "$picture" "whole.${picture##*.}" || fail "another picture after $tries kills"
+  done
+  [ $kept = 1 ] || fail "nothing was kept"
+}
+
 # A picture that is killed again and again goes on where it was, and comes out the same.
 case_resume_tiles() {
   scene
   run scene.vts -s 400x300 --samples 25 -o whole.png --report r.json; want_status 0
   grep -q '"kept_tiles":0' r.json || fail "tiles kept of nothing"
-  local tries=0 kept=0 wait=2
-  until [ -s part.png ] || [ $((++tries)) -gt 40 ]; do
-    "$vts" scene.vts -s 400x300 --samples 25 -o part.png --resume --report r.json >out 2>err </dev/null &
-    local pid=$!
-    sleep_hundredths $((RANDOM % 10 + wait))
-    wait=$((wait + 3 + wait / 8))
-    kill -s KILL $pid 2>/dev/null
-    wait $pid 2>/dev/null
-    [ -s part.png.tiles-vts ] && [ "$(stat -c %s part.png.tiles-vts)" -gt 12000 ] && kept=1
-  done
-  [ -s part.png ] || fail "no picture after $tries kills"
-  cmp -s part.png whole.png || fail "another picture after $tries kills"
-  [ $kept = 1 ] || fail "nothing was kept"
+  kill_and_resume part.png part.png.tiles-vts 12000 scene.vts -s 400x300 --samples 25
   want_only scene.vts whole.png part.png r.json
   # With another setting nothing of it is taken.
   "$vts" scene.vts -s 400x300 --samples 25 -o other.png --resume >out 2>err </dev/null &
-  pid=$!
+  local pid=$!
   until [ -s other.png ] || [ "$(stat -c %s other.png.tiles-vts 2>/dev/null || echo 0)" -gt 30000 ]; do sleep 0.01; done
   kill -s KILL $pid 2>/dev/null; wait $pid 2>/dev/null; rm -f other.png
   run scene.vts -s 400x300 --samples 4 -o other.png --resume --report r.json; want_status 0
@@ -264,22 +274,10 @@ case_resume_moments() {
   local call_options="scene.vts -s 160x120 --max-error 0.06 --clock 0 --aov depth"
   run $call_options -o whole.exr --report r.json; want_status 0
   grep -q '"kept_moments":0' r.json || fail "moments kept of nothing"
-  local tries=0 kept=0 wait=5
-  until [ -s part.exr ] || [ $((++tries)) -gt 40 ]; do
-    "$vts" $call_options -o part.exr --resume --report r.json >out 2>err </dev/null &
-    local pid=$!
-    sleep_hundredths $((RANDOM % 10 + wait))
-    wait=$((wait + 3 + wait / 8))
-    kill -s KILL $pid 2>/dev/null
-    wait $pid 2>/dev/null
-    [ -s part.exr.moments-vts ] && kept=1
-  done
-  [ -s part.exr ] || fail "no picture after $tries kills"
-  cmp -s part.exr whole.exr || fail "another picture after $tries kills"
-  [ $kept = 1 ] || fail "nothing was kept"
+  kill_and_resume part.exr part.exr.moments-vts 0 $call_options
   want_only scene.vts whole.exr part.exr r.json
   # Broken or of another picture, a file of moments is not believed.
-  local end
+  local end pid
   for end in 1 2; do
     "$vts" $call_options -o other.exr --resume >out 2>err </dev/null &
     pid=$!

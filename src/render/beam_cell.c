@@ -108,6 +108,9 @@ bool cell_frame(CellFrame *f, const Beam *beam, const SkinCell *cell) {
     set_column(f, 0, beam_point(beam, cell->foot.c[0]));
     for (int i = 1; i < 4; i++) set_column(f, i, beam_vector(beam, cell->foot.c[i]));
     for (int i = 0; i < 4; i++) set_column(f, 4 + i, beam_vector(beam, cell->height.c[i]));
+    f->scene[0] = vec3f(0, 0, 0);
+    for (int i = 1; i < 4; i++) f->scene[i] = vec3f_from(cell->foot.c[i]);
+    for (int i = 0; i < 4; i++) f->scene[4 + i] = vec3f_from(cell->height.c[i]);
     const double *u = cell->u.c, *v = cell->v.c, *foot = cell->w_foot.c, *tip = cell->w_tip.c;
     double scale = fabs(u[1]) + fabs(u[2]) + fabs(v[1]) + fabs(v[2]), least, most;
     Rates r = rates_at(cell, 0.5, 0.5);
@@ -142,6 +145,29 @@ void cell_frame_points(const CellFrame *f, int count, const float *restrict a, c
         y[i] = along(f->y, a[i], b[i], w[i]);
         z[i] = along(f->z, a[i], b[i], w[i]);
     }
+}
+
+static Vec3f place_in_scene(const CellFrame *f, Vec3f p) {
+    const Vec3f *c = f->scene;
+    const float ab = p.x * p.y;
+    Vec3f foot = vec3f_madd(vec3f_madd(vec3f_madd(c[0], c[1], p.x), c[2], p.y), c[3], ab);
+    return vec3f_madd(foot, vec3f_madd(vec3f_madd(vec3f_madd(c[4], c[5], p.x), c[6], p.y), c[7], ab), p.z);
+}
+
+/* Half way along an edge a product of two coordinates is a quarter of that of their changes below the mean of its ends, and a·b·w that much for each two of them
+ * times the third. What that has across the edge is seen. */
+bool cell_frame_bends(const CellFrame *f, Vec3f p, Vec3f q, Vec3f middle, float tolerance) {
+    const Vec3f *c = f->scene, way = vec3f_sub(q, p);
+    if (cell_frame_bend(f, fabsf(way.x), fabsf(way.y), fabsf(way.z)) <= tolerance) return false;
+    const Vec3f at = vec3f_scale(vec3f_add(p, q), 0.5f);
+    const Vec3f c_ab = vec3f_madd(c[3], c[7], at.z), c_aw = vec3f_madd(c[5], c[7], at.y), c_bw = vec3f_madd(c[6], c[7], at.x);
+    const Vec3f by_a = vec3f_madd(vec3f_madd(c[1], c_ab, at.y), c[5], at.z), by_b = vec3f_madd(vec3f_madd(c[2], c_ab, at.x), c[6], at.z);
+    const Vec3f by_w = vec3f_madd(vec3f_madd(c[4], c_aw, at.x), c[6], at.y);
+    const Vec3f edge = vec3f_madd(vec3f_madd(vec3f_scale(by_a, way.x), by_b, way.y), by_w, way.z);
+    Vec3f bow = vec3f_madd(vec3f_madd(vec3f_scale(c_ab, -0.25f * way.x * way.y), c_aw, -0.25f * way.x * way.z), c_bw, -0.25f * way.y * way.z);
+    if (!f->affine) bow = vec3f_add(bow, vec3f_sub(place_in_scene(f, middle), place_in_scene(f, at)));
+    const float along = vec3f_dot(bow, edge), length = vec3f_dot(edge, edge);
+    return vec3f_dot(bow, bow) * length - along * along > tolerance * tolerance * length;
 }
 
 void cell_frame_linearise(CellFrame *f, double u, double v) {

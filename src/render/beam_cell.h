@@ -9,6 +9,7 @@
 typedef struct CellFrame {
     const SkinCell *cell;            /* (a, b) from 0 to 1, whether it is a part or not */
     float x[8], y[8], z[8];
+    Vec3f scene[8];                  /* the same in the scene, but for where it begins */
     float bend_ab, bend_aw, bend_bw; /* how far the middle of a line of texture space leaves its chord, for unit extents, scene units */
     bool affine;                     /* (u, v) → (a, b), and w' → w without a and b */
     double bent_a, bent_b;           /* (u, v) = those at a place + J·(da, db) + c3·da·db: J⁻¹·c3 at most */
@@ -22,6 +23,11 @@ Vec3f cell_frame_point(const CellFrame *f, float a, float b, float w);
 /* The same of many. */
 void cell_frame_points(const CellFrame *f, int count, const float *restrict a, const float *restrict b, const float *restrict w, float *restrict x,
                        float *restrict y, float *restrict z);
+/* How far the mapping bends at most what is so large in (a, b, w) out of its plane, scene units. */
+static inline float cell_frame_bend(const CellFrame *f, float a, float b, float w) { return f->bend_ab * a * b + f->bend_aw * a * w + f->bend_bw * b * w; }
+/* Whether it bends the edge from p to q by more than `tolerance`, scene units, out of its straight line, as its middle tells: that lies at `middle` in the cell,
+ * half way between the two where texture coordinates are affine. The same in both directions, and in whatever beam. */
+bool cell_frame_bends(const CellFrame *f, Vec3f p, Vec3f q, Vec3f middle, float tolerance);
 /* Takes the linear part of (u, v) → (a, b) at a place, or as near to it as the cell goes. */
 void cell_frame_linearise(CellFrame *f, double u, double v);
 

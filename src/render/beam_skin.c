@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-/* How often a triangle is cut in four where the mapping bends it. */
+/* DEEPEST_CUT: how often an edge is cut in two where the mapping bends it. */
 enum { NEWTON_STEPS = 3, DEEPEST_CUT = 5, MOST_CLIPPED = 9, DEEPEST_NODE = 512, DEEPEST_PART = 4, DEEPEST_VAST_PART = 24 };
 /* Corners this little outside of a cell count as inside: tiles that end with the cell do so but for rounding. */
 static const float HAIR = 1e-5f;
@@ -174,16 +174,6 @@ static bool outside_beam(const Beam *beam, const Vec3f q[3]) {
     return codes[0] & codes[1] & codes[2];
 }
 
-/* How far the mapping bends out of its plane what is so large in (a, b, w), scene units. */
-static float bend_of(const CellFrame *f, float a, float b, float w) { return f->bend_ab * a * b + f->bend_aw * a * w + f->bend_bw * b * w; }
-
-static float bend(const CellFrame *f, const Vec3f p[3]) {
-    float a = float_max(fabsf(p[1].x - p[0].x), float_max(fabsf(p[2].x - p[0].x), fabsf(p[2].x - p[1].x)));
-    float b = float_max(fabsf(p[1].y - p[0].y), float_max(fabsf(p[2].y - p[0].y), fabsf(p[2].y - p[1].y)));
-    float w = float_max(fabsf(p[1].z - p[0].z), float_max(fabsf(p[2].z - p[0].z), fabsf(p[2].z - p[1].z)));
-    return bend_of(f, a, b, w);
-}
-
 /* One triangle of the cluster or a part of it, in the cell and in the beam. */
 typedef struct Piece {
     Vec3f p[3], q[3];
@@ -207,28 +197,67 @@ static void draw_flat(Drawing *d, const Piece *piece) {
     if (beam_draw(beam, part, count, d->draft->facet_count + 1) && d->draft->facets) keep_facet(d, piece->p, piece->triangle);
 }
 
-/* Cut in four, and again, until the mapping bends it no more than is tolerated. */
-static void draw_bent(Drawing *d, const Piece *piece, int depth) {
+/* The middles of a piece's edges, from each corner to the next. */
+typedef struct Middles {
+    Vec3f p[3], x[3];
+    bool bent[3]; /* the mapping bends the edge more than is tolerated: the same whichever of its two triangles asks */
+    int bent_count;
+} Middles;
+
+static Middles middles_of(const Drawing *d, const Piece *piece) {
     const CellFrame *f = d->at.frame;
+    Middles m = {.bent_count = 0};
+    for (int i = 0; i < 3; i++) {
+        const int next = (i + 1) % 3;
+        m.p[i] = vec3f_scale(vec3f_add(piece->p[i], piece->p[next]), 0.5f);
+        m.x[i] = vec3f_scale(vec3f_add(piece->x[i], piece->x[next]), 0.5f);
+        if (!f->affine) m.p[i] = place_of(&d->at, m.x[i]);
+        m.bent[i] = cell_frame_bends(f, piece->p[i], piece->p[next], m.p[i], d->at.tolerance);
+        m.bent_count += m.bent[i];
+    }
+    return m;
+}
+
+static void draw_bent(Drawing *d, const Piece *piece, int depth);
+
+/* Three of the six corners of what is cut: those of the piece, 0 … 2, and the middles of its edges, 3 … 5. */
+static void draw_cut(Drawing *d, const Piece *piece, const Middles *m, int i, int j, int k, int depth) {
+    const int corner[3] = {i, j, k};
+    Piece part = {.triangle = piece->triangle, .inside = piece->inside};
+    for (int e = 0; e < 3; e++) {
+        const int c = corner[e];
+        part.p[e] = c < 3 ? piece->p[c] : m->p[c - 3], part.x[e] = c < 3 ? piece->x[c] : m->x[c - 3];
+        part.q[e] = c < 3 ? piece->q[c] : cell_frame_point(d->at.frame, part.p[e].x, part.p[e].y, part.p[e].z);
+    }
+    draw_bent(d, &part, depth);
+}
+
+/* Cut in the middles of edges, and again, until the mapping bends none of them more than is tolerated: only of those that it bends, as blades are long and thin,
+ * and so that neighbours meet without a gap. */
+static void draw_bent(Drawing *d, const Piece *piece, int depth) {
     if (outside_beam(d->draft->beam, piece->q)) return;
-    if (depth == DEEPEST_CUT || bend(f, piece->p) <= d->at.tolerance) {
+    const Middles m = middles_of(d, piece);
+    if (depth == DEEPEST_CUT || m.bent_count == 0) {
         draw_flat(d, piece);
         return;
     }
-    Piece middle = {.triangle = piece->triangle, .inside = piece->inside};
-    for (int i = 0; i < 3; i++) {
-        middle.p[i] = vec3f_scale(vec3f_add(piece->p[i], piece->p[(i + 1) % 3]), 0.5f);
-        middle.x[i] = vec3f_scale(vec3f_add(piece->x[i], piece->x[(i + 1) % 3]), 0.5f);
-        if (!f->affine) middle.p[i] = place_of(&d->at, middle.x[i]);
-        middle.q[i] = cell_frame_point(f, middle.p[i].x, middle.p[i].y, middle.p[i].z);
+    int i = 0; /* of one bent edge it is the first corner, of two that of the straight one */
+    while (m.bent_count < 3 && m.bent[i] != (m.bent_count == 1)) i++;
+    const int j = (i + 1) % 3, k = (i + 2) % 3, below = depth + 1;
+    if (m.bent_count == 1) {
+        draw_cut(d, piece, &m, i, 3 + i, k, below);
+        draw_cut(d, piece, &m, 3 + i, j, k, below);
+        return;
     }
-    for (int i = 0; i < 3; i++) {
-        int k = (i + 2) % 3;
-        Piece corner = {{piece->p[i], middle.p[i], middle.p[k]}, {piece->q[i], middle.q[i], middle.q[k]}, {piece->x[i], middle.x[i], middle.x[k]},
-                        piece->triangle, piece->inside};
-        draw_bent(d, &corner, depth + 1);
+    draw_cut(d, piece, &m, k, 3 + k, 3 + j, below);
+    if (m.bent_count == 2) {
+        draw_cut(d, piece, &m, i, j, 3 + j, below);
+        draw_cut(d, piece, &m, i, 3 + j, 3 + k, below);
+        return;
     }
-    draw_bent(d, &middle, depth + 1);
+    draw_cut(d, piece, &m, i, 3 + i, 3 + k, below);
+    draw_cut(d, piece, &m, j, 3 + j, 3 + i, below);
+    draw_cut(d, piece, &m, 3 + i, 3 + j, 3 + k, below);
 }
 
 /* The bit after those of beam_outcodes(): out of the cell. */
@@ -347,17 +376,21 @@ static void draw_plain(Drawing *d, const MappedVertices *v, const BeamMesh *mesh
     }
 }
 
-/* Whether the mapping bends the triangle no more than is tolerated. */
-static bool is_flat(const Drawing *d, const MappedVertices *v, const uint8_t *corner) {
-    const Vec3f p[3] = {vertex_in_cell(v, corner[0]), vertex_in_cell(v, corner[1]), vertex_in_cell(v, corner[2])};
-    return bend(d->at.frame, p) <= d->at.tolerance;
+/* A triangle of the cluster, none of whose corners is out of the cell's texture space. */
+static Piece piece_of(const MappedVertices *v, const TexelCluster *cluster, int triangle, bool inside) {
+    Piece piece = {.triangle = triangle, .inside = inside};
+    for (int k = 0; k < 3; k++) {
+        const int corner = cluster->triangles[triangle][k];
+        piece.p[k] = vertex_in_cell(v, corner), piece.q[k] = vertex_in_beam(v, corner), piece.x[k] = vertex_in_box(cluster, corner);
+    }
+    return piece;
 }
 
 /* `box` holds the part of the cluster that is in the cell. */
 static void draw_cluster(Drawing *d, const TexelCluster *cluster, const CellBox *box) {
     MappedVertices v;
     const CellFrame *f = d->at.frame;
-    const bool plain = bend_of(f, box->a1 - box->a0, box->b1 - box->b0, box->w1 - box->w0) <= d->at.tolerance;
+    const bool plain = cell_frame_bend(f, box->a1 - box->a0, box->b1 - box->b0, box->w1 - box->w0) <= d->at.tolerance;
     BeamMesh whole = {.x = v.seen_x, .y = v.seen_y, .key = v.key, .triangles = cluster->triangles};
     d->cluster = cluster;
     map_vertices(d, cluster, &v);
@@ -367,18 +400,19 @@ static void draw_cluster(Drawing *d, const TexelCluster *cluster, const CellBox 
         const bool inside = !(any & OUT_OF_CELL);
         const bool across = !f->affine && !inside; /* of the cell: what is out of it has no place in the beam */
         if (!across && all & (OUT_OF_CELL - 1)) continue;
-        if (inside && !(any & BEAM_TOO_NEAR) && (plain || is_flat(d, &v, corner))) {
-            whole.which[whole.count++] = (uint8_t)i;
-            continue;
-        }
-        const Vec3f x[3] = {vertex_in_box(cluster, corner[0]), vertex_in_box(cluster, corner[1]), vertex_in_box(cluster, corner[2])};
         if (across) {
+            const Vec3f x[3] = {vertex_in_box(cluster, corner[0]), vertex_in_box(cluster, corner[1]), vertex_in_box(cluster, corner[2])};
             draw_across(d, x, i);
             continue;
         }
-        Piece piece = {.triangle = i, .inside = inside};
-        for (int k = 0; k < 3; k++) piece.p[k] = vertex_in_cell(&v, corner[k]), piece.q[k] = vertex_in_beam(&v, corner[k]), piece.x[k] = x[k];
-        draw_bent(d, &piece, 0);
+        const bool before = inside && !(any & BEAM_TOO_NEAR);
+        if (before && plain) {
+            whole.which[whole.count++] = (uint8_t)i;
+            continue;
+        }
+        const Piece piece = piece_of(&v, cluster, i, inside);
+        if (before && middles_of(d, &piece).bent_count == 0) whole.which[whole.count++] = (uint8_t)i;
+        else draw_bent(d, &piece, 0);
     }
     whole.corners = whole.count == cluster->triangle_count ? cluster->vertex_count : 0;
     if (whole.count) draw_plain(d, &v, &whole);

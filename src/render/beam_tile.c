@@ -10,10 +10,10 @@
 
 /* How far triangles may leave what the mapping makes of them, in pixels: as samples are fewer, their noise hides more; and so much for an error that is asked for. Of a near
  * lawn at max_error 0.001, facets of up to a quarter of a pixel made three fifths of the error's square. */
-static const double LEAST_TOLERANCE = 0.125, MOST_TOLERANCE = 2, TOLERANCE_AN_ERROR = 90;
+static const double LEAST_TOLERANCE = 0.008, MOST_TOLERANCE = 1, TOLERANCE_AN_ERROR = 15;
 static double tolerance_for(const AllotPlan *plan, double max_error) {
     const bool asked = plan->first < plan->most;
-    const double noise_hides = 2 / sqrt(asked ? 4 * plan->first : plan->first);
+    const double noise_hides = 1 / pow(asked ? 4 * plan->first : plan->first, 0.75);
     return double_clamp(asked ? fmin(noise_hides, TOLERANCE_AN_ERROR * max_error) : noise_hides, LEAST_TOLERANCE, MOST_TOLERANCE);
 }
 

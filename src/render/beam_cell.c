@@ -155,19 +155,30 @@ static Vec3f place_in_scene(const CellFrame *f, Vec3f p) {
 }
 
 /* Half way along an edge a product of two coordinates is a quarter of that of their changes below the mean of its ends, and a·b·w that much for each two of them
- * times the third. What that has across the edge is seen. */
-bool cell_frame_bends(const CellFrame *f, Vec3f p, Vec3f q, Vec3f middle, float tolerance) {
-    const Vec3f *c = f->scene, way = vec3f_sub(q, p);
-    if (cell_frame_bend(f, fabsf(way.x), fabsf(way.y), fabsf(way.z)) <= tolerance) return false;
-    const Vec3f at = vec3f_scale(vec3f_add(p, q), 0.5f);
+ * times the third; `off` is what texture coordinates add. What that has across the edge is seen. */
+static inline bool bends(const CellFrame *f, Vec3f p, Vec3f q, Vec3f off, float tolerance) {
+    const Vec3f *c = f->scene, way = vec3f_sub(q, p), at = vec3f_scale(vec3f_add(p, q), 0.5f);
     const Vec3f c_ab = vec3f_madd(c[3], c[7], at.z), c_aw = vec3f_madd(c[5], c[7], at.y), c_bw = vec3f_madd(c[6], c[7], at.x);
     const Vec3f by_a = vec3f_madd(vec3f_madd(c[1], c_ab, at.y), c[5], at.z), by_b = vec3f_madd(vec3f_madd(c[2], c_ab, at.x), c[6], at.z);
     const Vec3f by_w = vec3f_madd(vec3f_madd(c[4], c_aw, at.x), c[6], at.y);
     const Vec3f edge = vec3f_madd(vec3f_madd(vec3f_scale(by_a, way.x), by_b, way.y), by_w, way.z);
-    Vec3f bow = vec3f_madd(vec3f_madd(vec3f_scale(c_ab, -0.25f * way.x * way.y), c_aw, -0.25f * way.x * way.z), c_bw, -0.25f * way.y * way.z);
-    if (!f->affine) bow = vec3f_add(bow, vec3f_sub(place_in_scene(f, middle), place_in_scene(f, at)));
+    const Vec3f bow = vec3f_madd(vec3f_madd(vec3f_madd(off, c_ab, -0.25f * way.x * way.y), c_aw, -0.25f * way.x * way.z), c_bw, -0.25f * way.y * way.z);
     const float along = vec3f_dot(bow, edge), length = vec3f_dot(edge, edge);
     return vec3f_dot(bow, bow) * length - along * along > tolerance * tolerance * length;
+}
+
+bool cell_frame_bends(const CellFrame *f, Vec3f p, Vec3f q, Vec3f middle, float tolerance) {
+    if (cell_frame_bend(f, fabsf(q.x - p.x), fabsf(q.y - p.y), fabsf(q.z - p.z)) <= tolerance) return false;
+    Vec3f off = {0, 0, 0};
+    if (!f->affine) off = vec3f_sub(place_in_scene(f, middle), place_in_scene(f, vec3f_scale(vec3f_add(p, q), 0.5f)));
+    return bends(f, p, q, off, tolerance);
+}
+
+/* Written so that compilers make vectors of it. */
+void cell_frame_bends_of(const CellFrame *f, int count, const float *restrict pa, const float *restrict pb, const float *restrict pw, const float *restrict qa,
+                         const float *restrict qb, const float *restrict qw, float tolerance, uint32_t *restrict bent) {
+    const CellFrame own = *f; /* which `bent` is no part of */
+    for (int i = 0; i < count; i++) bent[i] = bends(&own, vec3f(pa[i], pb[i], pw[i]), vec3f(qa[i], qb[i], qw[i]), vec3f(0, 0, 0), tolerance);
 }
 
 void cell_frame_linearise(CellFrame *f, double u, double v) {

@@ -28,6 +28,9 @@ static inline float cell_frame_bend(const CellFrame *f, float a, float b, float 
 /* Whether it bends the edge from p to q by more than `tolerance`, scene units, out of its straight line, as its middle tells: that lies at `middle` in the cell,
  * half way between the two where texture coordinates are affine. The same in both directions, and in whatever beam. */
 bool cell_frame_bends(const CellFrame *f, Vec3f p, Vec3f q, Vec3f middle, float tolerance);
+/* The same of many edges, from (pa, pb, pw) to (qa, qb, qw), where texture coordinates are affine: bent[i] is 1 or 0. */
+void cell_frame_bends_of(const CellFrame *f, int count, const float *restrict pa, const float *restrict pb, const float *restrict pw, const float *restrict qa,
+                         const float *restrict qb, const float *restrict qw, float tolerance, uint32_t *restrict bent);
 /* Takes the linear part of (u, v) → (a, b) at a place, or as near to it as the cell goes. */
 void cell_frame_linearise(CellFrame *f, double u, double v);
 

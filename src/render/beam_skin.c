@@ -386,6 +386,34 @@ static Piece piece_of(const MappedVertices *v, const TexelCluster *cluster, int 
     return piece;
 }
 
+/* Draws those of the cluster's whole triangles that are to be cut, and leaves the others. */
+static void draw_bent_of(Drawing *d, const MappedVertices *v, BeamMesh *whole) {
+    enum { EDGES = 3 * CLUSTER_TRIANGLES };
+    float pa[EDGES], pb[EDGES], pw[EDGES], qa[EDGES], qb[EDGES], qw[EDGES];
+    uint32_t bent[EDGES];
+    const bool affine = d->at.frame->affine;
+    int count = 0, left = 0;
+    for (int i = 0; affine && i < whole->count; i++)
+        for (int e = 0; e < 3; e++, count++) {
+            const int p = whole->triangles[whole->which[i]][e], q = whole->triangles[whole->which[i]][(e + 1) % 3];
+            pa[count] = v->a[p], pb[count] = v->b[p], pw[count] = v->w[p];
+            qa[count] = v->a[q], qb[count] = v->b[q], qw[count] = v->w[q];
+        }
+    cell_frame_bends_of(d->at.frame, count, pa, pb, pw, qa, qb, qw, d->at.tolerance, bent);
+    for (int i = 0; i < whole->count; i++) {
+        const uint8_t triangle = whole->which[i];
+        const uint32_t *of = &bent[3 * i];
+        if (affine && !(of[0] | of[1] | of[2])) {
+            whole->which[left++] = triangle;
+            continue;
+        }
+        const Piece piece = piece_of(v, d->cluster, triangle, true);
+        if (!affine && middles_of(d, &piece).bent_count == 0) whole->which[left++] = triangle;
+        else draw_bent(d, &piece, 0);
+    }
+    whole->count = left;
+}
+
 /* `box` holds the part of the cluster that is in the cell. */
 static void draw_cluster(Drawing *d, const TexelCluster *cluster, const CellBox *box) {
     MappedVertices v;
@@ -405,15 +433,14 @@ static void draw_cluster(Drawing *d, const TexelCluster *cluster, const CellBox 
             draw_across(d, x, i);
             continue;
         }
-        const bool before = inside && !(any & BEAM_TOO_NEAR);
-        if (before && plain) {
+        if (inside && !(any & BEAM_TOO_NEAR)) {
             whole.which[whole.count++] = (uint8_t)i;
             continue;
         }
         const Piece piece = piece_of(&v, cluster, i, inside);
-        if (before && middles_of(d, &piece).bent_count == 0) whole.which[whole.count++] = (uint8_t)i;
-        else draw_bent(d, &piece, 0);
+        draw_bent(d, &piece, 0);
     }
+    if (!plain) draw_bent_of(d, &v, &whole);
     whole.corners = whole.count == cluster->triangle_count ? cluster->vertex_count : 0;
     if (whole.count) draw_plain(d, &v, &whole);
 }

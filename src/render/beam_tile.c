@@ -10,7 +10,7 @@
 
 /* How far triangles may leave what the mapping makes of them, in pixels: as samples are fewer, their noise hides more; and so much for an error that is asked for. Of a near
  * lawn at max_error 0.001, facets of up to a quarter of a pixel made three fifths of the error's square. */
-static const double LEAST_TOLERANCE = 0.008, MOST_TOLERANCE = 1, TOLERANCE_AN_ERROR = 15;
+static const double LEAST_TOLERANCE = 0.02, MOST_TOLERANCE = 1, TOLERANCE_AN_ERROR = 15;
 static double tolerance_for(const AllotPlan *plan, double max_error) {
     const bool asked = plan->first < plan->most;
     const double noise_hides = 1 / pow(asked ? 4 * plan->first : plan->first, 0.75);

@@ -59,6 +59,14 @@ static double bow(const SkinCell *cell, Vec3 p, Vec3 q, Vec3 middle) {
     return vec3_length(vec3_madd(off, along, -vec3_dot(off, along)));
 }
 
+static bool bends_among_many(const CellFrame *f, Vec3f p, Vec3f q, float tolerance) {
+    enum { MANY = 11, THIS = 6 };
+    float pa[MANY] = {[THIS] = p.x}, pb[MANY] = {[THIS] = p.y}, pw[MANY] = {[THIS] = p.z}, qa[MANY] = {[THIS] = q.x}, qb[MANY] = {[THIS] = q.y}, qw[MANY] = {[THIS] = q.z};
+    uint32_t bent[MANY];
+    cell_frame_bends_of(f, MANY, pa, pb, pw, qa, qb, qw, tolerance, bent);
+    return bent[THIS];
+}
+
 /* Tolerances a little below and above what the edge needs, in another beam and the other way round. */
 static void hold(bool askew) {
     RandomStream r = {askew ? 8 : 7};
@@ -81,6 +89,7 @@ static void hold(bool askew) {
             assert_false(cell_frame_bends(&f, pf, qf, mf, much) || cell_frame_bends(&f, qf, pf, mf, much));
             float close = (float)wanted;
             assert_int_equal(cell_frame_bends(&f, pf, qf, mf, close), cell_frame_bends(&g, qf, pf, mf, close));
+            if (!askew) assert_int_equal(bends_among_many(&g, pf, qf, close), cell_frame_bends(&f, pf, qf, mf, close));
         }
     }
     assert_true(bent > CELLS * EDGES / 4);

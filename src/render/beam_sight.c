@@ -130,7 +130,7 @@ static void see_explicit(const SeenSurface *seen, Vec3 point, double width, int 
     sight->normal = vec3f_from(normal);
     sight->flat = vec3f_from(hit->flat);
     sight->bias = vec3f_from(vec3_scale(hit->flat, BIAS_DISTANCES * t));
-    sight->clear = (float)(CLEAR_DISTANCES * t + CLEAR_PIXELS * width);
+    sight->clear = (float)(CLEAR_DISTANCES * t + CLEAR_PIXELS * width) + seen->bend;
 }
 
 /* Two explicit hits of one pixel that may share their shading. */

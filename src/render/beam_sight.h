@@ -16,6 +16,7 @@ enum { BEAM_NOTHING = -1, BEAM_EDGE = BEAM_TILE + 2 };
 typedef struct SeenSurface {
     const SurfaceHit *hit;      /* NULL: the ray met none */
     double key_x, key_y, key_0; /* of its tangent plane in the beam */
+    float bend;                 /* how far the surface may lie beside that plane where it stands for a whole pixel; else 0 */
 } SeenSurface;
 
 /* Hits side by side, each with no more looks than it has: most have one of eight that there may be, and where none may have more there is no room for them. */

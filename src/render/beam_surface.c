@@ -16,6 +16,7 @@ static void see_surface(BeamTracer *tr, double x, double y, HitPool *pool, SeenS
     bool found = hierarchy_meet_wide(tr->compiled->hierarchy, RAY_SEES, &ray, (RayWidth){0, 0}, 1e-9, VTS_INFINITY, tr->aovs != NULL, &hit);
     tr->counters.camera_rays++;
     out->hit = found ? keep_hit(pool, &hit) : NULL;
+    out->bend = 0;
     if (!found) return;
     /* q.z of the tangent plane n·(P − P0) = 0, along lines whose direction is linear in x and y. */
     Vec3 p0 = vec3_madd(ray.origin, ray.direction, hit.t), n = hit.flat;
@@ -49,11 +50,26 @@ const SeenSurface *beam_surface_of(const BeamTracer *tr, int pixel, uint32_t sam
     return &tr->pixels[(row + 1) * BEAM_EDGE + column + 1];
 }
 
-/* Whether the pixel, whose middle is (x, y), and all around it show parts of one smooth surface. */
-static bool is_smooth(const SeenSurface *p, double x, double y) {
+/* How far the tangent planes of two neighbouring pixels are apart at a place of the picture, along the normal of the first. */
+static double gap_between(const BeamTracer *tr, const SeenSurface *a, const SeenSurface *b, double x, double y) {
+    BeamLine line = beam_line_at(tr, x, y);
+    double key_a = a->key_0 + a->key_x * x + a->key_y * y, key_b = b->key_0 + b->key_x * x + b->key_y * y;
+    double apart = beam_line_distance(tr, &line, (float)key_a) - beam_line_distance(tr, &line, (float)key_b);
+    return fabs(apart * vec3_dot(line.direction, a->hit->flat)) / line.length;
+}
+
+/* Whether the pixel, whose middle is (x, y), and all around it show parts of one smooth surface: then its tangent plane stands for it, and `bend` gets how
+ * far that may lie beside it. */
+static bool is_smooth(const BeamTracer *tr, SeenSurface *p, double x, double y) {
+    p->bend = 0;
     for (int down = -1; down <= 1; down++)
-        for (int right = -1; right <= 1; right++)
-            if ((down || right) && !alike(p, p + down * BEAM_EDGE + right, x + 0.5 * right, y + 0.5 * down)) return false;
+        for (int right = -1; right <= 1; right++) {
+            const SeenSurface *other = p + down * BEAM_EDGE + right;
+            const double between_x = x + 0.5 * right, between_y = y + 0.5 * down;
+            if (other == p) continue;
+            if (!alike(p, other, between_x, between_y)) return false;
+            if (p->hit) p->bend = float_max(p->bend, (float)gap_between(tr, p, other, between_x, between_y));
+        }
     return true;
 }
 
@@ -70,10 +86,10 @@ void beam_see_surfaces(BeamTracer *tr) {
     int32_t nothing = BEAM_NOTHING; /* one for all samples that meet none */
     for (int row = 0; row < tr->rows; row++)
         for (int column = 0; column < tr->columns; column++) {
-            const SeenSurface *p = &tr->pixels[(row + 1) * BEAM_EDGE + column + 1];
+            SeenSurface *p = &tr->pixels[(row + 1) * BEAM_EDGE + column + 1];
             double x = column + 0.5, y = row + 0.5;
             if (!tr->allotment.asked[row * tr->columns + column]) continue;
-            bool smooth = !thin && is_smooth(p, x, y);
+            bool smooth = !thin && is_smooth(tr, p, x, y);
             int pixel = row * tr->columns + column;
             for (uint32_t i = s->first[pixel]; i < s->first[pixel + 1]; i++) {
                 double sx = (double)s->x[i], sy = (double)s->y[i];

@@ -36,12 +36,15 @@ static void see_surface(BeamTracer *tr, double x, double y, HitPool *pool, SeenS
     out->key_0 -= out->key_x * x + out->key_y * y;
 }
 
+/* How much farther or nearer one of two pixels may be than the other, where both meet. */
+static const double ALIKE = 0.01;
+
 /* Whether two neighbouring pixels may be taken for parts of one smooth surface. */
 static bool alike(const SeenSurface *a, const SeenSurface *b, double x, double y) {
     if (!a->hit || !b->hit) return a->hit == b->hit;
     if (a->hit->object != b->hit->object || vec3_dot(a->hit->flat, b->hit->flat) < 0.95) return false;
     double key_a = a->key_0 + a->key_x * x + a->key_y * y, key_b = b->key_0 + b->key_x * x + b->key_y * y;
-    return fabs(key_a - key_b) <= 0.01 * (fabs(key_a) + fabs(key_b));
+    return fabs(key_a - key_b) <= ALIKE * (fabs(key_a) + fabs(key_b));
 }
 
 const SeenSurface *beam_surface_of(const BeamTracer *tr, int pixel, uint32_t sample) {
@@ -49,6 +52,9 @@ const SeenSurface *beam_surface_of(const BeamTracer *tr, int pixel, uint32_t sam
     int row = pixel / tr->columns, column = pixel % tr->columns;
     return &tr->pixels[(row + 1) * BEAM_EDGE + column + 1];
 }
+
+/* What the surface leaves the tangent plane by within the pixel, of what it does at the middles of the next: a quarter where it is bent evenly. */
+static const double BENDS_WITHIN = 0.5;
 
 /* How far the tangent planes of two neighbouring pixels are apart at a place of the picture, along the normal of the first. */
 static double gap_between(const BeamTracer *tr, const SeenSurface *a, const SeenSurface *b, double x, double y) {
@@ -65,10 +71,11 @@ static bool is_smooth(const BeamTracer *tr, SeenSurface *p, double x, double y) 
     for (int down = -1; down <= 1; down++)
         for (int right = -1; right <= 1; right++) {
             const SeenSurface *other = p + down * BEAM_EDGE + right;
-            const double between_x = x + 0.5 * right, between_y = y + 0.5 * down;
             if (other == p) continue;
-            if (!alike(p, other, between_x, between_y)) return false;
-            if (p->hit) p->bend = float_max(p->bend, (float)gap_between(tr, p, other, between_x, between_y));
+            if (!alike(p, other, x + 0.5 * right, y + 0.5 * down)) return false;
+            if (!p->hit) continue;
+            double bend = fmin(BENDS_WITHIN * gap_between(tr, p, other, x + right, y + down), ALIKE * p->hit->t); /* however steep a plane is at a horizon */
+            p->bend = float_max(p->bend, (float)bend);
         }
     return true;
 }

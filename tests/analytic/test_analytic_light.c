@@ -100,11 +100,35 @@ static void exact_geometry_sees_the_sky(void **state) {
     }
 }
 
+/* Within a ball nothing hides a lamp. Beside skins a pixel of it is a piece of its tangent plane, which lies behind it. */
+static void hollows_do_not_shadow_themselves(void **state) {
+    static const char *const casts[] = {"", "no_shadow"};
+    Picture p[2];
+    for (int i = 0; i < 2; i++) {
+        char text[2048];
+        VtsOptions o = options_of_size(12, 9);
+        o.samples = 16;
+        snprintf(text, sizeof text, "global_settings { ambient_light 0 detail exact }\n%s"
+                 "camera { location <0, 0.3, -0.4> look_at <0, -0.2, 1> right x*image_width/image_height angle 90 }\n"
+                 "light_source { <0, 0.4, 0> rgb 1 }\n"
+                 "sphere { 0, 1 pigment { rgb 1 } finish { diffuse 1 } %s }\n"
+                 "#declare G = surface { patch_grid 2, 2 function(u, v) { <0.2*u - 0.1, -0.7, 0.3 + 0.2*v> } };\n"
+                 "skin { surface { G } texel { T } mapping { repeat <4, 4> height 0.05 } }\n", GRASS, casts[i]);
+        p[i] = bench_render(*state, &o, text);
+    }
+    for (int y = 0; y < 9; y++)
+        for (int x = 0; x < 12; x++)
+            if (fabsf(pixel_at(&p[0], x, y)[0] - pixel_at(&p[1], x, y)[0]) > 1e-6f)
+                fail_msg("at %d, %d: %g, without shadows %g", x, y, (double)pixel_at(&p[0], x, y)[0], (double)pixel_at(&p[1], x, y)[0]);
+    for (int i = 0; i < 2; i++) picture_free(&p[i]);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mean_light_is_that_of_the_geometry),
         cmocka_unit_test(sky_light_darkens_what_stands_under_others),
         cmocka_unit_test(exact_geometry_sees_the_sky),
+        cmocka_unit_test(hollows_do_not_shadow_themselves),
     };
     return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
 }

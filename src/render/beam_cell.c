@@ -164,7 +164,7 @@ static inline bool bends(const CellFrame *f, Vec3f p, Vec3f q, Vec3f off, float 
     const Vec3f edge = vec3f_madd(vec3f_madd(vec3f_scale(by_a, way.x), by_b, way.y), by_w, way.z);
     const Vec3f bow = vec3f_madd(vec3f_madd(vec3f_madd(off, c_ab, -0.25f * way.x * way.y), c_aw, -0.25f * way.x * way.z), c_bw, -0.25f * way.y * way.z);
     const float along = vec3f_dot(bow, edge), length = vec3f_dot(edge, edge);
-    return vec3f_dot(bow, bow) * length - along * along > tolerance * tolerance * length;
+    return vec3f_dot(bow, bow) - along * (along / length) > tolerance * tolerance; /* no higher power of lengths: floats hold few */
 }
 
 bool cell_frame_bends(const CellFrame *f, Vec3f p, Vec3f q, Vec3f middle, float tolerance) {

@@ -386,39 +386,65 @@ static Piece piece_of(const MappedVertices *v, const TexelCluster *cluster, int 
     return piece;
 }
 
-/* Draws those of the cluster's whole triangles that are to be cut, and leaves the others. */
-static void draw_bent_of(Drawing *d, const MappedVertices *v, BeamMesh *whole) {
+/* Tells of which of the cluster's whole triangles the mapping bends an edge, where texture coordinates are affine: most edges cannot be bent so far, the others are
+ * looked at together. */
+static void find_bent(const Drawing *d, const MappedVertices *v, const BeamMesh *whole, bool bent[CLUSTER_TRIANGLES]) {
     enum { EDGES = 3 * CLUSTER_TRIANGLES };
     float pa[EDGES], pb[EDGES], pw[EDGES], qa[EDGES], qb[EDGES], qw[EDGES];
-    uint32_t bent[EDGES];
-    const bool affine = d->at.frame->affine;
-    int count = 0, left = 0;
-    for (int i = 0; affine && i < whole->count; i++)
-        for (int e = 0; e < 3; e++, count++) {
-            const int p = whole->triangles[whole->which[i]][e], q = whole->triangles[whole->which[i]][(e + 1) % 3];
+    uint32_t edge_bent[EDGES];
+    uint8_t of[EDGES];
+    int count = 0;
+    for (int i = 0; i < whole->count; i++) {
+        const uint8_t *corner = whole->triangles[whole->which[i]];
+        bent[i] = false;
+        for (int e = 0; e < 3; e++) {
+            const int p = corner[e], q = corner[(e + 1) % 3];
+            if (cell_frame_bend(d->at.frame, fabsf(v->a[q] - v->a[p]), fabsf(v->b[q] - v->b[p]), fabsf(v->w[q] - v->w[p])) <= d->at.tolerance) continue;
             pa[count] = v->a[p], pb[count] = v->b[p], pw[count] = v->w[p];
             qa[count] = v->a[q], qb[count] = v->b[q], qw[count] = v->w[q];
+            of[count++] = (uint8_t)i;
         }
-    cell_frame_bends_of(d->at.frame, count, pa, pb, pw, qa, qb, qw, d->at.tolerance, bent);
+    }
+    cell_frame_bends_of(d->at.frame, count, pa, pb, pw, qa, qb, qw, d->at.tolerance, edge_bent);
+    for (int k = 0; k < count; k++) bent[of[k]] |= edge_bent[k] != 0;
+}
+
+/* Draws those of the cluster's whole triangles that are to be cut, and leaves the others. */
+static void draw_bent_of(Drawing *d, const MappedVertices *v, BeamMesh *whole) {
+    const bool affine = d->at.frame->affine;
+    bool bent[CLUSTER_TRIANGLES];
+    int left = 0;
+    if (affine) find_bent(d, v, whole, bent);
     for (int i = 0; i < whole->count; i++) {
-        const uint8_t triangle = whole->which[i];
-        const uint32_t *of = &bent[3 * i];
-        if (affine && !(of[0] | of[1] | of[2])) {
-            whole->which[left++] = triangle;
-            continue;
+        if (!affine || bent[i]) {
+            const Piece piece = piece_of(v, d->cluster, whole->which[i], true);
+            if (affine || middles_of(d, &piece).bent_count > 0) {
+                draw_bent(d, &piece, 0);
+                continue;
+            }
         }
-        const Piece piece = piece_of(v, d->cluster, triangle, true);
-        if (!affine && middles_of(d, &piece).bent_count == 0) whole->which[left++] = triangle;
-        else draw_bent(d, &piece, 0);
+        whole->which[left++] = whole->which[i];
     }
     whole->count = left;
+}
+
+/* Whether no edge of the cluster can be bent by more than is tolerated. `box` holds what lies in the cell. */
+static bool is_plain(const CopyFrame *c, const TexelCluster *cluster, const CellBox *box) {
+    float a = box->a1 - box->a0, b = box->b1 - box->b0, w = box->w1 - box->w0;
+    const float *edge = cluster->longest;
+    if (c->frame->affine) {
+        a = float_min(a, fabsf(c->a_x) * edge[0] + fabsf(c->a_z) * edge[2]);
+        b = float_min(b, fabsf(c->b_x) * edge[0] + fabsf(c->b_z) * edge[2]);
+        w = float_min(w, fabsf(c->y_w) * edge[1]);
+    }
+    return cell_frame_bend(c->frame, a, b, w) <= c->tolerance;
 }
 
 /* `box` holds the part of the cluster that is in the cell. */
 static void draw_cluster(Drawing *d, const TexelCluster *cluster, const CellBox *box) {
     MappedVertices v;
     const CellFrame *f = d->at.frame;
-    const bool plain = cell_frame_bend(f, box->a1 - box->a0, box->b1 - box->b0, box->w1 - box->w0) <= d->at.tolerance;
+    const bool plain = is_plain(&d->at, cluster, box);
     BeamMesh whole = {.x = v.seen_x, .y = v.seen_y, .key = v.key, .triangles = cluster->triangles};
     d->cluster = cluster;
     map_vertices(d, cluster, &v);

@@ -183,6 +183,13 @@ static const FacetNormals *normals_of(Tree *tree, const Facet *facets, int count
     return out;
 }
 
+static float longest_edge(const Facet *facets, int count, int axis) {
+    float longest = 0;
+    for (int i = 0; i < count; i++)
+        for (int c = 0; c < 3; c++) longest = float_max(longest, fabsf(facets[i].at[(c + 1) % 3][axis] - facets[i].at[c][axis]));
+    return longest;
+}
+
 static void make_cluster(Tree *tree, const Facet *facets, int count, ClusterNode *node) {
     float at[3][CLUSTER_VERTICES];
     uint8_t(*triangles)[3] = arena_push_array_(tree->arena, (size_t)count, sizeof *triangles);
@@ -204,7 +211,8 @@ static void make_cluster(Tree *tree, const Facet *facets, int count, ClusterNode
     size_t row = (size_t)vertices * sizeof(float);
     tree->clusters[tree->cluster_count] = (TexelCluster){
         .x = arena_copy(tree->arena, at[0], row), .y = arena_copy(tree->arena, at[1], row), .z = arena_copy(tree->arena, at[2], row),
-        .triangles = (const uint8_t(*)[3])triangles, .layers = layers, .normals = normals_of(tree, facets, count), .vertex_count = vertices, .triangle_count = count};
+        .triangles = (const uint8_t(*)[3])triangles, .layers = layers, .normals = normals_of(tree, facets, count), .vertex_count = vertices, .triangle_count = count,
+        .longest = {longest_edge(facets, count, 0), longest_edge(facets, count, 1), longest_edge(facets, count, 2)}};
     node->leaf = true;
     node->first = (uint32_t)tree->cluster_count++;
     tree->bytes += 3 * row + 4 * (size_t)count + sizeof(TexelCluster);

@@ -14,6 +14,7 @@ typedef struct TexelCluster {
     const uint16_t *layers; /* of each triangle */
     const FacetNormals *normals; /* the same, in texel space; NULL: all are flat */
     int vertex_count, triangle_count;
+    float longest[3]; /* how far along each axis its edges reach at most */
 } TexelCluster;
 
 /* Inner nodes: children at `first` and `first` + 1. Leaves: cluster `first`. */

@@ -14,9 +14,9 @@ static double between(RandomStream *r, double lo, double hi) { return lo + (hi -
 static Vec3 anything(RandomStream *r, double size) { return vec3(between(r, -size, size), between(r, -size, size), between(r, -size, size)); }
 
 /* Feet, height vectors, and where `askew` texture coordinates and heights too, are those of no plane. */
-static SkinCell random_cell(RandomStream *r, bool askew) {
+static SkinCell random_cell(RandomStream *r, double size, bool askew) {
     SkinCell cell = {.side = CELL_UPRIGHT};
-    for (int i = 0; i < 4; i++) cell.foot.c[i] = anything(r, i == 3 ? 0.2 : 1), cell.height.c[i] = anything(r, i == 0 ? 1 : 0.4);
+    for (int i = 0; i < 4; i++) cell.foot.c[i] = anything(r, i == 3 ? 0.2 * size : size), cell.height.c[i] = anything(r, i == 0 ? size : 0.4 * size);
     cell.u = (Bilinear){{3, 2, 0.3, askew ? between(r, -0.4, 0.4) : 0}}, cell.v = (Bilinear){{-5, 0.2, 1.5, askew ? between(r, -0.4, 0.4) : 0}};
     cell.w_foot = (Bilinear){{0, askew ? 0.1 : 0, 0, 0}}, cell.w_tip = (Bilinear){{1, 0, askew ? 0.1 : 0, 0}};
     return cell;
@@ -68,11 +68,11 @@ static bool bends_among_many(const CellFrame *f, Vec3f p, Vec3f q, float toleran
 }
 
 /* Tolerances a little below and above what the edge needs, in another beam and the other way round. */
-static void hold(bool askew) {
+static void hold(double size, bool askew) {
     RandomStream r = {askew ? 8 : 7};
     int bent = 0;
     for (int c = 0; c < CELLS; c++) {
-        SkinCell cell = random_cell(&r, askew);
+        SkinCell cell = random_cell(&r, size, askew);
         Beam one = random_beam(&r), other = random_beam(&r);
         CellFrame f, g;
         assert_true(cell_frame(&f, &one, &cell) && cell_frame(&g, &other, &cell));
@@ -81,7 +81,7 @@ static void hold(bool askew) {
             Vec3 p = vec3(between(&r, 0, 1), between(&r, 0, 1), between(&r, 0, 1)), q = vec3(between(&r, 0, 1), between(&r, 0, 1), between(&r, 0, 1));
             Vec3 middle = middle_of(&cell, p, q);
             double wanted = bow(&cell, p, q, middle);
-            if (wanted < 1e-3) continue;
+            if (wanted < 1e-3 * size) continue;
             bent++;
             Vec3f pf = vec3f_from(p), qf = vec3f_from(q), mf = vec3f_from(middle);
             float little = (float)(0.98 * wanted), much = (float)(1.02 * wanted);
@@ -95,15 +95,17 @@ static void hold(bool askew) {
     assert_true(bent > CELLS * EDGES / 4);
 }
 
-static void edges_of_even_cells(void **state) { (void)state; hold(false); }
-static void edges_of_cells_askew(void **state) { (void)state; hold(true); }
+static void edges_of_even_cells(void **state) { (void)state; hold(1, false); }
+static void edges_of_cells_askew(void **state) { (void)state; hold(1, true); }
+/* The squares of squares of such lengths are no floats. */
+static void edges_of_huge_and_tiny_cells(void **state) { (void)state; hold(1e12, false); hold(1e12, true); hold(1e-12, false); hold(1e-12, true); }
 
 /* The walls and the foot of a cell are ruled: along its own lines nothing bends. */
 static void lines_of_the_cell_are_straight(void **state) {
     (void)state;
     RandomStream r = {9};
     for (int c = 0; c < CELLS; c++) {
-        SkinCell cell = random_cell(&r, false);
+        SkinCell cell = random_cell(&r, 1, false);
         Beam beam = random_beam(&r);
         CellFrame f;
         assert_true(cell_frame(&f, &beam, &cell));
@@ -117,6 +119,7 @@ static void lines_of_the_cell_are_straight(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(edges_of_even_cells), cmocka_unit_test(edges_of_cells_askew), cmocka_unit_test(lines_of_the_cell_are_straight)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(edges_of_even_cells), cmocka_unit_test(edges_of_cells_askew),
+                                       cmocka_unit_test(edges_of_huge_and_tiny_cells), cmocka_unit_test(lines_of_the_cell_are_straight)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

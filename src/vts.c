@@ -1,5 +1,6 @@
 #include "vts_session.h"
 
+#include "base/decimal.h"
 #include "base/stopwatch.h"
 #include "eval/block_setting.h"
 #include "eval/eval.h"
@@ -194,7 +195,7 @@ void session_print_diagnostics(VtsSession *session) {
 static bool parse_number(const char *text, double *out) {
     char *end;
     errno = 0;
-    *out = strtod(text, &end);
+    *out = decimal_strtod(text, &end);
     return end != text && *end == '\0' && errno == 0 && isfinite(*out);
 }
 

@@ -1,6 +1,7 @@
 /* Settings from outside: --set KNOB=VALUE, over the scene's global_settings. */
 #include "vts_session.h"
 
+#include "base/decimal.h"
 #include "eval/block_setting.h"
 #include "scene/knobs.h"
 
@@ -32,7 +33,7 @@ static const NumberKnob *find_number_knob(const char *name) {
 static bool parse_number(const char *text, double *out, const char **end) {
     char *stop;
     errno = 0;
-    *out = strtod(text, &stop);
+    *out = decimal_strtod(text, &stop);
     *end = stop;
     return stop != text && errno == 0 && isfinite(*out);
 }

@@ -1,7 +1,7 @@
 #include "base/arena.h"
 
-#include <stdarg.h>
-#include <stdio.h>
+#include "base/decimal.h"
+
 #include <stdlib.h>
 #include <string.h>
 #ifdef __GLIBC__
@@ -132,16 +132,22 @@ void *arena_copy(Arena *arena, const void *data, size_t size) {
 
 char *arena_strdup(Arena *arena, const char *text) { return arena_copy(arena, text, strlen(text) + 1); }
 
-char *arena_printf(Arena *arena, const char *format, ...) {
-    va_list args, again;
-    va_start(args, format);
+char *arena_vprintf(Arena *arena, const char *format, va_list args) {
+    va_list again;
     va_copy(again, args);
-    int length = vsnprintf(NULL, 0, format, args);
-    va_end(args);
+    int length = decimal_vsnprintf(NULL, 0, format, args);
     size_t size = length < 0 ? 1 : (size_t)length + 1;
     char *text = arena_push(arena, size);
-    if (length >= 0) vsnprintf(text, size, format, again);
+    if (length >= 0) decimal_vsnprintf(text, size, format, again);
     va_end(again);
+    return text;
+}
+
+char *arena_printf(Arena *arena, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    char *text = arena_vprintf(arena, format, args);
+    va_end(args);
     return text;
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/common.h"
 
+#include <stdarg.h>
 #include <stdatomic.h>
 
 typedef struct MemoryBudget {
@@ -59,6 +60,8 @@ void *arena_push_room_(Arena *arena, size_t count, size_t size);
 /* A copy of `size` bytes; of a string with its terminator. */
 void *arena_copy(Arena *arena, const void *data, size_t size);
 char *arena_strdup(Arena *arena, const char *text);
+/* Text with decimal points, whatever locale a host program has set. */
+char *arena_vprintf(Arena *arena, const char *format, va_list args);
 char *arena_printf(Arena *arena, const char *format, ...) VTS_PRINTF(2, 3);
 
 static inline ArenaMark arena_mark(const Arena *arena) { return (ArenaMark){arena->newest, arena->used}; }

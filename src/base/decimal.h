@@ -2,6 +2,7 @@
 #ifndef VTS_BASE_DECIMAL_H
 #define VTS_BASE_DECIMAL_H
 
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -47,5 +48,10 @@ static inline bool decimal_value(const Decimal *d, double *out) {
     *out = (double)d->digits / powers[d->after_point];
     return true;
 }
+
+/* As C's strtod() in the locale "C", errno and all. */
+double decimal_strtod(const char *text, char **end);
+/* As C's vsnprintf() in the locale "C". */
+int decimal_vsnprintf(char *out, size_t size, const char *format, va_list args);
 
 #endif

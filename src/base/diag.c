@@ -15,17 +15,6 @@ bool diag_full(const DiagList *list) {
     return list->error_count >= (list->error_limit ? list->error_limit : DEFAULT_ERROR_LIMIT);
 }
 
-static const char *format_text(Arena *arena, const char *format, va_list args) {
-    va_list again;
-    va_copy(again, args);
-    int length = vsnprintf(NULL, 0, format, args);
-    size_t size = length < 0 ? 1 : (size_t)length + 1;
-    char *text = arena_push(arena, size);
-    vsnprintf(text, size, format, again);
-    va_end(again);
-    return text;
-}
-
 static bool error_exists_at(const DiagList *list, Span span) {
     if (span.file == 0) return false;
     for (const Diagnostic *d = list->first; d; d = d->next)
@@ -66,7 +55,7 @@ static Diagnostic *add(DiagList *list, Severity severity, Span span, const char 
     Diagnostic *d = arena_new(list->arena, Diagnostic);
     d->severity = severity;
     d->span = span;
-    d->message = format_text(list->arena, format, args);
+    d->message = arena_vprintf(list->arena, format, args);
     d->format = format;
     if (list->last) list->last->next = d;
     else list->first = d;
@@ -103,7 +92,7 @@ void diag_note(DiagList *list, Diagnostic *to, Span span, const char *format, ..
     va_list args;
     va_start(args, format);
     note->format = format;
-    note->message = format_text(list->arena, format, args);
+    note->message = arena_vprintf(list->arena, format, args);
     va_end(args);
     Diagnostic **end = &to->notes;
     while (*end) end = &(*end)->next;
@@ -114,7 +103,7 @@ void diag_hint(DiagList *list, Diagnostic *to, const char *format, ...) {
     if (!to) return;
     va_list args;
     va_start(args, format);
-    to->hint = format_text(list->arena, format, args);
+    to->hint = arena_vprintf(list->arena, format, args);
     va_end(args);
 }
 

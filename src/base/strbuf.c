@@ -1,6 +1,7 @@
 #include "base/strbuf.h"
 
-#include <stdio.h>
+#include "base/decimal.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,10 +26,10 @@ void strbuf_adds(StrBuf *buf, const char *text) { strbuf_add(buf, text, strlen(t
 void strbuf_vaddf(StrBuf *buf, const char *format, va_list args) {
     va_list again;
     va_copy(again, args);
-    int length = vsnprintf(NULL, 0, format, args);
+    int length = decimal_vsnprintf(NULL, 0, format, args);
     if (length > 0) {
         reserve(buf, (size_t)length);
-        vsnprintf(buf->data + buf->size, (size_t)length + 1, format, again);
+        decimal_vsnprintf(buf->data + buf->size, (size_t)length + 1, format, again);
         buf->size += (size_t)length;
     }
     va_end(again);

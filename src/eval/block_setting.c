@@ -1,5 +1,7 @@
 #include "eval/block_setting.h"
 
+#include "base/decimal.h"
+
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
@@ -30,7 +32,7 @@ static bool read_number(const char **text, double *out) {
     char *end;
     if (!isdigit((unsigned char)**text) && !strchr("+-.", **text)) return false; /* strtod knows names of numbers */
     errno = 0;
-    *out = strtod(*text, &end);
+    *out = decimal_strtod(*text, &end);
     bool valid = end != *text && errno == 0 && isfinite(*out);
     *text = end;
     return valid;

@@ -2,6 +2,8 @@
  * file holds a block or a word against it. */
 #include "eval/build_pattern.h"
 
+#include "base/decimal.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -109,8 +111,8 @@ static const char *operand_text(char letter) {
 static const char *check_range(Reader *reader, const char *name, const char *range,
                                const Argument *argument) {
     char *end;
-    double low = strtod(range + 1, &end);
-    double high = *end == ',' ? strtod(end + 1, &end) : HUGE_VAL;
+    double low = decimal_strtod(range + 1, &end);
+    double high = *end == ',' ? decimal_strtod(end + 1, &end) : HUGE_VAL;
     double found = argument && argument->value.kind == VALUE_FLOAT ? argument->value.as.number : low;
     if (!(found >= low && found <= high)) {
         if (high < HUGE_VAL)

@@ -1,6 +1,8 @@
 #include "eval/block_setting.h"
 #include "eval/eval.h"
 
+#include "base/decimal.h"
+
 #include "eval/eval_files.h"
 #include "eval/eval_names.h"
 
@@ -175,7 +177,7 @@ static void declare_options(Eval *ev) {
     for (size_t i = 0; i < ev->options->declare_count; i++) {
         const char *text = ev->options->declares[i].value;
         char *end;
-        double number = strtod(text, &end);
+        double number = decimal_strtod(text, &end);
         Value v = *text && *end == '\0' ? value_float(number) : value_string(ev, text, strlen(text));
         slot_set(ev, scope_declare(ev, intern_cstr(ev->names, ev->options->declares[i].name), false), &v);
     }

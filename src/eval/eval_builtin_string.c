@@ -1,5 +1,7 @@
 #include "eval/eval_state.h"
 
+#include "base/decimal.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -203,7 +205,7 @@ static Value text_measure(Eval *ev, const Node *node) {
     switch (node->op) {
     case KW_asc: return value_float(char_code(a, length));
     case KW_strlen: return value_float((double)char_count(a, length));
-    case KW_val: return value_float(strtod(a, NULL));
+    case KW_val: return value_float(decimal_strtod(a, NULL));
     case KW_file_exists: return value_float(file_exists_for(ev, a, node->span));
     default: return string_argument(ev, node, 1, &b, NULL) ? value_float(strcmp(a, b)) : value_error();
     }

@@ -1,6 +1,8 @@
 /* Expressions of productions, as tapes. Operators bind as in C, ^ (a power) most tightly and to the right. */
 #include "grow/lsystem_parts.h"
 
+#include "base/decimal.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
@@ -78,7 +80,7 @@ static const Operator *next_operator(const LSystemReader *reader, int level) {
 
 static bool read_number(Expression *e, TapeRef *out) {
     char *end;
-    double value = strtod(e->reader->at, &end); /* texts end with a zero, and so does what is a number in them */
+    double value = decimal_strtod(e->reader->at, &end); /* texts end with a zero, and so does what is a number in them */
     if (end > e->reader->end || !isfinite(value)) return lsystem_fail(e->reader, "a number is too large");
     e->reader->at = end;
     *out = tape_constant(e->tape, value);

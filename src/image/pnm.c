@@ -1,5 +1,6 @@
 #include "image/pnm.h"
 
+#include "base/decimal.h"
 #include "image/image_part.h"
 #include "image/srgb.h"
 
@@ -84,7 +85,7 @@ static bool read_scale(Reader *reader, double *scale, ImagePart *part) {
         word[size++] = (char)*reader->at++;
     word[size] = '\0';
     char *end;
-    *scale = strtod(word, &end);
+    *scale = decimal_strtod(word, &end);
     read_part_digits(word, part);
     return size > 0 && !*end && *scale != 0;
 }

@@ -135,7 +135,7 @@ static double read_number(Lexer *lx) {
         while (is_digit(*at)) at++;
     }
     lx->at = (uint32_t)(at - lx->text);
-    return simple ? value : strtod(begin, NULL);
+    return simple ? value : decimal_strtod(begin, NULL);
 }
 
 static void lex_number(Lexer *lx) {

@@ -1,5 +1,7 @@
 #include "scene/lamp.h"
 
+#include "base/decimal.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,7 +35,7 @@ static bool take_number(LampReader *r, const char *what, double low, double high
     }
     memcpy(word, text + r->last, size < sizeof word ? size : 0);
     word[size < sizeof word ? size : 0] = '\0';
-    *out = strtod(word, &end);
+    *out = decimal_strtod(word, &end);
     bool plain = end > word && *end == '\0' && !strpbrk(word, "xXnN"); /* hexadecimal, nan and inf are C's numbers, not the format's */
     if (!plain) {
         diag_error(r->diags, span_of_last(r), "%s is no number", what);

@@ -1,5 +1,7 @@
 /* What a TIFF says of its place, its samples and its heights. */
 #include "terrain/geotiff_module.h"
+
+#include "base/decimal.h"
 #include "terrain/georeference.h"
 #include "terrain/projection_system.h"
 
@@ -98,7 +100,7 @@ static bool read_place(const GeotiffFile *file, Georeference *r, StrBuf *error) 
 static bool read_number(const char *text, double *out) {
     char *end;
     if (!text) return false;
-    *out = strtod(text, &end);
+    *out = decimal_strtod(text, &end);
     return end != text;
 }
 

@@ -2,6 +2,8 @@
  * then profiles from the south to the north, the first the westernmost, which begin and end where the quadrangle does. */
 #include "terrain/map_file.h"
 
+#include "base/decimal.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,7 +50,7 @@ static double field(const DemReader *dem, int begin, int width, double otherwise
     }
     text[used] = '\0';
     char *end;
-    double value = strtod(text, &end);
+    double value = decimal_strtod(text, &end);
     return used == 0 ? otherwise : *end || !isfinite(value) ? (double)NAN : value;
 }
 

@@ -1,5 +1,7 @@
 #include "terrain/text_scan.h"
 
+#include "base/decimal.h"
+
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -40,7 +42,7 @@ static bool slow_number(const char *word, size_t size, double *out) {
         return true;
     }
     for (char *c = copy; *c; c++) *c = *c == ',' ? '.' : *c == 'd' || *c == 'D' ? 'e' : *c;
-    *out = strtod(copy, &end);
+    *out = decimal_strtod(copy, &end);
     return *end == '\0' && end > copy && !strpbrk(copy, "xX");
 }
 

@@ -1,6 +1,8 @@
 /* Sessions: threads, reports, limits and interruption of real renders. */
 #include "analytic.h"
 
+#include "../comma_locale.h"
+
 #include <pthread.h>
 #include <time.h>
 
@@ -255,6 +257,29 @@ static void alpha_is_coverage(void **state) {
     remove(path);
 }
 
+/* Long numbers, with exponents, of strings, of options, of settings and formulas, and those that are written. */
+static void a_locale_with_commas_changes_nothing(void **state) {
+    static const char scene[] =
+        "#macro Same(A, B) #if (abs(A/B - 1) > 1e-12) #error concat(\"not \", str(B, 0, 6)) #end #end\n"
+        "Same(3.14159265358979323846, pi) Same(1.5e-1, 3/20) Same(val(\"2.5\"), 5/2) Same(val(str(0.125, 0, 3)), 1/8) Same(Given, 9/4)\n"
+        "#if (strcmp(str(2.25, 0, 3), \"2.250\") != 0) #error str(2.25, 0, 3) #end\n"
+        "camera { location 0 look_at z }\n"
+        "background { rgb <0.2500000000000000000001, 0.5, 0.75> }\n"
+        "#declare L = lsystem { axiom \"F(0.500000000000000000001)\" iterations 0 }\n"
+        "object { L translate <-0.1, 5, 9> }\n";
+    VtsOptions o = options_of_size(4, 3);
+    o.declares = &(VtsPair){"Given", "2.25"}, o.declare_count = 1;
+    CommaLocale locale;
+    comma_locale_begin(&locale);
+    VtsStatus status = bench_try(*state, &o, scene);
+    comma_locale_end(&locale);
+    assert_int_equal(status, VTS_OK);
+    Picture p = picture_read(((const Bench *)*state)->output);
+    const float *pixel = pixel_at(&p, 1, 1);
+    assert_true(pixel[0] == 0.25f && pixel[1] == 0.5f && pixel[2] == 0.75f);
+    picture_free(&p);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(threads_do_not_change_pixels),
@@ -266,6 +291,7 @@ int main(void) {
         cmocka_unit_test(interruption_from_another_thread),
         cmocka_unit_test(interruption_within_a_tile),
         cmocka_unit_test(alpha_is_coverage),
+        cmocka_unit_test(a_locale_with_commas_changes_nothing),
     };
     return cmocka_run_group_tests(tests, bench_set_up, bench_tear_down);
 }
